@@ -1,0 +1,162 @@
+"""Poses and twists on the plane and in space, in REP-103 units and axes."""
+
+import math
+from dataclasses import dataclass
+from typing import Tuple
+
+import numpy as np
+
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
+
+Vector3 = Tuple[float, float, float]
+Quaternion = Tuple[float, float, float, float]  # x, y, z, w, as in geometry_msgs
+
+
+def wrap_angle(angle: float) -> float:
+    """The same angle [rad] within [-pi, pi]; NaN and infinity raise ValueError."""
+    return math.remainder(angle, 2.0 * math.pi)
+
+
+@dataclass(frozen=True)
+class Pose2D:
+    """Position x, y [m] with heading yaw [rad], counter-clockwise from the x axis."""
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True)
+class Twist2D:
+    """Velocity of a differential drive in its own frame: forward v [m/s], counter-clockwise w [rad/s]."""
+
+    v: float = 0.0
+    w: float = 0.0
+
+
+STANDSTILL = Twist2D()
+
+
+def compose(a_from_b: Pose2D, b_from_c: Pose2D) -> Pose2D:
+    """a_from_c: the pose of c seen in a."""
+    c, s = math.cos(a_from_b.yaw), math.sin(a_from_b.yaw)
+    return Pose2D(
+        a_from_b.x + c * b_from_c.x - s * b_from_c.y,
+        a_from_b.y + s * b_from_c.x + c * b_from_c.y,
+        wrap_angle(a_from_b.yaw + b_from_c.yaw),
+    )
+
+
+def inverse(a_from_b: Pose2D) -> Pose2D:
+    """b_from_a."""
+    c, s = math.cos(a_from_b.yaw), math.sin(a_from_b.yaw)
+    return Pose2D(
+        -c * a_from_b.x - s * a_from_b.y,
+        s * a_from_b.x - c * a_from_b.y,
+        wrap_angle(-a_from_b.yaw),
+    )
+
+
+def compose_rows(a_from_b: np.ndarray, b_from_c: np.ndarray) -> np.ndarray:
+    """`compose` for many: poses (n, 3) [x m, y m, yaw rad] and (n, 3) or (3,); yaw within [-pi, pi]."""
+    c, s = np.cos(a_from_b[:, 2]), np.sin(a_from_b[:, 2])
+    x, y, yaw = b_from_c[..., 0], b_from_c[..., 1], b_from_c[..., 2]
+    return np.stack([a_from_b[:, 0] + c * x - s * y, a_from_b[:, 1] + s * x + c * y,
+                     wrap_rows(a_from_b[:, 2] + yaw)], axis=1)
+
+
+def inverse_rows(a_from_b: np.ndarray) -> np.ndarray:
+    """`inverse` for many: poses (n, 3)."""
+    c, s = np.cos(a_from_b[:, 2]), np.sin(a_from_b[:, 2])
+    return np.stack([-c * a_from_b[:, 0] - s * a_from_b[:, 1], s * a_from_b[:, 0] - c * a_from_b[:, 1],
+                     wrap_rows(-a_from_b[:, 2])], axis=1)
+
+
+def wrap_rows(angles: np.ndarray) -> np.ndarray:
+    """`wrap_angle` for many angles [rad] of any shape."""
+    return angles - 2.0 * math.pi * np.round(angles / (2.0 * math.pi))
+
+
+def row(pose: Pose2D) -> np.ndarray:
+    """A pose as an array (3,)."""
+    return np.array([pose.x, pose.y, pose.yaw])
+
+
+def from_row(pose: np.ndarray) -> Pose2D:
+    """An array (3,) as a pose."""
+    return Pose2D(float(pose[0]), float(pose[1]), float(pose[2]))
+
+
+def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """Fixed-axis roll, pitch, yaw [rad] (as in SDF and URDF) as a unit quaternion x, y, z, w."""
+    cr, sr = math.cos(roll / 2.0), math.sin(roll / 2.0)
+    cp, sp = math.cos(pitch / 2.0), math.sin(pitch / 2.0)
+    cy, sy = math.cos(yaw / 2.0), math.sin(yaw / 2.0)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def yaw_of(q: Quaternion) -> float:
+    """Heading [rad] of a unit quaternion x, y, z, w."""
+    x, y, z, w = q
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def multiply(p: Quaternion, q: Quaternion) -> Quaternion:
+    """The rotation q followed by the rotation p."""
+    px, py, pz, pw = p
+    qx, qy, qz, qw = q
+    return (
+        pw * qx + px * qw + py * qz - pz * qy,
+        pw * qy - px * qz + py * qw + pz * qx,
+        pw * qz + px * qy - py * qx + pz * qw,
+        pw * qw - px * qx - py * qy - pz * qz,
+    )
+
+
+def rotation_matrix(q: Quaternion) -> np.ndarray:
+    """The (3, 3) rotation matrix of a unit quaternion x, y, z, w."""
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class Pose3D:
+    """Position [m] with orientation as a unit quaternion x, y, z, w."""
+
+    position: Vector3 = (0.0, 0.0, 0.0)
+    orientation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+    @staticmethod
+    def from_xyz_rpy(xyz: Vector3, rpy: Vector3) -> "Pose3D":
+        """From SDF's and URDF's six numbers: position [m], then roll, pitch, yaw [rad]."""
+        return Pose3D(xyz, quaternion_from_rpy(*rpy))
+
+    def on_plane(self) -> Pose2D:
+        """The pose with height, roll and pitch left out."""
+        return Pose2D(self.position[0], self.position[1], yaw_of(self.orientation))
+
+
+def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
+    """a_from_c: the pose of c seen in a, in space."""
+    x, y, z = rotation_matrix(a_from_b.orientation) @ np.array(b_from_c.position)
+    ax, ay, az = a_from_b.position
+    return Pose3D(
+        (ax + float(x), ay + float(y), az + float(z)),
+        multiply(a_from_b.orientation, b_from_c.orientation),
+    )
+
+
+def lifted(pose: Pose2D, z: float = 0.0) -> Pose3D:
+    """A pose on the plane as one in space at height z [m]."""
+    return Pose3D((pose.x, pose.y, z), quaternion_from_rpy(0.0, 0.0, pose.yaw))

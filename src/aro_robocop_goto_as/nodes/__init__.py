@@ -1,0 +1,1 @@
+"""All of rospy: thin nodes around the core."""

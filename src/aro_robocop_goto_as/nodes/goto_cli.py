@@ -1,0 +1,187 @@
+"""robocop goto: one goal from the command line, a live progress line, the result as exit status."""
+
+import argparse
+import math
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from typing import List, Optional
+
+import actionlib
+import rosgraph
+import rospkg
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Point, PoseStamped
+from nav_msgs.msg import Odometry
+
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal
+
+from ..errors import FrameError
+from . import action_servers
+from .goal_frame import GoalTransformer
+from .goto_as import ACTION
+from .ticker import wait_until
+
+LAUNCH = ["roslaunch", "aro_robocop_goto_as", "robocop_goto_as.launch", "rviz:=false"]
+SERVER_PATIENCE = 5.0  # [s, wall] for the server of a system that is running
+START_PATIENCE = 60.0  # [s, wall] for a system that is started for this goal, on a slow machine too
+END_PATIENCE = 30.0  # [s, wall] for that system to end; roslaunch kills by itself what has not ended in 17 s
+REACHED, NOT_REACHED = 0, 1
+
+
+def _arguments(argv: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="robocop goto", description="Send one goal and follow it; exit status 0 when it is reached, 1 when not.",
+        epilog="Uses the ROS system that runs; without one it starts a headless simulator for this goal.")
+    parser._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")  # -5e-1 is no option
+    parser.add_argument("x", type=_finite, help="[m]")
+    parser.add_argument("y", type=_finite, help="[m]")
+    parser.add_argument("--frame", default="odom", help="of X and Y: odom, map, base_footprint, ... (default odom)")
+    parser.add_argument("--world", help="world of the simulator that is started when none runs")
+    return parser.parse_args(argv)
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number of metres, got {text!r}")
+    return value
+
+
+class _Progress:
+    """One line that is written over on a terminal; elsewhere a line for each new message."""
+
+    def __init__(self) -> None:
+        self.on_terminal = sys.stdout.isatty()
+        self.last = ""
+
+    def show(self, feedback: GoToPositionFeedback) -> None:
+        figures = f"distance {feedback.position_error:6.2f} m   angle {feedback.angle_error:+6.2f} rad"
+        line = f"{figures}   {feedback.message}"
+        if self.on_terminal:
+            print("\r\033[K" + line, end="", flush=True)
+        else:
+            phase = feedback.message.split(",")[0]
+            if phase != self.last:
+                print(line, flush=True)
+            self.last = phase
+
+    def close(self) -> None:
+        if self.on_terminal:
+            print("\r\033[K", end="")
+
+
+def _pursue(args: argparse.Namespace, patience: float) -> int:
+    """Send the goal to the server and wait for its end."""
+    rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
+    latest: List[Optional[Odometry]] = [None]
+    rospy.Subscriber("odom", Odometry, lambda message: latest.__setitem__(0, message), queue_size=1)
+    transformer = GoalTransformer("odom", "odom", SERVER_PATIENCE, lambda: latest[0])
+    client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
+    missing = action_servers.wait_or_explain(client, ACTION, patience)
+    if missing:
+        print(f"robocop goto: {missing}", file=sys.stderr)
+        return NOT_REACHED
+    pose = PoseStamped()
+    pose.header.frame_id = args.frame
+    pose.pose.position = Point(args.x, args.y, 0.0)
+    try:
+        position = transformer.resolve(pose)
+    except FrameError as error:
+        print(f"robocop goto: {error}", file=sys.stderr)
+        return NOT_REACHED
+    return _follow(client, position)
+
+
+def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
+    """Send a position in odom, show feedback, cancel on Ctrl-C."""
+    ended = threading.Event()
+    progress = _Progress()
+    client.send_goal(GoToPositionGoal(position), done_cb=lambda _state, _result: ended.set(),
+                     feedback_cb=progress.show)
+    try:
+        while not ended.wait(0.1):
+            if not action_servers.is_up(client):
+                progress.close()
+                print("robocop goto: the server is gone", file=sys.stderr)
+                return NOT_REACHED
+    except KeyboardInterrupt:
+        client.cancel_goal()
+        wait_until(ended.is_set, SERVER_PATIENCE)
+    progress.close()
+    result = client.get_result()
+    state = GoalStatus.to_string(client.get_state())
+    print("{}{}".format(state, "" if result is None else ": " + result.message))
+    return REACHED if result is not None and result.success else NOT_REACHED
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def _with_own_system(args: argparse.Namespace) -> int:
+    """Start a headless system on a master of its own, pursue the goal there, and end it."""
+    port = _free_port()
+    os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
+    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
+    world = os.path.abspath(args.world) if args.world and os.path.isfile(args.world) else args.world
+    command = LAUNCH + [f"world:={world}"] if args.world else LAUNCH
+    log_path = os.path.join(rospkg.get_ros_home(), "robocop_goto.log")
+    os.makedirs(os.path.dirname(log_path), exist_ok=True)
+    with open(log_path, "w") as log:
+        system = subprocess.Popen(command[:1] + ["-p", str(port)] + command[1:], stdout=log,
+                                  stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            if not _wait_for_master(system):
+                print(f"robocop goto: the simulator did not start; see {log_path}", file=sys.stderr)
+                return NOT_REACHED
+            return _pursue(args, START_PATIENCE)
+        finally:
+            rospy.signal_shutdown("goal ended")
+            system.terminate()
+            try:
+                system.wait(END_PATIENCE)
+            except subprocess.TimeoutExpired:
+                system.kill()
+
+
+def _wait_for_master(system: "subprocess.Popen[bytes]") -> bool:
+    deadline = threading.Event()
+    timer = threading.Timer(START_PATIENCE, deadline.set)
+    timer.daemon = True
+    timer.start()
+    while not deadline.wait(0.05):
+        if rosgraph.is_master_online():
+            timer.cancel()
+            return True
+        if system.poll() is not None:
+            return False
+    return False
+
+
+def main() -> None:
+    """Entry point; exit status 0 reached, 1 not, 2 for arguments of no sense."""
+    args = _arguments(rospy.myargv()[1:])
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.default_int_handler)  # all of them like Ctrl-C: cancel, and end what was started
+    try:
+        sys.exit(_run(args))
+    except KeyboardInterrupt:
+        print("robocop goto: interrupted", file=sys.stderr)
+        sys.exit(NOT_REACHED)
+
+
+def _run(args: argparse.Namespace) -> int:
+    if rosgraph.is_master_online():
+        return _pursue(args, SERVER_PATIENCE)
+    return _with_own_system(args)

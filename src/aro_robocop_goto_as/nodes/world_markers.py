@@ -1,0 +1,58 @@
+"""World and many robots -> RViz markers: every obstacle in its true place, size and shape; each robot with its name."""
+
+from typing import List, Mapping
+
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+
+from ..world import Box, Cylinder, Obstacle, Plane, Sphere, World
+
+COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # see-through, or walls would hide the scan and the robot behind them
+BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
+NOSE = ColorRGBA(0.95, 0.60, 0.10, 1.0)
+NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
+
+
+def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
+    marker = Marker(ns="world", id=number, action=Marker.ADD, color=COLOR, frame_locked=True)
+    marker.header.frame_id = frame
+    marker.pose = Pose(Point(*obstacle.pose.position), Quaternion(*obstacle.pose.orientation))
+    shape = obstacle.geometry
+    if isinstance(shape, Box):
+        marker.type, marker.scale = Marker.CUBE, Vector3(*shape.size)
+    elif isinstance(shape, Cylinder):
+        marker.type = Marker.CYLINDER
+        marker.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
+    elif isinstance(shape, Sphere):
+        marker.type, marker.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
+    else:
+        raise TypeError(f"no marker for {shape!r}")
+    return marker
+
+
+def world_markers(world: World, frame: str) -> List[Marker]:
+    """One marker an obstacle in the world's `frame`; planes are left out, as RViz's grid shows the floor."""
+    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, Plane)]
+    return [_marker(number, frame, obstacle) for number, obstacle in enumerate(solid)]
+
+
+def robot_markers(frames: Mapping[str, str], radius: float) -> List[Marker]:
+    """A body of a radius [m], an arrow ahead and a name for each robot, in its base frame: frames by name.
+
+    RViz's RobotModel shows one robot, and asks for one display more for each further one.
+    """
+    found: List[Marker] = []
+    for number, (name, frame) in enumerate(frames.items()):
+        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODY)
+        body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
+        nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)
+        nose.scale, nose.pose.position.z = Vector3(1.3 * radius, 0.03, 0.03), NOSE_HEIGHT
+        label = Marker(ns="names", id=number, type=Marker.TEXT_VIEW_FACING, color=NAME, text=name)
+        label.scale.z, label.pose.position.z = 0.12, NAME_HEIGHT
+        for marker in (body, nose, label):
+            marker.header.frame_id, marker.frame_locked = frame, True
+            marker.pose.orientation.w = 1.0
+        found += [body, nose, label]
+    return found

@@ -1,0 +1,191 @@
+"""Parameters: one frozen dataclass per node, filled only through `from_dict`, which repairs nothing."""
+
+import difflib
+import math
+from dataclasses import Field, dataclass, field, fields
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar
+
+from .errors import ParameterError
+
+T = TypeVar("T")
+
+
+def _param(default: Any, low: Optional[float] = None, high: Optional[float] = None, choices: Sequence[str] = ()) -> Any:
+    """A dataclass field with its inclusive bounds or its choices."""
+    return field(default=default, metadata={"low": low, "high": high, "choices": tuple(choices)})
+
+
+def _positive(default: float) -> Any:
+    return _param(default, low=1e-9)
+
+
+def _problem(spec: "Field[Any]", value: Any) -> Optional[str]:
+    """What is wrong with a value for a field, in words, or None."""
+    kind = type(spec.default)
+    meta = spec.metadata
+    if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        value = float(value)
+    if type(value) is not kind:
+        return f"expected {kind.__name__}, got {type(value).__name__} {value!r}"
+    if kind is float and not math.isfinite(value):
+        return f"expected a finite number, got {value!r}"
+    low, high, choices = meta.get("low"), meta.get("high"), meta.get("choices")
+    if low is not None and value < low:
+        return f"expected at least {low:g}, got {value!r}"
+    if high is not None and value > high:
+        return f"expected at most {high:g}, got {value!r}"
+    if choices and value not in choices:
+        return "expected one of {}, got {!r}".format(", ".join(choices), value)
+    return None
+
+
+def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
+    """A parameter dataclass from plain values; absent keys keep their defaults.
+
+    Raises ParameterError naming `source` (a file or a parameter namespace) and every key that is unknown, of the
+    wrong type or out of bounds, with the value found and what was expected.
+    """
+    specs = {spec.name: spec for spec in fields(cls)}
+    problems: List[str] = []
+    values: Dict[str, Any] = {}
+    for key, value in raw.items():
+        if key not in specs:
+            close = difflib.get_close_matches(key, specs, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else "known are: {}".format(", ".join(sorted(specs)))
+            problems.append(f"{key}: unknown parameter; {hint}")
+            continue
+        problem = _problem(specs[key], value)
+        if problem:
+            problems.append(f"{key}: {problem}")
+        else:
+            values[key] = float(value) if isinstance(specs[key].default, float) else value
+    if not problems:
+        params = cls(**values)
+        problems = list(getattr(params, "conflicts", lambda: [])())
+    if problems:
+        raise ParameterError("{}: {}".format(source, "; ".join(problems)))
+    return params
+
+
+@dataclass(frozen=True)
+class SimParams:
+    """Parameters of robocop_sim; config/sim.yaml says what each one means, in which unit and from which source."""
+
+    world: str = "stage_4"
+    model: str = "turtlebot3_burger"
+    spawn: str = ""
+    robots: str = ""
+    seed: int = _param(1, low=1)
+    gui: bool = False
+    localization: str = _param("static", choices=("static", "truth"))
+    odom_tf: bool = True
+    ground_truth: bool = True
+
+    drive: str = _param("wheels", choices=("wheels", "kinematic"))
+    physics_rate: int = _param(240, low=1)
+    footprint_radius: float = _positive(0.105)
+    solver_iterations: int = _param(50, low=1)
+    wheel_torque: float = _positive(1.0)
+    real_time_factor: float = _param(1.0, low=0.0)
+    clock_rate: int = _param(60, low=1)
+    sync: str = _param("free", choices=("free", "lockstep"))
+    control_rate: int = _param(10, low=1)
+    lockstep_timeout: float = _positive(2.0)
+    reset_time: bool = False
+    start_paused: bool = False
+
+    cmd_vel_timeout: float = _param(0.5, low=0.0)
+    max_linear_velocity: float = _positive(0.22)
+    max_angular_velocity: float = _positive(2.84)
+    max_linear_acceleration: float = _positive(2.5)
+    max_angular_acceleration: float = _positive(3.2)
+
+    scan_rate: int = _param(10, low=1)
+    scan_samples: int = _param(360, low=2, high=100000)
+    scan_angle_min: float = 0.0
+    scan_angle_max: float = 6.28319
+    scan_range_min: float = _positive(0.12)
+    scan_range_max: float = _positive(10.0)
+    scan_noise: float = _param(0.01, low=0.0)
+
+    odom_rate: int = _param(30, low=1)
+    joint_state_rate: int = _param(30, low=1)
+    ground_truth_rate: int = _param(30, low=1)
+    imu_rate: int = _param(200, low=1)
+    gyro_noise: float = _param(2e-4, low=0.0)
+    accelerometer_noise: float = _param(1.7e-2, low=0.0)
+
+    world_frame: str = "world"
+    map_frame: str = "map"
+    odom_frame: str = "odom"
+    base_frame: str = "base_footprint"
+    scan_frame: str = "base_scan"
+    imu_frame: str = "imu_link"
+
+    def conflicts(self) -> List[str]:
+        """What can't be true at once, in words; empty when all is well."""
+        found = []
+        for name in ("clock_rate", "control_rate", "scan_rate", "odom_rate", "joint_state_rate", "ground_truth_rate"):
+            rate = getattr(self, name)
+            if self.physics_rate % rate:
+                found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
+        frames = [getattr(self, f"{name}_frame") for name in ("world", "map", "odom", "base", "scan", "imu")]
+        for frame in frames:
+            if not frame or frame.startswith("/") or " " in frame or frames.count(frame) > 1:
+                found.append(f"frames: expected six different names without blank or leading slash, got {frame!r}")
+        if self.imu_rate > self.physics_rate:
+            found.append(f"imu_rate: {self.imu_rate} Hz is above physics_rate {self.physics_rate} Hz")
+        if self.scan_angle_max <= self.scan_angle_min:
+            found.append(
+                f"scan_angle_max: expected more than scan_angle_min {self.scan_angle_min}, got {self.scan_angle_max}")
+        if self.scan_range_max <= self.scan_range_min:
+            found.append(
+                f"scan_range_max: expected more than scan_range_min {self.scan_range_min}, got {self.scan_range_max}")
+        return found
+
+
+@dataclass(frozen=True)
+class GotoParams:
+    """Parameters of robocop_goto_as; config/goto_as.yaml says what each one means."""
+
+    control_rate: float = _positive(10.0)
+    position_tolerance: float = _positive(0.1)
+    angle_tolerance: float = _param(0.1, low=1e-3, high=math.pi)
+    obstacle_distance: float = _param(0.3, low=0.0)
+    obstacle_half_angle: float = _param(math.pi / 6.0, low=0.0, high=math.pi)
+
+    linear_gain: float = _positive(0.5)
+    angular_gain: float = _positive(5.0)
+    max_linear_velocity: float = _positive(0.2)
+    min_linear_velocity: float = _positive(0.03)
+    max_angular_velocity: float = _positive(1.0)
+    min_angular_velocity: float = _positive(0.3)
+    linear_acceleration: float = _positive(0.5)
+    angular_acceleration: float = _positive(3.0)
+
+    data_timeout: float = _positive(1.0)
+    stuck_timeout: float = _positive(5.0)
+    stuck_distance: float = _positive(0.01)
+    stuck_angle: float = _positive(0.05)
+    goal_timeout: float = _param(0.0, low=0.0)
+
+    def conflicts(self) -> List[str]:
+        """What can't be true at once, in words; empty when all is well."""
+        found = []
+        for kind in ("linear", "angular"):
+            low, high = getattr(self, f"min_{kind}_velocity"), getattr(self, f"max_{kind}_velocity")
+            if low > high:
+                found.append(f"min_{kind}_velocity: expected at most max_{kind}_velocity {high:g}, got {low:g}")
+        return found
+
+
+@dataclass(frozen=True)
+class BridgeParams:
+    """Parameters of robocop_rviz_goto_ac; config/rviz_goto_ac.yaml says what each one means."""
+
+    goal_frame: str = "odom"
+    default_frame: str = "map"
+    transform_timeout: float = _param(1.0, low=0.0)
+    status_period: float = _positive(2.0)
+    cancel_timeout: float = _positive(2.0)
+    ignore_goal_frame: bool = False

@@ -1,0 +1,208 @@
+"""World + wheel speeds -> robots on the move, by Bullet; the only module that imports pybullet."""
+
+import math
+import os
+import tempfile
+from typing import List, Sequence, Set
+
+import numpy as np
+import pybullet
+
+from .errors import RobotModelError
+from .geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Vector3, compose3, lifted, yaw_of
+from .robot import CASTER_PREFIX, WHEEL_JOINTS, BodyState, FleetState, RobotModel
+from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
+
+WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits; rays see the world only, never the robot itself
+REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower than this with stopped wheels is creep of the solver
+REST_STEPS = 24  # steps on end below those speeds before the robot is parked
+TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
+
+
+class _Body:
+    """What physics keeps of one robot: Bullet's ids, its wheels' target speeds, whether it is parked."""
+
+    def __init__(self, body: int, wheels: List[int], model: RobotModel, torque: float) -> None:
+        self.body = body
+        self.wheels = wheels
+        self.model = model
+        self.forces = [torque, torque]
+        self.targets = (0.0, 0.0)
+        self.resting_steps = 0
+        self.parked = False
+
+
+class Physics:
+    """One Bullet world, stepped at `rate` [Hz] from one thread; robots are addressed in the order they were added."""
+
+    def __init__(self, world: World, rate: int, solver_iterations: int = 50, gui: bool = False) -> None:
+        self._client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+        self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
+        self._robots: List[_Body] = []
+        self._floors: Set[int] = set()
+        self._fill()
+
+    def _fill(self) -> None:
+        """Floor and obstacles into an empty Bullet world."""
+        self._floors = set()
+        pybullet.setGravity(0.0, 0.0, -STANDARD_GRAVITY, physicsClientId=self._client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=1.0 / self._rate, numSubSteps=1, numSolverIterations=self._solver_iterations,
+            deterministicOverlappingPairs=1, physicsClientId=self._client)
+        floor = Obstacle("floor", Pose3D(), Plane((0.0, 0.0, 1.0)))
+        for obstacle in (floor,) + self._world.obstacles:
+            self._add_obstacle(obstacle)
+
+    def _add_obstacle(self, obstacle: Obstacle) -> None:
+        """A static body; planes are infinite, so the floor of a world file and ours are the same."""
+        client, geometry = self._client, obstacle.geometry
+        if isinstance(geometry, Box):
+            x, y, z = geometry.size
+            shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[x / 2, y / 2, z / 2],
+                                                  physicsClientId=client)
+        elif isinstance(geometry, Cylinder):
+            shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=geometry.radius,
+                                                  height=geometry.length, physicsClientId=client)
+        elif isinstance(geometry, Sphere):
+            shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=geometry.radius,
+                                                  physicsClientId=client)
+        else:
+            shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=geometry.normal,
+                                                  physicsClientId=client)
+        body = pybullet.createMultiBody(0.0, shape, basePosition=obstacle.pose.position,
+                                        baseOrientation=obstacle.pose.orientation, physicsClientId=client)
+        pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
+        pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client)
+        if isinstance(geometry, Plane):
+            self._floors.add(body)
+
+    def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float) -> int:
+        """Put a robot on the floor, wheels held by motors of `wheel_torque` [Nm]; returns its index."""
+        client = self._client
+        with tempfile.TemporaryDirectory(prefix="robocop_") as folder:
+            path = os.path.join(folder, model.name + ".urdf")
+            with open(path, "w") as stream:
+                stream.write(model.physics_urdf)
+            try:
+                body = pybullet.loadURDF(path, flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client)
+            except pybullet.error as error:
+                raise RobotModelError(f"{model.name}: Bullet refused the robot: {error}") from error
+        joints = {}
+        for index in range(pybullet.getNumJoints(body, physicsClientId=client)):
+            info = pybullet.getJointInfo(body, index, physicsClientId=client)
+            joints[info[1].decode()] = index
+            friction = 0.0 if info[12].decode().startswith(CASTER_PREFIX) else TIRE_FRICTION
+            pybullet.changeDynamics(body, index, lateralFriction=friction, restitution=0.0, physicsClientId=client)
+        for link in range(-1, len(joints)):
+            pybullet.setCollisionFilterGroupMask(body, link, ROBOT_GROUP, WORLD_GROUP | ROBOT_GROUP,
+                                                 physicsClientId=client)
+        self._robots.append(_Body(body, [joints[name] for name in WHEEL_JOINTS], model, wheel_torque))
+        self.place(len(self._robots) - 1, world_from_footprint)
+        return len(self._robots) - 1
+
+    def place(self, robot: int, world_from_footprint: Pose2D) -> None:
+        """Set a robot down at a pose, at rest; its wheels keep their angles."""
+        it = self._robots[robot]
+        base = compose3(lifted(world_from_footprint), it.model.footprint_from_base)
+        pybullet.resetBasePositionAndOrientation(it.body, base.position, base.orientation, physicsClientId=self._client)
+        pybullet.resetBaseVelocity(it.body, [0.0] * 3, [0.0] * 3, physicsClientId=self._client)
+        for wheel in it.wheels:
+            angle = pybullet.getJointState(it.body, wheel, physicsClientId=self._client)[0]
+            pybullet.resetJointState(it.body, wheel, angle, 0.0, physicsClientId=self._client)
+        it.targets = (0.0, 0.0)
+        self._set_motors(it)
+        self._unpark(it)
+
+    def drive(self, wheel_speeds: np.ndarray) -> None:
+        """Target speeds (n, 2) [rad/s] of the left and right wheel motors from the next step on."""
+        for it, (left, right) in zip(self._robots, wheel_speeds.tolist()):
+            if (left, right) != it.targets:
+                it.targets = (left, right)
+                self._set_motors(it)
+                self._unpark(it)
+
+    def reset(self, poses: Sequence[Pose2D]) -> None:
+        """All robots set down anew at their poses, wheels at angle zero, in a Bullet world made from nothing.
+
+        What Bullet keeps from step to step (contact caches, rounding) is gone, so what follows repeats to the last bit.
+        """
+        robots, self._robots = self._robots, []
+        pybullet.resetSimulation(physicsClientId=self._client)
+        self._fill()
+        for robot, pose in zip(robots, poses):
+            self.add_robot(robot.model, pose, robot.forces[0])
+
+    def _set_motors(self, it: _Body) -> None:
+        pybullet.setJointMotorControlArray(it.body, it.wheels, pybullet.VELOCITY_CONTROL,
+                                           targetVelocities=it.targets, forces=it.forces,
+                                           physicsClientId=self._client)
+
+    def step(self) -> None:
+        """Advance every robot by one step."""
+        pybullet.stepSimulation(physicsClientId=self._client)
+        for it in self._robots:
+            if it.targets == (0.0, 0.0) and not it.parked:
+                self._park_when_at_rest(it)
+
+    def _park_when_at_rest(self, it: _Body) -> None:
+        """Let Bullet put a standing robot to sleep.
+
+        The solver's residual would otherwise push a standing Burger 6.6 mm a minute (50 iterations, measured).
+        Bullet wakes it when something that moves touches it; `drive_wheels` wakes it for a command.
+        """
+        linear, angular = pybullet.getBaseVelocity(it.body, physicsClientId=self._client)
+        still = all(abs(v) < REST_LINEAR for v in linear) and all(abs(w) < REST_ANGULAR for w in angular)
+        it.resting_steps = it.resting_steps + 1 if still else 0
+        if it.resting_steps >= REST_STEPS:
+            it.parked = True
+            self._activate(it, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING, pybullet.ACTIVATION_STATE_SLEEP)
+
+    def _unpark(self, it: _Body) -> None:
+        it.resting_steps = 0
+        if it.parked:
+            it.parked = False
+            self._activate(it, pybullet.ACTIVATION_STATE_WAKE_UP, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+
+    def _activate(self, it: _Body, *states: int) -> None:
+        for state in states:
+            pybullet.changeDynamics(it.body, -1, activationState=state, physicsClientId=self._client)
+
+    def state(self) -> FleetState:
+        """All robots as of the last step."""
+        n = len(self._robots)
+        poses, twists, wheels = np.empty((n, 3)), np.empty((n, 2)), np.empty((n, 2, 2))
+        for i, it in enumerate(self._robots):
+            (x, y, _), orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
+            (vx, vy, _), (_, _, spin) = pybullet.getBaseVelocity(it.body, physicsClientId=self._client)
+            left, right = pybullet.getJointStates(it.body, it.wheels, physicsClientId=self._client)
+            yaw = yaw_of(orientation)
+            poses[i] = x, y, yaw
+            twists[i] = math.cos(yaw) * vx + math.sin(yaw) * vy, spin
+            wheels[i] = left[:2], right[:2]
+        return FleetState(poses, twists, wheels[:, :, 0], wheels[:, :, 1])
+
+    def body(self, robot: int) -> BodyState:
+        """One robot's base in space as of the last step."""
+        it = self._robots[robot]
+        position, orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
+        linear, angular = pybullet.getBaseVelocity(it.body, physicsClientId=self._client)
+        return BodyState(Pose3D(position, orientation), linear, angular)
+
+    def cast_rays(self, start: Vector3, ends: np.ndarray) -> np.ndarray:
+        """Where rays from `start` [m] to `ends` (n, 3) [m] first meet Bullet's bodies: fractions (n,), 1.0 = none met.
+
+        Good to some millimetres only where a ray grazes a face or an edge, so scans come from `slice`; this is for
+        checking that physics and scans see the same world.
+        """
+        hits = pybullet.rayTestBatch([start] * len(ends), ends.tolist(), numThreads=1,
+                                     collisionFilterMask=WORLD_GROUP, physicsClientId=self._client)
+        return np.array([hit[2] for hit in hits])
+
+    def touching(self, robot: int) -> bool:
+        """Whether the robot touches anything but the floor."""
+        points = pybullet.getContactPoints(bodyA=self._robots[robot].body, physicsClientId=self._client)
+        return any(point[2] not in self._floors for point in points)
+
+    def close(self) -> None:
+        """Give Bullet's memory back."""
+        pybullet.disconnect(physicsClientId=self._client)

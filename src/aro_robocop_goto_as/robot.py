@@ -1,0 +1,159 @@
+"""URDF -> RobotModel: what the core needs to know of a differential-drive robot's body, at rest and on the move."""
+
+import copy
+import math
+import os
+from dataclasses import dataclass
+from typing import Dict, List
+
+import numpy as np
+from lxml import etree
+
+from .errors import RobotModelError
+from .geometry import Pose2D, Pose3D, Vector3, compose3
+
+WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
+CASTER_PREFIX = "caster"
+
+
+@dataclass(frozen=True)
+class RobotModel:
+    """A differential-drive robot; base is base_link, footprint is base_footprint, on the floor between the wheels."""
+
+    name: str
+    urdf: str  # the whole description, for robot_state_publisher
+    physics_urdf: str  # the same rooted at base_link, without the links that have no mass
+    wheel_radius: float  # [m]
+    wheel_separation: float  # [m]
+    footprint_from_base: Pose3D
+    base_from_scan: Pose3D
+    base_from_imu: Pose3D
+
+
+@dataclass(frozen=True)
+class FleetState:
+    """n robots after one step, seen from above; base is base_footprint."""
+
+    poses: np.ndarray  # world_from_base (n, 3) [m, m, rad]
+    twists: np.ndarray  # true velocity in base (n, 2): forward [m/s], counter-clockwise [rad/s]
+    wheel_angles: np.ndarray  # (n, 2) left, right [rad], never wrapped
+    wheel_velocities: np.ndarray  # (n, 2) [rad/s]
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """One robot's base_link in space; velocities are in the world frame."""
+
+    world_from_base: Pose3D
+    linear_velocity: Vector3  # [m/s]
+    angular_velocity: Vector3  # [rad/s]
+
+    def lean(self) -> float:
+        """Angle [rad] between the base's z axis and the vertical."""
+        x, y, _, _ = self.world_from_base.orientation
+        return 2.0 * math.asin(min(1.0, math.hypot(x, y)))
+
+
+def load_robot(path: str, base: str = "base_link", scan: str = "base_scan", imu: str = "imu_link") -> RobotModel:
+    """Read a URDF file; RobotModelError names the file and the link, joint or figure that is missing."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True)
+    try:
+        with open(path, "rb") as stream:
+            root = etree.fromstring(stream.read(), parser)
+    except (OSError, etree.XMLSyntaxError) as error:
+        raise RobotModelError(f"{path}: {error}") from error
+    reader = _Reader(root, path)
+    footprint_from_base = reader.pose_of(base)
+    if footprint_from_base.on_plane() != Pose2D():
+        raise reader.fail(f"link {base!r} is to be straight above base_footprint, facing the same way")
+    wheels = [reader.joint(name) for name in WHEEL_JOINTS]
+    return RobotModel(
+        name=root.get("name") or os.path.splitext(os.path.basename(path))[0],
+        urdf=etree.tostring(root, encoding="unicode"),
+        physics_urdf=reader.physics_urdf(base),
+        wheel_radius=reader.wheel_radius(wheels[0]),
+        wheel_separation=_origin(wheels[0]).position[1] - _origin(wheels[1]).position[1],
+        footprint_from_base=footprint_from_base,
+        base_from_scan=reader.pose_of(scan, base),
+        base_from_imu=reader.pose_of(imu, base),
+    )
+
+
+def _vector(text: str) -> Vector3:
+    x, y, z = (float(word) for word in text.split())
+    return (x, y, z)
+
+
+def _origin(element: "etree._Element") -> Pose3D:
+    """The <origin> of a joint or collision; the identity where it has none."""
+    origin = element.find("origin")
+    if origin is None:
+        return Pose3D()
+    return Pose3D.from_xyz_rpy(_vector(origin.get("xyz", "0 0 0")), _vector(origin.get("rpy", "0 0 0")))
+
+
+def _attribute(element: "etree._Element", child: str, name: str) -> str:
+    found = element.find(child)
+    return "" if found is None else found.get(name, "")
+
+
+class _Reader:
+    """One URDF tree with its joints indexed by name, and by the link they carry."""
+
+    def __init__(self, root: "etree._Element", path: str) -> None:
+        self.root = root
+        self.path = path
+        self.by_name: Dict[str, etree._Element] = {joint.get("name"): joint for joint in root.findall("joint")}
+        self.by_child = {_attribute(joint, "child", "link"): joint for joint in root.findall("joint")}
+
+    def fail(self, what: str) -> RobotModelError:
+        return RobotModelError(f"{self.path}: {what}")
+
+    def joint(self, name: str) -> "etree._Element":
+        if name not in self.by_name:
+            raise self.fail("no joint {!r}; found: {}".format(name, ", ".join(sorted(self.by_name)) or "none"))
+        return self.by_name[name]
+
+    def link(self, name: str) -> "etree._Element":
+        for link in self.root.findall("link"):
+            if link.get("name") == name:
+                return link
+        raise self.fail(f"no link {name!r}")
+
+    def pose_of(self, link: str, root: str = "base_footprint") -> Pose3D:
+        """root_from_link, wheels at angle zero."""
+        self.link(link)
+        pose = Pose3D()
+        while link != root:
+            if link not in self.by_child:
+                raise self.fail(f"no joints lead from link {link!r} to link {root!r}")
+            joint = self.by_child[link]
+            pose = compose3(_origin(joint), pose)
+            link = _attribute(joint, "parent", "link")
+        return pose
+
+    def wheel_radius(self, joint: "etree._Element") -> float:
+        """From the wheel's collision sphere: what really rolls on the floor."""
+        link = _attribute(joint, "child", "link")
+        sphere = self.link(link).find("collision/geometry/sphere")
+        if sphere is None:
+            raise self.fail(f"link {link!r} needs a sphere as its collision geometry, the wheel's radius")
+        return float(sphere.get("radius"))
+
+    def physics_urdf(self, base: str) -> str:
+        """The tree rooted at `base`; pybullet gives a link without mass one kilogram, so those are left out."""
+        root = copy.deepcopy(self.root)
+        dropped: List[str] = []
+        for link in root.findall("link"):
+            if link.find("inertial") is None:
+                dropped.append(link.get("name"))
+                root.remove(link)
+        if base in dropped:
+            raise self.fail(f"link {base!r} has no <inertial>")
+        for joint in root.findall("joint"):
+            if _attribute(joint, "child", "link") in dropped or _attribute(joint, "parent", "link") in dropped:
+                root.remove(joint)
+        for visual in root.findall("link/visual"):
+            if visual.find("geometry/mesh") is not None:
+                visual.getparent().remove(visual)
+        return etree.tostring(root, encoding="unicode")

@@ -1,0 +1,175 @@
+"""SDF file -> its elements, every value checked where it stands.
+
+The lower half of the world reader: it knows SDF's grammar but nothing of worlds; world.py makes a World of it.
+The grammar is that of http://sdformat.org/spec, versions 1.4 to 1.7.
+"""
+
+import math
+import os
+import re
+from typing import Any, Iterable, Optional, Set, Tuple
+from urllib.parse import quote, unquote
+
+from lxml import etree
+
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.geometry import Pose3D
+
+VERSIONS = ("1.4", "1.5", "1.6", "1.7")
+Element = Any  # lxml.etree._Element, which lxml neither types nor makes public
+
+# float() alone would let "1_000" and "infinity" pass.
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+
+
+def error(element: Element, message: str) -> WorldError:
+    """The error to raise about an element: file:line, the model/link/collision it belongs to, the message."""
+    owners = [element, *element.iterancestors("model", "link", "collision")]
+    names = [owner.get("name") for owner in reversed(owners) if owner.tag in ("model", "link", "collision")]
+    where = "/".join(name or "?" for name in names)
+    place = f"{unquote(element.getroottree().docinfo.URL)}:{element.sourceline}"
+    return WorldError(f"{place}: in '{where}': {message}" if where else f"{place}: {message}")
+
+
+def read_world(path: str) -> Element:
+    """The one <world> element of an SDF file.
+
+    Raises WorldError if the file can't be read, isn't XML, declares a DOCTYPE, or isn't one world of SDF 1.4 to 1.7.
+    """
+    root = _parse(path)
+    if root.tag != "sdf":
+        raise error(root, f"the outermost element is <{root.tag}>, expected <sdf>")
+    if root.get("version") not in VERSIONS:
+        raise error(root, f"SDF version {root.get('version')!r} is not supported; supported: {', '.join(VERSIONS)}")
+    check_children(root, read=("world",))
+    return need(root, "world")
+
+
+def _parse(path: str) -> Element:
+    # Worlds come from strangers: a DTD could read other files, or grow without bound when its entities expand.
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
+    )
+    try:
+        # Not etree.parse(path), which would take a URL for a path as well. Quoted, or libxml2 quotes it only at times.
+        with open(path, "rb") as file:
+            root = etree.fromstring(file.read(), parser, base_url=quote(os.fsencode(path)))
+    except OSError as exc:
+        raise WorldError(f"{path}: can't read the world: {exc.strerror or exc}") from exc
+    except etree.XMLSyntaxError as exc:
+        raise WorldError(f"{path}:{exc.lineno}: not well-formed XML: {exc.msg}") from exc
+    info = root.getroottree().docinfo
+    if info.doctype or info.internalDTD is not None:
+        raise WorldError(f"{path}: '{info.doctype}' is not supported; a world holds no DOCTYPE and no entities")
+    return root
+
+
+def check_children(element: Element, read: Iterable[str], skipped: Iterable[str] = ()) -> None:
+    """Refuse any child that is neither read nor knowingly skipped, so that a misspelt one can't vanish."""
+    known = {*read, *skipped}
+    for child in element:
+        # SDF leaves elements of foreign namespaces to whom they concern.
+        if child.tag not in known and not child.tag.startswith("{"):
+            name = f" '{child.get('name')}'" if child.get("name") else ""
+            raise error(
+                child,
+                f"<{child.tag}>{name} in <{element.tag}> is not supported; supported: {', '.join(sorted(read))}",
+            )
+
+
+def check_unique(elements: Iterable[Element]) -> None:
+    """Refuse the second of two siblings with the same name; their obstacles couldn't be told apart."""
+    seen: Set[str] = set()
+    for element in elements:
+        name = name_of(element)
+        if name in seen:
+            raise error(element, f"the name '{name}' of this <{element.tag}> is taken by an earlier one")
+        seen.add(name)
+
+
+def only(element: Element, tag: str) -> Optional[Element]:
+    """The child with this tag, or None; WorldError if there are several."""
+    found = element.findall(tag)
+    if len(found) > 1:
+        raise error(found[1], f"a second <{tag}> in <{element.tag}>; supported: one")
+    return found[0] if found else None
+
+
+def need(element: Element, tag: str) -> Element:
+    """The child with this tag; WorldError if there is none, or if there are several."""
+    child = only(element, tag)
+    if child is None:
+        raise error(element, f"<{element.tag}> has no <{tag}>")
+    return child
+
+
+def text_of(element: Element) -> str:
+    """The element's text, stripped; WorldError if it holds other elements."""
+    if len(element):
+        raise error(element[0], f"<{element[0].tag}> in <{element.tag}>, expected text only")
+    return (element.text or "").strip()
+
+
+def name_of(element: Element) -> str:
+    """The attribute `name`; an <include> is named by its <name>, else by its <uri>. WorldError if there is none."""
+    if element.tag == "include":
+        own = only(element, "name")
+        name = text_of(need(element, "uri")).rpartition("/")[2] if own is None else text_of(own)
+    else:
+        name = element.get("name", "").strip()
+    if not name:
+        raise error(element, f"<{element.tag}> has no name")
+    return name
+
+
+def boolean(element: Element, tag: str, default: bool) -> bool:
+    """The child's truth value (true, false, 1 or 0), or the default if there is no such child."""
+    child = only(element, tag)
+    if child is None:
+        return default
+    text = text_of(child)
+    if text.lower() not in _BOOLEANS:
+        raise error(child, f"<{tag}> is '{text}', expected true or false")
+    return _BOOLEANS[text.lower()]
+
+
+def numbers(element: Element, count: int) -> Tuple[float, ...]:
+    """The element's `count` finite numbers, in the unit SDF gives them."""
+    words = text_of(element).split()
+    if len(words) == count and all(_NUMBER.fullmatch(word) for word in words):
+        values = tuple(float(word) for word in words)
+        if all(math.isfinite(value) for value in values):
+            return values
+    raise error(element, f"<{element.tag}> is '{' '.join(words)}', expected {_finite(count)}")
+
+
+def sizes(element: Element, count: int) -> Tuple[float, ...]:
+    """The element's `count` lengths [m], each greater than zero."""
+    values = numbers(element, count)
+    if min(values) <= 0.0:
+        text = " ".join(text_of(element).split())
+        raise error(element, f"<{element.tag}> is '{text}', expected {_finite(count)} greater than 0")
+    return values
+
+
+def _finite(count: int) -> str:
+    return "one finite number" if count == 1 else f"{count} finite numbers"
+
+
+def pose_numbers(element: Element) -> Tuple[float, ...]:
+    """x, y, z [m], roll, pitch, yaw [rad] of the element's <pose> in its parent's frame; zeros if there is none."""
+    pose = only(element, "pose")
+    if pose is None:
+        return (0.0,) * 6
+    for key, value in pose.attrib.items():
+        # Gazebo 9 writes frame='', which means the parent's frame as does no attribute at all.
+        if value or key not in ("frame", "relative_to"):
+            raise error(pose, f"<pose {key}='{value}'> is not supported; supported: a pose in the parent's frame")
+    return numbers(pose, 6)
+
+
+def pose_of(element: Element) -> Pose3D:
+    """The element's <pose> in its parent's frame; the identity if there is none."""
+    x, y, z, roll, pitch, yaw = pose_numbers(element)
+    return Pose3D.from_xyz_rpy((x, y, z), (roll, pitch, yaw))

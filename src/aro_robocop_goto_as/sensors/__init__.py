@@ -1,0 +1,1 @@
+"""One sensor a module: RobotState -> measurement, with seeded noise."""

@@ -1,0 +1,220 @@
+"""The loop drive -> physics -> sensors, step by step, with simulated time counted in whole steps."""
+
+from dataclasses import dataclass
+from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import drive
+from .drive import DriveLimits
+from .geometry import Pose2D, Twist2D, compose, compose_rows, from_row, inverse, inverse_rows, row
+from .kinematics import Kinematics
+from .params import SimParams
+from .physics import Physics
+from .robot import BodyState, FleetState, RobotModel
+from .sensors import imu as imu_sensor
+from .sensors import odometry
+from .sensors.imu import ImuSample
+from .sensors.lidar import Lidar, LidarSpec
+from .sensors.odometry import Odometry
+from .simtime import due, stamp_ns
+from .slice import Slice
+from .world import World
+
+SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
+ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
+SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH)
+LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another robot's scan sees of a Burger
+Wanted = Mapping[str, Sequence[int]]  # sensor -> the robots it is wanted of
+
+
+@dataclass(frozen=True)
+class RobotSpec:
+    """One robot of the world: its name (a ROS namespace; empty for a lone one), what it is, where it starts."""
+
+    name: str
+    model: RobotModel
+    spawn: Pose2D
+
+
+@dataclass(frozen=True)
+class Observations:
+    """What one step brought, all of it at one simulated time; None = not due on this step, or not wanted.
+
+    Arrays hold all n robots in order; `scans` and `imus` only those that were wanted, by index.
+    """
+
+    stamp_ns: int
+    clock: bool
+    control: bool
+    scans: Mapping[int, np.ndarray]  # ranges (scan_samples,) [m] in base_scan
+    imus: Mapping[int, ImuSample]
+    odometry: Optional[Odometry] = None
+    joints: Optional[FleetState] = None
+    ground_truth: Optional[FleetState] = None
+
+
+class Simulator:
+    """Robots in one world. Not thread-safe: one thread owns it, as Bullet asks for."""
+
+    def __init__(self, params: SimParams, world: World, robots: Sequence[RobotSpec]) -> None:
+        self.params = params
+        self.world = world
+        self.robots = tuple(robots)
+        self.model = robots[0].model
+        self.seed = params.seed
+        self.steps = 0
+        self._noise_origin = 0
+        self.dt = 1.0 / params.physics_rate
+        self.lidar = Lidar(LidarSpec(params.scan_angle_min, params.scan_angle_max, params.scan_samples,
+                                     params.scan_range_min, params.scan_range_max, params.scan_noise))
+        self._limits = DriveLimits(params.max_linear_velocity, params.max_angular_velocity,
+                                   params.max_linear_acceleration, params.max_angular_acceleration,
+                                   params.cmd_vel_timeout)
+        self._physics: Union[Physics, Kinematics] = (
+            Physics(world, params.physics_rate, params.solver_iterations, params.gui) if params.drive == "wheels"
+            else Kinematics(world, params.physics_rate, params.footprint_radius))
+        for robot in self.robots:
+            self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
+        self._walls = Slice(world, self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2])
+        self._base_from_scan = row(self.model.base_from_scan.on_plane())
+        self._schedule = self._make_schedule()
+        self._drive = drive.standing(len(self.robots))
+        self._odometry = odometry.starting(self._physics.state().wheel_angles)
+        self._map_from_odom = np.array([row(robot.spawn) for robot in self.robots])
+
+    def _make_schedule(self) -> List[FrozenSet[str]]:
+        """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
+        p = self.params
+        rates = {SCAN: p.scan_rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
+                 TRUTH: p.ground_truth_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
+        return [frozenset(name for name, rate in rates.items() if due(step, rate, p.physics_rate))
+                for step in range(1, p.physics_rate + 1)]
+
+    @property
+    def stamp_ns(self) -> int:
+        """Simulated time [ns] of the last step; never moves backwards, a reset included."""
+        return stamp_ns(self.steps, self.params.physics_rate)
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s] of the last step."""
+        return self.steps / self.params.physics_rate
+
+    def everything(self) -> Dict[str, Sequence[int]]:
+        """All sensors of all robots."""
+        return {sensor: range(len(self.robots)) for sensor in SENSORS}
+
+    def command(self, twist: Twist2D, robot: int = 0) -> None:
+        """Take a velocity command; CommandError on NaN or infinity leaves the one before in force."""
+        self._drive = drive.accept(self._drive, robot, twist, self.time, self._limits)
+
+    def step(self, wanted: Wanted) -> Optional[Observations]:
+        """Advance by one physics step, then measure what is due and wanted; None when nothing is due."""
+        due_now = self._schedule[self.steps % self.params.physics_rate]
+        imus = wanted.get(IMU, ()) if IMU in due_now else ()
+        before = {robot: self._physics.body(robot) for robot in imus}
+        moving = drive.advance(self._drive, self.time, self.dt, self._limits)
+        if moving is not self._drive:
+            self._drive = moving
+            self._physics.drive(drive.wheel_speeds(moving.velocity, self.model.wheel_radius,
+                                                   self.model.wheel_separation))
+        self._physics.step()
+        self.steps += 1
+        if not due_now or (due_now == ONLY_IMU and not imus):
+            return None
+        # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
+        asked = {sensor for sensor in (SCAN, JOINTS, TRUTH) if sensor in due_now and wanted.get(sensor)}
+        state = self._physics.state() if asked or ODOM in due_now else None
+        return Observations(
+            self.stamp_ns, CLOCK in due_now, CONTROL in due_now,
+            scans=self._scan(state, wanted[SCAN]) if state is not None and SCAN in asked else {},
+            imus={robot: self._imu(robot, body) for robot, body in before.items()},
+            odometry=self._update_odometry(state) if state is not None and ODOM in due_now else None,
+            joints=state if JOINTS in asked else None,
+            ground_truth=state if TRUTH in asked else None)
+
+    def _rng(self, sensor: int) -> np.random.Generator:
+        """Noise of one sensor on this step: a function of seed, sensor and steps since the reset, whoever listens."""
+        step = self.steps - self._noise_origin
+        return np.random.Generator(np.random.Philox(key=[self.seed, sensor], counter=[0, 0, 0, step]))
+
+    def _scan(self, state: FleetState, robots: Sequence[int]) -> Dict[int, np.ndarray]:
+        distances = self._distances(state, robots)
+        # Drawn for all robots, so that one robot's noise does not depend on whether another is listened to.
+        noise = self._rng(0).standard_normal((len(self.robots), self.params.scan_samples))
+        return dict(zip(robots, self.lidar.measure(distances, noise[list(robots)])))
+
+    def _distances(self, state: FleetState, robots: Sequence[int]) -> np.ndarray:
+        """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
+        world_from_scans = compose_rows(state.poses, self._base_from_scan)
+        return self.lidar.distances(world_from_scans[list(robots)], self._walls, self._others(world_from_scans, robots))
+
+    def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
+        """Circles (r, n - 1, 3) that stand for the other robots' scanners, for each robot asked for."""
+        n = len(self.robots)
+        if n == 1:
+            return None
+        circles = np.column_stack([world_from_scans[:, :2], np.full(n, LIDAR_RADIUS)])
+        return np.stack([np.delete(circles, robot, axis=0) for robot in robots])
+
+    def exact_distances(self, robot: int = 0) -> np.ndarray:
+        """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""
+        return self._distances(self._physics.state(), [robot])[0]
+
+    def _update_odometry(self, state: FleetState) -> Odometry:
+        self._odometry = odometry.integrate(self._odometry, state.wheel_angles, 1.0 / self.params.odom_rate,
+                                            self.model.wheel_radius, self.model.wheel_separation)
+        if self.params.localization == "truth":
+            self._map_from_odom = compose_rows(state.poses, inverse_rows(self._odometry.odom_from_base))
+        return self._odometry
+
+    def _imu(self, robot: int, before: BodyState) -> ImuSample:
+        rng = self._rng(1 + robot)
+        return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.model.base_from_imu,
+                                  self.params.gyro_noise, self.params.accelerometer_noise, rng)
+
+    def map_from_odom(self, robot: int = 0) -> Pose2D:
+        """Where the odometry's origin is in the map."""
+        return from_row(self._map_from_odom[robot])
+
+    def world_from_base(self, robot: int = 0) -> Pose2D:
+        """The robot's true pose as of the last step."""
+        return from_row(self._physics.state().poses[robot])
+
+    def velocity(self, robot: int = 0) -> Twist2D:
+        """The robot's true velocity as of the last step."""
+        v, w = self._physics.state().twists[robot]
+        return Twist2D(float(v), float(w))
+
+    def touching(self, robot: int = 0) -> bool:
+        """Whether the robot touches anything but the floor."""
+        return self._physics.touching(robot)
+
+    def leaning(self, robot: int = 0) -> float:
+        """Angle [rad] between the robot's mast and the vertical."""
+        return self._physics.body(robot).lean()
+
+    def place(self, world_from_base: Pose2D, robot: int = 0) -> None:
+        """Set a robot down elsewhere, at rest; odometry goes on, so map -> odom takes up the jump."""
+        self._physics.place(robot, world_from_base)
+        self._drive = drive.stopped(self._drive, robot)
+        odom_from_base = from_row(self._odometry.odom_from_base[robot])
+        self._map_from_odom[robot] = row(compose(world_from_base, inverse(odom_from_base)))
+
+    def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
+        """Robots to their spawn poses, odometry to zero, noise from its start, of `seed` if one is given.
+
+        Simulated time goes on, unless `restart_time` sets it back to zero.
+        """
+        self._physics.reset([robot.spawn for robot in self.robots])
+        self._map_from_odom = np.array([row(robot.spawn) for robot in self.robots])
+        self._drive = drive.standing(len(self.robots))
+        self._odometry = odometry.starting(self._physics.state().wheel_angles)
+        self.seed = self.seed if seed is None else seed
+        self.steps = 0 if restart_time else self.steps
+        self._noise_origin = self.steps
+
+    def close(self) -> None:
+        """Give the physics back."""
+        self._physics.close()

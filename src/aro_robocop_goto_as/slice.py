@@ -1,0 +1,106 @@
+"""World -> its cut at the lidar's height: segments and circles."""
+
+import math
+from typing import List, Optional, Tuple
+
+import numpy as np
+
+from .geometry import Pose3D, rotation_matrix
+from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
+
+CYLINDER_SIDES = 64  # of the prism that stands for a tilted cylinder; an upright one is exact
+FAR = 1e4  # [m] half length of the segment that stands for a vertical plane's infinite line
+UPRIGHT = 1e-9
+
+Segment = Tuple[Tuple[float, float], Tuple[float, float]]
+Circle = Tuple[float, float, float]  # x, y, radius [m]
+
+
+class Slice:
+    """Segments and circles in the horizontal plane at one height, in the world frame."""
+
+    def __init__(self, world: World, height: float) -> None:
+        segments: List[Segment] = []
+        circles: List[Circle] = []
+        for obstacle in world.obstacles:
+            circle = _circle(obstacle, height)
+            if circle is not None:
+                circles.append(circle)
+            else:
+                segments += _segments(obstacle, height)
+        self.segments = np.array(segments, dtype=float).reshape(-1, 2, 2)  # (m, [start, end], [x, y]) [m]
+        self.circles = np.array(circles, dtype=float).reshape(-1, 3)  # (k, [x, y, radius]) [m]
+
+
+def _circle(obstacle: Obstacle, height: float) -> Optional[Circle]:
+    """The cut of a sphere or an upright cylinder; None for others, and where the plane misses it."""
+    x, y, z = obstacle.pose.position
+    geometry = obstacle.geometry
+    if isinstance(geometry, Sphere):
+        squared = geometry.radius ** 2 - (height - z) ** 2
+        return (x, y, math.sqrt(squared)) if squared > 0.0 else None
+    if isinstance(geometry, Cylinder) and _upright(obstacle.pose):
+        return (x, y, geometry.radius) if abs(height - z) < geometry.length / 2.0 else None
+    return None
+
+
+def _upright(pose: Pose3D) -> bool:
+    qx, qy, _, _ = pose.orientation
+    return abs(qx) < UPRIGHT and abs(qy) < UPRIGHT
+
+
+def _segments(obstacle: Obstacle, height: float) -> List[Segment]:
+    """The outline of the cut of a plane, a box or a tilted cylinder."""
+    geometry = obstacle.geometry
+    if isinstance(geometry, Plane):
+        return _plane_line(obstacle, geometry, height)
+    if isinstance(geometry, Box):
+        corners, edges = _prism([(0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)])
+        scale = np.array(geometry.size)
+    elif isinstance(geometry, Cylinder) and not _upright(obstacle.pose):
+        turns = 2.0 * math.pi * np.arange(CYLINDER_SIDES) / CYLINDER_SIDES
+        corners, edges = _prism(list(zip(np.cos(turns), np.sin(turns))))
+        scale = np.array([geometry.radius, geometry.radius, geometry.length])
+    else:
+        return []
+    world_corners = (corners * scale) @ rotation_matrix(obstacle.pose.orientation).T + np.array(obstacle.pose.position)
+    return _outline(world_corners, edges, height)
+
+
+def _prism(base: List[Tuple[float, float]]) -> Tuple[np.ndarray, List[Tuple[int, int]]]:
+    """Corners (2 n, 3) and edges of a prism of height 1 over a polygon of n corners."""
+    n = len(base)
+    corners = np.array([(x, y, -0.5) for x, y in base] + [(x, y, 0.5) for x, y in base])
+    edges = [(i, i + n) for i in range(n)]
+    for level in (0, n):
+        edges += [(level + i, level + (i + 1) % n) for i in range(n)]
+    return corners, edges
+
+
+def _outline(corners: np.ndarray, edges: List[Tuple[int, int]], height: float) -> List[Segment]:
+    """Where a horizontal plane cuts a convex body: its edges' crossings, joined in order of direction."""
+    crossings = []
+    for a, b in edges:
+        low, high = corners[a][2] - height, corners[b][2] - height
+        if low * high < 0.0:
+            crossings.append(corners[a][:2] + (corners[b][:2] - corners[a][:2]) * (low / (low - high)))
+    if len(crossings) < 3:
+        return []
+    points = np.array(crossings)
+    around = points - points.mean(axis=0)
+    points = points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))]
+    ring = [(float(x), float(y)) for x, y in points]
+    return list(zip(ring, ring[1:] + ring[:1]))
+
+
+def _plane_line(obstacle: Obstacle, plane: Plane, height: float) -> List[Segment]:
+    """The line in which an infinite plane that is not level cuts the horizontal one."""
+    nx, ny, nz = (float(v) for v in rotation_matrix(obstacle.pose.orientation) @ np.array(plane.normal))
+    flat = math.hypot(nx, ny)
+    if flat < UPRIGHT:
+        return []
+    x, y, z = obstacle.pose.position
+    offset = -nz * (height - z) / flat
+    ux, uy = nx / flat, ny / flat
+    px, py = x + ux * offset, y + uy * offset
+    return [((px - uy * FAR, py + ux * FAR), (px + uy * FAR, py - ux * FAR))]
