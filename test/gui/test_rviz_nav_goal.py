@@ -1,0 +1,62 @@
+"""A person's click in RViz: the robot drives there."""
+
+import math
+
+import pytest
+from desktop import Desktop, Recorder, Ros, wait_for
+
+SUCCEEDED = 3  # actionlib_msgs/GoalStatus
+VIEW_CENTRE = (0.0, -0.15)  # [m] in map, the focal point of the view in rviz/robocop.rviz
+TOLERANCE = 0.1  # [m] config/goto_as.yaml, position_tolerance
+ODOMETRY_ERROR = 0.02  # [m] of wheel encoders on the 0.7 m to the goal
+SIMULATOR, SERVER, BRIDGE = "/robocop_sim", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node"
+SEEN = [(SIMULATOR, topic) for topic in ("/tf", "/tf_static", "/scan", "/odom", "/robocop_sim/world")] + [
+    (SERVER, "/aro_robocop_goto_as_node/markers")]  # what RViz displays, with its publisher
+
+
+def displays_the_robot(pixels):
+    """Whether RViz's view shows the scan, in red, with the green cone of a robot that has a free way."""
+    red, green, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
+    scan = (red > 140) & (2 * green < red) & (2 * blue < red)
+    cone = (green > 70) & (2 * red < green) & (1.5 * blue < green)
+    return scan.sum() > 300 and cone.sum() > 100
+
+
+def click_and_drag_up(desktop, canvas):
+    """What the toolbar's 2D Nav Goal asks for: press where the robot shall stand, drag to where it shall look."""
+    x, y, width, height = desktop.place(canvas)
+    x, y = x + width // 2, y + height // 2
+    desktop.hand("mousemove", x, y, "key", "g", "mousedown", 1)
+    for up in range(10, 101, 10):
+        desktop.hand("mousemove", x, y - up)
+    desktop.hand("mouseup", 1)
+
+
+def test_robot_drives_to_where_2d_nav_goal_is_clicked(tmp_path):
+    with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=true") as ros:
+        clicks = Recorder(ros, "/rviz", "/move_base_simple/goal")
+        results = Recorder(ros, SERVER, "/robocop_goto_as/result")
+        window = wait_for(lambda: desktop.window(" - RViz$"), "RViz's window")
+        canvas = wait_for(lambda: desktop.canvas(window), "RViz's view")
+        wait_for(lambda: all(ros.linked(node, "/rviz", topic) for node, topic in SEEN), "RViz subscribed to its topics")
+        wait_for(lambda: displays_the_robot(desktop.pixels(canvas)), "scan and safety cone drawn in RViz")
+        wait_for(lambda: ros.linked(BRIDGE, "/rviz", "/move_base_simple/goal"), "the bridge hears RViz")
+        wait_for(clicks.connected, "clicks recorded")
+        wait_for(results.connected, "results recorded")
+
+        click_and_drag_up(desktop, canvas)
+
+        click = wait_for(clicks.messages, "RViz's goal on /move_base_simple/goal")[0]
+        assert click["header"]["frame_id"] == "map"
+        position, orientation = click["pose"]["position"], click["pose"]["orientation"]
+        assert (position["x"], position["y"]) == pytest.approx(VIEW_CENTRE, abs=0.05)
+        assert 2.0 * math.atan2(orientation["z"], orientation["w"]) == pytest.approx(math.pi / 2.0, abs=0.05)
+
+        result = wait_for(results.messages, "the goal's result")[0]
+        assert result["status"]["status"] == SUCCEEDED, result
+        assert result["result"]["success"] is True
+        assert result["result"]["message"].startswith("REACHED")
+        truth = ros.latest("/ground_truth_odom")  # its frame, world, coincides with map
+        robot = truth["pose"]["pose"]["position"]
+        assert math.hypot(robot["x"] - position["x"], robot["y"] - position["y"]) < TOLERANCE + ODOMETRY_ERROR
+        assert (len(clicks.messages()), len(results.messages())) == (1, 1)

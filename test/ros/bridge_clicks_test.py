@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""The newest click counts: the bridge cancels the goal before it, and loses none of their endings."""
+
+from actionlib_msgs.msg import GoalID, GoalStatus
+from clicks import Clicks
+from harness import ACTION, Recorder, SystemTest, distance, run, wait_for
+
+from aro_robocop_goto_as.geometry import Pose2D
+
+NEAR = 0.12  # [m] the handout's tolerance with a little drift of odometry
+
+
+class BridgeClicks(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.clicks = Clicks()
+        cls.cancels = Recorder(f"/{ACTION}/cancel", GoalID, wait=False)
+
+    def setUp(self):
+        super().setUp()
+        self.clicks.status.forget()
+        self.cancels.forget()
+
+    def wait_for_goals(self, count):
+        """The bridge's goals once it has sent `count` of them."""
+        return wait_for(lambda: self.goals.of_others() if len(self.goals.of_others()) >= count else None,
+                        f"{count} goals from the bridge")
+
+    def test_newer_click_cancels_the_older_goal_and_is_reached(self):
+        self.clicks.click(1.5, 0.0, "map")
+        older = self.wait_for_goals(1)[0]
+        self.robot.wait_until_it_drives(0.15)
+        self.clicks.click(-0.5, -0.2, "map")
+        newer = self.wait_for_goals(2)[1]
+        newer.result("REACHED")
+        # Rather than preempted by the newer one:
+        self.assertIn("it was cancelled", older.result("PREEMPTED").result.message)
+        self.assertEqual(older.result().status.status, GoalStatus.PREEMPTED)
+        self.assertIn(older.id, [m.id for m in self.cancels.messages])
+        self.assertLess(older.result().header.stamp, newer.feedback()[0].header.stamp)
+        self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.5, -0.2)), NEAR)
+
+    def test_of_several_quick_clicks_only_the_newest_is_reached_and_each_goal_ends_once(self):
+        for i in range(8):
+            self.clicks.click(1.5, 0.1 * i, "map")
+        self.clicks.click(-0.4, 0.2, "map")
+        reached = self.goals.results.wait_for(lambda m: m.result.success, "a goal that is reached")
+        self.assertEqual(reached.status.goal_id.id, self.goals.of_others()[-1].id)
+        self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.4, 0.2)), NEAR)
+        for goal in self.goals.of_others()[:-1]:
+            goal.result("PREEMPTED")
+
+    def test_click_after_a_goal_was_reached_is_served(self):
+        for count, x in ((1, -0.5), (2, -0.7)):
+            self.clicks.click(x, 0.0, "map")
+            self.wait_for_goals(count)[-1].result("REACHED")
+            self.clicks.status.forget()
+            self.clicks.wait_for_status("robocop_goto_as is ready, last goal SUCCEEDED: REACHED: ")
+        self.assertEqual(self.cancels.messages, [])  # there was nothing to cancel
+
+    def test_status_follows_a_goal_from_its_start_to_its_end(self):
+        self.clicks.click(1.0, 0.0, "map")
+        self.clicks.wait_for_status("goal x 1.70 y 0.00 is ")
+        driving = self.clicks.wait_for_status("is ACTIVE: driving, ")
+        self.assertRegex(driving, r"\(position_error \d\.\d\d m, angle_error -?\d\.\d\d rad\)$")
+        self.wait_for_goals(1)[0].cancel()
+        self.clicks.wait_for_status("robocop_goto_as is ready, last goal PREEMPTED: PREEMPTED: ")
+
+
+if __name__ == "__main__":
+    run(BridgeClicks)

@@ -1,0 +1,29 @@
+"""2D Nav Goals without RViz: the same message on the same topic, and what the bridge says about it."""
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from harness import BRIDGE, Recorder, wait_for_subscriber
+from std_msgs.msg import String
+
+
+class Clicks:
+    """Publishes 2D Nav Goals to the bridge in a namespace; `status` records what it tells of the server."""
+
+    def __init__(self, namespace=""):
+        bridge = namespace + BRIDGE
+        self.status = Recorder(f"{bridge}/status", String)
+        self._topic = rospy.Publisher(f"{namespace}/move_base_simple/goal", PoseStamped, queue_size=100)
+        wait_for_subscriber(self._topic, bridge)
+
+    def click(self, x, y, frame, stamp=None):
+        """A click at x, y [m] in a frame, now unless told otherwise."""
+        message = PoseStamped()
+        message.header.frame_id = frame
+        message.header.stamp = rospy.Time.now() if stamp is None else stamp
+        message.pose.position.x, message.pose.position.y = x, y
+        message.pose.orientation.w = 1.0
+        self._topic.publish(message)
+
+    def wait_for_status(self, text):
+        """Until the bridge's status holds a text."""
+        return self.status.wait_for(lambda m: text in m.data, f"a status with {text!r}").data

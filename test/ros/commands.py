@@ -1,0 +1,47 @@
+"""Velocity commands from a test."""
+
+import threading
+
+import rospy
+from geometry_msgs.msg import Twist
+from harness import SIMULATOR, wait_for_subscriber
+
+PERIOD = 0.05  # [s, wall]
+
+
+class Commands:
+    """Publishes cmd_vel: once, or as a context manager again and again as a teleoperation does."""
+
+    def __init__(self):
+        self._topic = rospy.Publisher("cmd_vel", Twist, queue_size=10)
+        wait_for_subscriber(self._topic, SIMULATOR)
+
+    def once(self, v, w=0.0):
+        """One command [m/s, rad/s]."""
+        twist = Twist()
+        twist.linear.x, twist.angular.z = v, w
+        self._topic.publish(twist)
+
+    def held(self, v, w=0.0):
+        """The same command, repeated for as long as the context lasts."""
+        return _Held(self, v, w)
+
+
+class _Held:
+    def __init__(self, commands, v, w):
+        self._commands, self._twist = commands, (v, w)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._repeat, daemon=True)
+
+    def _repeat(self):
+        while not self._stop.wait(PERIOD):
+            self._commands.once(*self._twist)
+
+    def __enter__(self):
+        self._commands.once(*self._twist)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._stop.set()
+        self._thread.join()

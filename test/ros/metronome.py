@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""A controller as a student may write it: a loop on simulated time that publishes cmd_vel, and knows of no lockstep."""
+
+import math
+
+import rospy
+from geometry_msgs.msg import Twist
+from harness import wait_for
+
+
+def main():
+    rospy.init_node("metronome")
+    publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+    wait_for(publisher.get_num_connections, "somebody listens to cmd_vel")
+    rate = rospy.Rate(rospy.get_param("~rate", 10))
+    while not rospy.is_shutdown():
+        command = Twist()
+        command.linear.x = 0.1 + 0.1 * math.sin(rospy.get_time())
+        command.angular.z = 0.5 * math.cos(rospy.get_time() / 2.0)
+        publisher.publish(command)
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass

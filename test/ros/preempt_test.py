@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Goals that are cancelled, or that a newer goal replaces."""
+
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from harness import SystemTest, distance, run
+
+from aro_robocop_goto_as.geometry import Pose2D
+
+
+class Preempt(SystemTest):
+    def driving_goal(self):
+        """A goal 2 m ahead, on whose way the robot is already."""
+        goal = self.goals.send(2.0, 0.0)
+        self.robot.wait_until_it_drives(0.15)
+        return goal
+
+    def test_cancel_stops_the_robot_and_the_goal_is_preempted(self):
+        goal = self.driving_goal()
+        there = self.robot.pose()
+        goal.cancel()
+        result = goal.result("PREEMPTED")
+        self.assertIn("it was cancelled", result.result.message)
+        self.assertEqual(result.status.status, GoalStatus.PREEMPTED)
+        self.assertLess(distance(there, self.robot.wait_until_it_stands()), 0.15)
+
+    def test_cancel_of_all_goals_without_naming_one_is_served_too(self):
+        goal = self.driving_goal()
+        self.goals.cancel_all()
+        goal.result("PREEMPTED")
+        self.robot.wait_until_it_stands()
+
+    def test_goal_after_a_cancelled_one_is_reached(self):
+        goal = self.driving_goal()
+        goal.cancel()
+        goal.result("PREEMPTED")
+        self.goals.send(0.0, 0.0).result("REACHED")
+
+    def test_newer_goal_preempts_the_older_and_is_reached(self):
+        older = self.driving_goal()
+        newer = self.goals.send(0.1, -0.1)
+        self.assertIn("a newer goal came", older.result("PREEMPTED").result.message)
+        self.assertEqual(older.result().status.status, GoalStatus.PREEMPTED)
+        newer.result("REACHED")
+        self.robot.wait_until_it_stands()
+        self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.1, -0.1)), 0.1)
+        older.check_end()
+
+    def test_goals_that_are_replaced_before_they_begin_get_a_filled_result_each(self):
+        first = self.driving_goal()
+        waiting = [self.goals.send(2.0, 0.1 * i) for i in range(6)]
+        newest = self.goals.send(0.1, 0.1)
+        newest.result("REACHED")
+        for goal in [first, *waiting]:
+            goal.result("PREEMPTED")
+        texts = [goal.result().result.message for goal in waiting]
+        self.assertIn("PREEMPTED: it was cancelled, or a newer goal came, before it began", texts)
+
+    def test_goal_that_comes_later_counts_though_it_is_stamped_earlier(self):
+        older = self.driving_goal()
+        newer = self.goals.send(0.1, 0.1, stamp=rospy.Time(0, 1))  # of a client whose clock is behind
+        self.assertIn("a newer goal came", older.result("PREEMPTED").result.message)
+        newer.result("REACHED")
+
+
+if __name__ == "__main__":
+    run(Preempt)

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""A reset puts the robot back and odometry to zero, while time and goals go on."""
+
+from harness import Recorder, SystemTest, call_simulator, distance, run
+from rosgraph_msgs.msg import Clock
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.nodes.convert import from_pose_msg
+
+SPAWN = Pose2D(-0.7, 0.2, 0.5)  # of the launch file
+
+
+class Reset(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.clock = Recorder("/clock", Clock)
+
+    def test_odometry_starts_at_zero_wherever_the_robot_is_spawned(self):
+        pose, odom = self.robot.pose(), self.robot.odom_pose()
+        self.assertLess(distance(pose, SPAWN), 0.001)
+        self.assertAlmostEqual(pose.yaw, SPAWN.yaw, delta=0.001)
+        self.assertLess(distance(odom, Pose2D()), 0.001)
+        self.assertAlmostEqual(odom.yaw, 0.0, delta=0.001)
+
+    def test_reset_puts_the_robot_back_and_odometry_to_zero_while_time_goes_on(self):
+        self.goals.send(0.3, 0.2).result("REACHED")
+        self.robot.wait_until_it_stands()
+        self.assertGreater(distance(self.robot.pose(), SPAWN), 0.2)
+        self.clock.forget()
+        before = self.clock.take(1)[0].clock
+        call_simulator("reset")
+        start = len(self.robot.truth)
+        self.robot.truth.wait_for(lambda m: distance(from_pose_msg(m.pose.pose), SPAWN) < 0.001, "the spawn", start)
+        self.assertLess(distance(self.robot.odom_pose(), Pose2D()), 0.001)
+        stamps = [m.clock for m in self.clock.messages]
+        self.assertGreater(stamps[-1], before)
+        self.assertEqual(stamps, sorted(stamps))
+
+    def test_goal_after_a_reset_is_reached_in_the_new_odometry(self):
+        self.goals.send(0.3, 0.2).result("REACHED")
+        self.robot.reset()
+        self.goals.send(0.2, -0.2).result("REACHED")
+        self.robot.wait_until_it_stands()
+        self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.2, -0.2)), 0.1)
+
+    def test_goal_goes_on_from_the_spawn_when_the_robot_is_reset_on_its_way(self):
+        goal = self.goals.send(0.6, 0.0)
+        self.robot.wait_until_it_drives(0.15)
+        call_simulator("reset")
+        goal.result("REACHED")
+        self.robot.wait_until_it_stands()
+        self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.6, 0.0)), 0.1)
+
+
+if __name__ == "__main__":
+    run(Reset)

@@ -1,0 +1,95 @@
+"""Every test/ros/*.test is run by rostest, each in a ROS of its own: master, port, logs and results."""
+import os
+import signal
+import subprocess
+from contextlib import suppress
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+DEADLINE = 180.0  # [s] for one .test file; each <test> in it should have a shorter time-limit of its own
+SHUTDOWN = 20.0  # [s] that rostest gets to end its nodes once the deadline has passed
+HERE = Path(__file__).resolve().parent
+
+
+def processes_with(setting):
+    """Process ids of all processes whose environment holds `setting`, as bytes NAME=value."""
+    found = []
+    for environment in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if setting in environment.read_bytes().split(b"\0"):
+                found.append(int(environment.parent.name))
+        except OSError:  # ended meanwhile, or somebody else's
+            continue
+    return found
+
+
+def run_rostest(test_file, directory):
+    """Run one file to its end or its deadline; return the exit status, None after the deadline, and the output."""
+    environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(directory / "home")}
+    environment["ROS_LOG_DIR"] = str(directory / "log")
+    for name in ("ROS_MASTER_URI", "ROS_IP", "DISPLAY"):
+        environment.pop(name, None)
+    command = ["rostest", f"--results-base-dir={directory / 'results'}", str(test_file)]
+    with open(directory / "output", "w+b") as output:
+        rostest = subprocess.Popen(command, env=environment, stdout=output, stderr=subprocess.STDOUT)
+        try:
+            status = rostest.wait(DEADLINE)
+        except subprocess.TimeoutExpired:
+            status = None
+            rostest.send_signal(signal.SIGINT)
+            try:
+                rostest.wait(SHUTDOWN)
+            except subprocess.TimeoutExpired:
+                rostest.kill()
+                rostest.wait()
+        finally:
+            # roslaunch gives every node a session of its own, so the environment is what tells them apart.
+            for process in processes_with(b"ROS_LOG_DIR=" + os.fsencode(environment["ROS_LOG_DIR"])):
+                with suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+        output.seek(0)
+        return status, output.read().decode(errors="replace")
+
+
+def cases_in(result):
+    """The <testcase>s of a result file; none where the node died before it wrote any."""
+    try:
+        return list(ElementTree.parse(result).iter("testcase"))
+    except ElementTree.ParseError:
+        return []
+
+
+def problems_of(case):
+    """What an xunit <testcase> complains of, one string each."""
+    name = f"{case.get('classname')}.{case.get('name')}"
+    return [
+        f"{name}: {entry.tag} {entry.get('message') or ''}\n{entry.text or ''}"
+        for entry in case
+        if entry.tag in ("failure", "error", "skipped")
+    ]
+
+
+def logs(directory):
+    """The end of the log file of every node: what it had to say itself. rostest's own repeats its output."""
+    for log in sorted(directory.rglob("*.log")):
+        if log.is_file() and not log.name.startswith(("rostest-", "roslaunch-")):
+            yield f"--- {log.name}\n" + "\n".join(log.read_text(errors="replace").splitlines()[-30:])
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in HERE.glob("*.test")))
+def test_rostest(name, tmp_path):
+    status, output = run_rostest(HERE / f"{name}.test", tmp_path)
+    # rostest-*.xml tells of the <test> tags, each other file of the cases that one test node ran.
+    results = {path: cases_in(path) for path in tmp_path.glob("results/*/*.xml")}
+    problems = [problem for cases in results.values() for case in cases for problem in problems_of(case)]
+    problems += [f"{path.name}: not one test case ran" for path, cases in results.items() if not cases]
+    if status is None:
+        problems.insert(0, f"not done after {DEADLINE:.0f} s")
+    elif status != 0:
+        problems.insert(0, f"rostest ended with status {status}")
+    elif not results:
+        problems.insert(0, "no results")
+    if problems:
+        pytest.fail("\n".join([*problems, "--- output", output, *logs(tmp_path / "log")]), pytrace=False)

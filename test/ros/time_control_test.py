@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Simulated time does what it is told: speed, steps, seeds, poses, and a clock that is set back."""
+
+import rospy
+from aro_robocop_goto_as.msg import SimStatus
+from aro_robocop_goto_as.srv import Reset, SetPose, SetPoseRequest, Step
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure.client import Client
+from harness import BRIDGE, SIMULATOR, Recorder, SystemTest, call_simulator, distance, run, wait_for
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.nodes.convert import to_quaternion
+
+
+def service(name, kind):
+    rospy.wait_for_service(f"{SIMULATOR}/{name}", 60.0)
+    return rospy.ServiceProxy(f"{SIMULATOR}/{name}", kind)
+
+
+class TimeControl(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.status = Recorder(f"{SIMULATOR}/status", SimStatus)
+        cls.clock = Recorder("/clock", Clock)
+        cls.step, cls.reset, cls.set_pose = service("step", Step), service("reset", Reset), service("set_pose", SetPose)
+
+    def tearDown(self):
+        call_simulator("unpause")
+        super().tearDown()
+
+    def test_a_step_publishes_all_of_its_span_and_then_time_stands(self):
+        call_simulator("pause")
+        odom = Recorder("odom", Odometry)
+        before = self.step(0.0).stamp
+        odom.forget()
+        answer = self.step(2.0)
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual((answer.stamp - before).to_sec(), 2.0, places=6)
+        wait_for(lambda: len(odom) == 60, lambda: f"60 messages, there are {len(odom)}")
+        self.assertLessEqual(odom.messages[-1].header.stamp, answer.stamp)
+        self.assertAlmostEqual((self.step(0.0).stamp - answer.stamp).to_sec(), 1.0 / 240.0, places=6)
+
+    def test_a_step_of_no_sense_is_refused_in_words(self):
+        for duration in (-1.0, float("nan"), float("inf")):
+            answer = self.step(duration)
+            self.assertFalse(answer.success)
+            self.assertIn(f"duration {duration}: expected 0 to", answer.message)
+
+    def test_the_speed_follows_dynamic_reconfigure_and_the_parameter(self):
+        client = Client(SIMULATOR[1:], timeout=60)
+        client.update_configuration({"real_time_factor": 2.0})
+        self.status.wait_for(lambda m: m.factor_asked == 2.0, "factor 2")
+        rospy.set_param(f"{SIMULATOR}/real_time_factor", 0)
+        self.status.wait_for(lambda m: m.factor_asked == 0.0, "as fast as possible", len(self.status))
+        rospy.set_param(f"{SIMULATOR}/real_time_factor", "fast")
+        wait_for(lambda: any("expected a number, 0 or more, got 'fast'" in m.msg for m in self.goals.log.messages),
+                 "a complaint")
+        self.goals.log.forget()
+        rospy.set_param(f"{SIMULATOR}/real_time_factor", 4.0)
+        self.status.wait_for(lambda m: m.factor_asked == 4.0, "factor 4", len(self.status))
+
+    def test_a_seed_brings_back_its_noise(self):
+        def first_scan(seed):
+            call_simulator("pause")
+            self.assertTrue(self.reset(seed).success)
+            scans = Recorder("scan", LaserScan)
+            self.step(0.1)
+            return list(scans.newest().ranges)
+
+        self.assertEqual(first_scan(5), first_scan(5))
+        self.assertNotEqual(first_scan(5), first_scan(6))
+        self.assertIn("seed -3: expected a positive number", self.reset(-3).message)
+
+    def test_goals_and_reports_go_on_after_the_clock_was_set_back(self):
+        self.goals.send(0.3, 0.0).result("REACHED")
+        late = self.clock.newest().clock
+        self.assertTrue(self.reset(0).success)
+        self.clock.wait_for(lambda m: m.clock < late, "an earlier time", len(self.clock) - 1)
+        reports = Recorder(f"{BRIDGE}/status", String)
+        self.goals.send(0.3, 0.1).result("REACHED")
+        self.goals.send(0.5, 0.0).result("REACHED")
+        start = len(reports)
+        wait_for(lambda: len(reports) > start, "another report of the bridge's timer")
+
+    def test_a_robot_is_set_down_where_it_is_asked_to_be(self):
+        request = SetPoseRequest()
+        request.pose.header.frame_id = "map"
+        request.pose.pose.position.x, request.pose.pose.position.y = 1.5, -0.4
+        request.pose.pose.orientation = to_quaternion(1.0)
+        answer = self.set_pose(request)
+        self.assertTrue(answer.success, answer.message)
+        wait_for(lambda: distance(self.robot.pose(), Pose2D(1.5, -0.4)) < 0.001, "the robot there")
+        request.pose.header.frame_id = "nowhere"
+        self.assertIn("its frame is 'nowhere'", self.set_pose(request).message)
+        request.robot = "robot_9"
+        self.assertIn("robot 'robot_9' is not one of: ''", self.set_pose(request).message)
+
+    def test_diagnostics_say_what_the_status_says(self):
+        status = Recorder("/diagnostics", DiagnosticArray).newest().status[0]
+        values = {pair.key: pair.value for pair in status.values}
+        self.assertEqual((status.name, values["world"], values["drive"], values["robots"]),
+                         ("robocop_sim: simulation", "stage_4", "wheels", "1"))
+
+
+if __name__ == "__main__":
+    run(TimeControl)

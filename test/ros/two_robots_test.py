@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""A 2D Nav Goal on one robot's topic, in any robot's frame, moves that robot and no other."""
+
+import unittest
+
+from clicks import Clicks
+from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, run, wait_for
+from visualization_msgs.msg import MarkerArray
+
+from aro_robocop_goto_as.geometry import Pose2D, compose
+
+NEAR = 0.12  # [m] the handout's tolerance with a little drift of odometry
+STILL = 0.005  # [m]
+
+
+class TwoRobots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        names = ("/robot_1", "/robot_2")
+        cls.robots = [Robot(name) for name in names]
+        cls.goals = [Goals(f"{name}/{ACTION}", name + SERVER) for name in names]
+        cls.clicks = [Clicks(name) for name in names]
+
+    def setUp(self):
+        for robot, goals, clicks in zip(self.robots, self.goals, self.clicks):
+            robot.reset()
+            goals.forget()
+            clicks.status.forget()
+
+    def tearDown(self):
+        for goals in self.goals:
+            goals.check_ends()
+
+    def check_arrival(self, robot, target):
+        """A click is on its way to a robot: it gets there, and the other one neither gets a goal nor moves."""
+        other = 1 - robot
+        stood = self.robots[other].pose()
+        goal = wait_for(self.goals[robot].of_others, f"a goal from the bridge of robot {robot}")[0]
+        goal.result("REACHED")
+        self.assertLess(distance(self.robots[robot].wait_until_it_stands(), target), NEAR)
+        self.assertLess(max(distance(pose, stood) for pose in self.robots[other].path()), STILL)
+        self.assertEqual(self.goals[other].sent.messages, [])
+        self.assertEqual(self.robots[other].commands.messages, [])
+
+    def test_goal_in_map_makes_that_robot_and_only_that_one_arrive(self):
+        self.clicks[1].click(-1.6, -0.4, "map")
+        self.check_arrival(1, Pose2D(-1.6, -0.4))
+
+    def test_each_robot_serves_its_own_goal_at_the_same_time(self):
+        targets = [Pose2D(-0.2, -0.4), Pose2D(-1.6, 0.4)]
+        for clicks, target in zip(self.clicks, targets):
+            clicks.click(target.x, target.y, "map")
+        for robot, goals, target in zip(self.robots, self.goals, targets):
+            wait_for(goals.of_others, "a goal from the bridge")[0].result("REACHED")
+            self.assertLess(distance(robot.wait_until_it_stands(), target), NEAR)
+
+    def test_goal_in_the_other_robots_frame_is_beside_that_robot(self):
+        target = compose(self.robots[1].pose(), Pose2D(-0.1, 0.5))
+        self.clicks[0].click(-0.1, 0.5, "robot_2/base_footprint")
+        self.check_arrival(0, target)
+
+    def test_simulator_shows_rviz_each_robot_with_its_name_in_its_frame(self):
+        shapes = Recorder(f"{SIMULATOR}/world", MarkerArray).newest().markers
+        self.assertEqual({m.text: m.header.frame_id for m in shapes if m.ns == "names"}, {
+            name: f"{name}/base_footprint" for name in ("robot_1", "robot_2")})
+
+    def test_frame_without_a_robots_name_is_refused(self):
+        self.clicks[0].click(0.5, 0.0, "odom")
+        self.clicks[0].wait_for_status("goal refused: no transform from 'odom' to 'robot_1/odom'")
+        self.assertEqual(self.goals[0].sent.messages, [])
+
+
+if __name__ == "__main__":
+    run(TwoRobots)

@@ -1,0 +1,61 @@
+"""Poses on the plane and in space."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aro_robocop_goto_as.geometry import (
+    Pose2D,
+    Pose3D,
+    compose,
+    compose3,
+    inverse,
+    lifted,
+    quaternion_from_rpy,
+    rotation_matrix,
+    wrap_angle,
+    yaw_of,
+)
+
+lengths = st.floats(-1e3, 1e3)
+angles = st.floats(-20.0, 20.0)
+poses = st.builds(Pose2D, lengths, lengths, angles)
+
+
+@given(angles)
+def test_a_wrapped_angle_is_the_same_direction_within_half_a_turn(angle: float) -> None:
+    wrapped = wrap_angle(angle)
+    assert -math.pi <= wrapped <= math.pi
+    assert math.cos(wrapped) == pytest.approx(math.cos(angle), abs=1e-9)
+    assert math.sin(wrapped) == pytest.approx(math.sin(angle), abs=1e-9)
+
+
+@given(poses)
+def test_a_pose_composed_with_its_inverse_is_the_identity(pose: Pose2D) -> None:
+    there_and_back = compose(pose, inverse(pose))
+    assert (there_and_back.x, there_and_back.y) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert wrap_angle(there_and_back.yaw) == pytest.approx(0.0, abs=1e-9)
+
+
+@given(poses, poses)
+def test_composing_on_the_plane_and_in_space_agree(a: Pose2D, b: Pose2D) -> None:
+    flat, spatial = compose(a, b), compose3(lifted(a), lifted(b, 0.2))
+    assert spatial.position == pytest.approx((flat.x, flat.y, 0.2), abs=1e-6)
+    assert wrap_angle(yaw_of(spatial.orientation) - flat.yaw) == pytest.approx(0.0, abs=1e-6)
+
+
+@given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3))
+def test_roll_pitch_yaw_turn_about_the_fixed_axes_in_that_order(roll: float, pitch: float, yaw: float) -> None:
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    assert rotation_matrix(quaternion_from_rpy(roll, pitch, yaw)) == pytest.approx(about_z @ about_y @ about_x)
+
+
+def test_a_pose_seen_from_above_keeps_position_and_heading() -> None:
+    pose = Pose3D.from_xyz_rpy((1.0, 2.0, 3.0), (0.0, 0.0, 0.5)).on_plane()
+    assert (pose.x, pose.y, pose.yaw) == pytest.approx((1.0, 2.0, 0.5))

@@ -1,0 +1,154 @@
+"""The lab's decision: a pure function of pose, clearance, goal, parameters."""
+
+import math
+from typing import List
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
+from aro_robocop_goto_as.goto import (
+    Drive,
+    End,
+    Errors,
+    Goal,
+    Outcome,
+    Rotate,
+    clearance_ahead,
+    decide,
+    errors_to,
+    smoothed,
+    watch,
+)
+from aro_robocop_goto_as.params import GotoParams
+
+P = GotoParams()
+near = st.floats(-20.0, 20.0)
+poses = st.builds(Pose2D, near, near, st.floats(-math.pi, math.pi))
+goals = st.builds(Goal, near, near)
+clearances = st.one_of(st.floats(0.0, 12.0), st.just(math.inf))
+twists = st.one_of(st.builds(Twist2D, st.just(0.0), st.floats(-1, 1)),
+                   st.builds(Twist2D, st.floats(0, 0.2), st.just(0.0)))
+
+
+@given(poses, goals)
+def test_errors_lead_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> None:
+    errors = errors_to(goal, pose)
+    assert -math.pi <= errors.angle <= math.pi
+    heading = pose.yaw + errors.angle
+    if errors.position > 0.0:
+        assert pose.x + errors.position * math.cos(heading) == pytest.approx(goal.x, abs=1e-9)
+        assert pose.y + errors.position * math.sin(heading) == pytest.approx(goal.y, abs=1e-9)
+
+
+@given(poses, clearances, goals)
+def test_the_rule_is_the_handouts(pose: Pose2D, clearance: float, goal: Goal) -> None:
+    decision = decide(pose, clearance, goal, P)
+    errors = decision.errors
+    if errors.position < 0.1:
+        assert isinstance(decision, End) and decision.outcome is Outcome.REACHED
+    elif abs(errors.angle) > 0.1:
+        assert isinstance(decision, Rotate)
+    elif clearance < 0.3:
+        assert isinstance(decision, End) and decision.outcome is Outcome.OBSTACLE
+    else:
+        assert isinstance(decision, Drive)
+
+
+@given(poses, clearances, goals)
+def test_the_robot_turns_towards_the_goal_or_drives_straight_within_its_limits(
+        pose: Pose2D, clearance: float, goal: Goal) -> None:
+    decision = decide(pose, clearance, goal, P)
+    twist = decision.twist
+    if isinstance(decision, Rotate):
+        assert twist.v == 0.0 and twist.w * decision.errors.angle > 0.0
+        assert P.min_angular_velocity <= abs(twist.w) <= P.max_angular_velocity
+    elif isinstance(decision, Drive):
+        assert twist.w == 0.0 and P.min_linear_velocity <= twist.v <= P.max_linear_velocity
+    else:
+        assert twist == STANDSTILL
+
+
+@given(st.floats(0.1, 10.0), st.floats(0.1, 10.0))
+def test_it_is_never_faster_nearer_to_the_goal(a: float, b: float) -> None:
+    less, more = sorted((a, b))
+    slow, fast = (decide(Pose2D(), math.inf, Goal(x, 0.0), P).twist.v for x in (less, more))
+    assert slow <= fast
+
+
+def test_at_the_tolerance_it_has_slowed_down() -> None:
+    assert decide(Pose2D(), math.inf, Goal(0.1001, 0.0), P).twist.v <= 0.06
+
+
+@given(twists, poses, clearances, goals)
+def test_commands_accelerate_within_limits_and_never_turn_while_driving(
+        previous: Twist2D, pose: Pose2D, clearance: float, goal: Goal) -> None:
+    decision = decide(pose, clearance, goal, P)
+    twist = smoothed(previous, decision, 0.1, P)
+    assert twist.v == 0.0 or twist.w == 0.0
+    if isinstance(decision, End):
+        assert twist == STANDSTILL
+    if isinstance(decision, Rotate):
+        assert abs(twist.w - previous.w) <= P.angular_acceleration * 0.1 + 1e-12
+    if isinstance(decision, Drive):
+        assert abs(twist.v - previous.v) <= P.linear_acceleration * 0.1 + 1e-12
+
+
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-math.pi, math.pi))
+def test_an_ideal_robot_without_obstacles_always_arrives(x: float, y: float, yaw: float) -> None:
+    pose, twist, goal = Pose2D(0.0, 0.0, yaw), STANDSTILL, Goal(x, y)
+    for _ in range(1200):
+        decision = decide(pose, math.inf, goal, P)
+        if isinstance(decision, End):
+            assert decision.outcome is Outcome.REACHED
+            return
+        twist = smoothed(twist, decision, 0.1, P)
+        pose = Pose2D(pose.x + 0.1 * twist.v * math.cos(pose.yaw), pose.y + 0.1 * twist.v * math.sin(pose.yaw),
+                      wrap_angle(pose.yaw + 0.1 * twist.w))
+    pytest.fail(f"not there after two minutes: {pose}")
+
+
+def test_no_progress_is_neither_nearer_nor_turned() -> None:
+    start = watch(None, Errors(1.0, 0.5), 0.0, P)
+    assert watch(start, Errors(0.995, 0.48), 4.0, P).since == 0.0
+    assert watch(start, Errors(0.98, 0.5), 4.0, P).since == 4.0
+    assert watch(start, Errors(1.0, 0.44), 4.0, P).since == 4.0
+    assert watch(start, Errors(1.2, 0.6), 4.0, P).since == 0.0
+
+
+# -- clearance --
+
+LAYOUTS = [(0.0, 6.28319 / 359, 360), (-math.pi, 2 * math.pi / 360, 360), (math.pi, -2 * math.pi / 500, 500),
+           (-2.0, 0.01, 401)]
+
+
+def _ahead(ranges: List[float], layout: "tuple[float, float, int]" = LAYOUTS[0]) -> "float | None":
+    return clearance_ahead(ranges, layout[0], layout[1], 0.12, 10.0, math.pi / 6)
+
+
+@given(st.sampled_from(LAYOUTS), st.floats(-math.pi, math.pi), st.floats(0.13, 9.9))
+def test_a_return_counts_when_it_is_within_thirty_degrees_of_ahead(
+        layout: "tuple[float, float, int]", direction: float, distance: float) -> None:
+    start, increment, count = layout
+    angles = np.array([wrap_angle(start + increment * i) for i in range(count)])
+    beam = int(np.argmin(np.abs(angles - direction)))
+    ranges = [math.inf] * count
+    ranges[beam] = distance
+    expected = distance if abs(angles[beam]) <= math.pi / 6 + 1e-9 else math.inf
+    assert _ahead(ranges, layout) == expected
+
+
+@pytest.mark.parametrize("nothing", [math.inf, math.nan, 0.0, 0.12, 10.0, 55.0])
+def test_what_is_no_valid_return_is_no_obstacle(nothing: float) -> None:
+    assert _ahead([nothing] * 360) == math.inf
+
+
+def test_minus_infinity_is_too_near_to_measure_and_stops_the_robot() -> None:
+    assert _ahead([-math.inf] + [5.0] * 359) == 0.0
+
+
+def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:
+    assert clearance_ahead([1.0] * 10, 1.0, 0.1, 0.12, 10.0, math.pi / 6) is None
+    assert clearance_ahead([], 0.0, 0.1, 0.12, 10.0, math.pi / 6) is None
