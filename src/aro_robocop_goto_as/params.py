@@ -15,8 +15,8 @@ def _param(default: Any, low: Optional[float] = None, high: Optional[float] = No
     return field(default=default, metadata={"low": low, "high": high, "choices": tuple(choices)})
 
 
-def _positive(default: float) -> Any:
-    return _param(default, low=1e-9)
+def _positive(default: float, high: float = 1e6) -> Any:
+    return _param(default, low=1e-9, high=high)
 
 
 def _problem(spec: "Field[Any]", value: Any) -> Optional[str]:
@@ -67,6 +67,13 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     return params
 
 
+def _bad_frame(name: str, frame: str) -> List[str]:
+    """What tf2 would refuse of a frame, in words; empty when all is well."""
+    if frame and not frame.startswith("/") and not any(character.isspace() for character in frame):
+        return []
+    return [f"{name}: expected a frame's name without blank or leading slash, got {frame!r}"]
+
+
 @dataclass(frozen=True)
 class SimParams:
     """Parameters of robocop_sim; config/sim.yaml says what each one means, in which unit and from which source."""
@@ -75,18 +82,18 @@ class SimParams:
     model: str = "turtlebot3_burger"
     spawn: str = ""
     robots: str = ""
-    seed: int = _param(1, low=1)
+    seed: int = _param(1, low=1, high=2**31 - 1)
     gui: bool = False
     localization: str = _param("static", choices=("static", "truth"))
     odom_tf: bool = True
     ground_truth: bool = True
 
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
-    physics_rate: int = _param(240, low=1)
+    physics_rate: int = _param(240, low=1, high=10000)
     footprint_radius: float = _positive(0.105)
-    solver_iterations: int = _param(50, low=1)
+    solver_iterations: int = _param(50, low=1, high=10000)
     wheel_torque: float = _positive(1.0)
-    real_time_factor: float = _param(1.0, low=0.0)
+    real_time_factor: float = _param(1.0, low=0.0, high=1e6)
     clock_rate: int = _param(60, low=1)
     sync: str = _param("free", choices=("free", "lockstep"))
     control_rate: int = _param(10, low=1)
@@ -102,18 +109,18 @@ class SimParams:
 
     scan_rate: int = _param(10, low=1)
     scan_samples: int = _param(360, low=2, high=100000)
-    scan_angle_min: float = 0.0
-    scan_angle_max: float = 6.28319
+    scan_angle_min: float = _param(0.0, low=-10.0, high=10.0)
+    scan_angle_max: float = _param(6.28319, low=-10.0, high=10.0)
     scan_range_min: float = _positive(0.12)
     scan_range_max: float = _positive(10.0)
-    scan_noise: float = _param(0.01, low=0.0)
+    scan_noise: float = _param(0.01, low=0.0, high=100.0)
 
     odom_rate: int = _param(30, low=1)
     joint_state_rate: int = _param(30, low=1)
     ground_truth_rate: int = _param(30, low=1)
     imu_rate: int = _param(200, low=1)
-    gyro_noise: float = _param(2e-4, low=0.0)
-    accelerometer_noise: float = _param(1.7e-2, low=0.0)
+    gyro_noise: float = _param(2e-4, low=0.0, high=100.0)
+    accelerometer_noise: float = _param(1.7e-2, low=0.0, high=100.0)
 
     world_frame: str = "world"
     map_frame: str = "map"
@@ -129,10 +136,12 @@ class SimParams:
             rate = getattr(self, name)
             if self.physics_rate % rate:
                 found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
-        frames = [getattr(self, f"{name}_frame") for name in ("world", "map", "odom", "base", "scan", "imu")]
-        for frame in frames:
-            if not frame or frame.startswith("/") or " " in frame or frames.count(frame) > 1:
-                found.append(f"frames: expected six different names without blank or leading slash, got {frame!r}")
+        names = [f"{name}_frame" for name in ("world", "map", "odom", "base", "scan", "imu")]
+        frames = [getattr(self, name) for name in names]
+        for name, frame in zip(names, frames):
+            found += _bad_frame(name, frame)
+            if frame and frames.count(frame) > 1:
+                found.append(f"{name}: expected six different frames, got {frame!r} {frames.count(frame)} times")
         if self.imu_rate > self.physics_rate:
             found.append(f"imu_rate: {self.imu_rate} Hz is above physics_rate {self.physics_rate} Hz")
         if self.scan_angle_max <= self.scan_angle_min:
@@ -148,7 +157,7 @@ class SimParams:
 class GotoParams:
     """Parameters of robocop_goto_as; config/goto_as.yaml says what each one means."""
 
-    control_rate: float = _positive(10.0)
+    control_rate: float = _positive(10.0, high=1000.0)
     position_tolerance: float = _positive(0.1)
     angle_tolerance: float = _param(0.1, low=1e-3, high=math.pi)
     obstacle_distance: float = _param(0.3, low=0.0)
@@ -189,3 +198,7 @@ class BridgeParams:
     status_period: float = _positive(2.0)
     cancel_timeout: float = _positive(2.0)
     ignore_goal_frame: bool = False
+
+    def conflicts(self) -> List[str]:
+        """What can't be true at once, in words; empty when all is well."""
+        return _bad_frame("goal_frame", self.goal_frame) + _bad_frame("default_frame", self.default_frame)

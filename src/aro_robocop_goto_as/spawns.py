@@ -15,6 +15,7 @@ from .simulator import RobotSpec
 from .slice import Slice
 from .world import World
 
+FARTHEST = 1e6  # [m] from the origin: single-precision messages still tell centimetres there
 SPACING = 0.5  # [m] between robots that are placed by themselves
 CLEARANCE = 0.3  # [m] from each of those to the nearest obstacle
 LOOK = Fan(0.0, math.pi / 36.0, 72)
@@ -41,7 +42,7 @@ def robots_from(p: SimParams, world: World, model: RobotModel) -> List[RobotSpec
     return [RobotSpec(name, model, pose) for name, pose in _parse_list(text)]
 
 
-def parse_spawn(text: str, default: Pose2D) -> Pose2D:
+def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
     """A pose from 'x y' or 'x y yaw' [m, rad]; the empty text means the default. ParameterError otherwise."""
     if not text.strip():
         return default
@@ -49,8 +50,9 @@ def parse_spawn(text: str, default: Pose2D) -> Pose2D:
         numbers = [float(word) for word in text.replace(",", " ").split()]
     except ValueError:
         numbers = []
-    if len(numbers) not in (2, 3) or not np.all(np.isfinite(numbers)):
-        raise ParameterError(f"spawn: expected 'x y' or 'x y yaw' in metres and radians, got {text!r}")
+    if len(numbers) not in (2, 3) or not all(abs(number) <= FARTHEST for number in numbers):
+        raise ParameterError(f"{parameter}: expected 'x y' or 'x y yaw' in metres and radians, numbers within "
+                             f"+-{FARTHEST:g}, got {text!r}")
     return Pose2D(*numbers)
 
 
@@ -63,7 +65,7 @@ def _parse_list(text: str) -> List[Tuple[str, Pose2D]]:
                                  f"got {entry!r}")
         if name in [other for other, _ in found]:
             raise ParameterError(f"robots: the name {name!r} is given twice")
-        found.append((name, parse_spawn(rest, Pose2D())))
+        found.append((name, parse_spawn(rest, Pose2D(), f"robots: {name}")))
     return found
 
 

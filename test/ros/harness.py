@@ -246,11 +246,17 @@ class Robot:
 
     def pose(self):
         """Where it really is now, in the world."""
-        return from_pose_msg(self.truth.take()[0].pose.pose)
+        return self._pose_now(self.truth)
 
     def odom_pose(self):
         """Where odometry believes it is now."""
-        return from_pose_msg(self.odom.take()[0].pose.pose)
+        return self._pose_now(self.odom)
+
+    def _pose_now(self, recorder):
+        """From the topic's first message that is no older than anything seen so far: topics don't arrive in step."""
+        newest = max([rospy.Time.now()] + [r.newest().header.stamp for r in (self.truth, self.odom)])
+        message = recorder.wait_for(lambda m: m.header.stamp >= newest, "a message of now")
+        return from_pose_msg(message.pose.pose)
 
     def path(self):
         """Where it really was, from the test's beginning on."""
@@ -263,8 +269,9 @@ class Robot:
 
     def wait_for_standstill(self):
         """Until it stands, whatever made it; its pose then."""
-        start = len(self.truth)
-        return from_pose_msg(self.truth.wait_for(lambda m: not moves(m), "a robot that stands", start).pose.pose)
+        now = rospy.Time.now()
+        standing = self.truth.wait_for(lambda m: m.header.stamp > now and not moves(m), "a robot that stands")
+        return from_pose_msg(standing.pose.pose)
 
     def wait_until_it_drives(self, v=0.02):
         """Until it drives forward faster than `v` [m/s]."""

@@ -13,21 +13,20 @@ RESULT_TYPE = "aro_robocop_goto_as/GoToPositionActionResult"
 RESULT_SUFFIX = "/result"
 
 
-def is_up(client: actionlib.SimpleActionClient) -> bool:
+def is_up(client: actionlib.ActionClient) -> bool:
     """Whether the client's server is there with all five topics connected, without waiting.
 
     actionlib's own wait_for_server measures its time-out in ROS time: on a paused simulator it never returns.
     """
-    inner = client.action_client
-    if inner.last_status_msg is None:
+    if client.last_status_msg is None:
         return False
-    server = inner.last_status_msg._connection_header["callerid"]
+    server = client.last_status_msg._connection_header["callerid"]
     heard = all(any(link.callerid_pub == server for link in subscriber.impl.connections)
-                for subscriber in (inner.result_sub, inner.feedback_sub))
-    return heard and all(publisher.impl.has_connection(server) for publisher in (inner.pub_goal, inner.pub_cancel))
+                for subscriber in (client.result_sub, client.feedback_sub))
+    return heard and all(publisher.impl.has_connection(server) for publisher in (client.pub_goal, client.pub_cancel))
 
 
-def wait_for(client: actionlib.SimpleActionClient, timeout: float) -> bool:
+def wait_for(client: actionlib.ActionClient, timeout: float) -> bool:
     """Whether the server came up within `timeout` [s, wall]."""
     return wait_until(lambda: is_up(client), timeout)
 
@@ -55,7 +54,7 @@ def absence(action: str) -> str:
     return f"waiting for {action}{hint}"
 
 
-def wait_or_explain(client: actionlib.SimpleActionClient, action: str, timeout: float) -> str:
+def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float) -> str:
     """Empty when the server came up within `timeout` [s, wall]; otherwise why it may be missing."""
     started = time.monotonic()
     if wait_for(client, timeout):

@@ -86,7 +86,7 @@ def _pursue(args: argparse.Namespace, patience: float) -> int:
     rospy.Subscriber("odom", Odometry, lambda message: latest.__setitem__(0, message), queue_size=1)
     transformer = GoalTransformer("odom", "odom", SERVER_PATIENCE, lambda: latest[0])
     client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
-    missing = action_servers.wait_or_explain(client, ACTION, patience)
+    missing = action_servers.wait_or_explain(client.action_client, ACTION, patience)
     if missing:
         print(f"robocop goto: {missing}", file=sys.stderr)
         return NOT_REACHED
@@ -109,7 +109,7 @@ def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
                      feedback_cb=progress.show)
     try:
         while not ended.wait(0.1):
-            if not action_servers.is_up(client):
+            if not action_servers.is_up(client.action_client):
                 progress.close()
                 print("robocop goto: the server is gone", file=sys.stderr)
                 return NOT_REACHED

@@ -3,16 +3,17 @@
 import sys
 import threading
 import traceback
-from typing import Optional
+from typing import Callable, Optional
 
 import actionlib
 import rospy
+from actionlib import ClientGoalHandle, CommState
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal
 
 from ..errors import FrameError, RobocopError
 from ..params import BridgeParams
@@ -22,8 +23,6 @@ from .goto_as import ACTION
 from .ticker import wait_until
 from .timer import start_timer
 
-TERMINAL = (GoalStatus.PREEMPTED, GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.REJECTED, GoalStatus.RECALLED,
-            GoalStatus.LOST)
 IDLE_POLL = 0.1  # [s, wall] between two looks for shutdown while no click comes
 
 
@@ -35,14 +34,13 @@ class Bridge:
         self.odom: Optional[Odometry] = None
         self.click: Optional[PoseStamped] = None
         self.clicked = threading.Condition()
-        self.sent: Optional[Point] = None
-        self.done = threading.Event()
-        self.done.set()
+        self.sent: Optional[_SentGoal] = None
         self.last_result = ""
-        self.feedback: Optional[GoToPositionFeedback] = None
         self.said_naive = False
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
-        self.client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
+        # Not SimpleActionClient: it takes a newer goal's first transition for an error if it comes before the goal's
+        # handle is in place, and the older goal's last ones for the newer goal's.
+        self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
         rospy.Subscriber("odom", Odometry, self._on_odom, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_click, queue_size=10)
@@ -96,17 +94,15 @@ class Bridge:
         """Cancel the goal before and see it end, then send this one; a click that comes meanwhile takes its place."""
         if not self._wait_for_server():
             return
-        if not self.done.is_set():
-            self.client.cancel_goal()
-            if not wait_until(lambda: self.done.is_set() or self.click is not None, self.p.cancel_timeout):
+        older = self.sent
+        if older is not None and not older.done.is_set():
+            older.handle.cancel()
+            if not wait_until(lambda: older.done.is_set() or self.click is not None, self.p.cancel_timeout):
                 rospy.logwarn("the older goal did not end within %g s of its cancel; the newer one is sent all the "
                               "same, which preempts it", self.p.cancel_timeout)
         if self.click is not None:
             return
-        done = self.done = threading.Event()
-        self.sent, self.feedback = position, None
-        self.client.send_goal(GoToPositionGoal(position), done_cb=lambda state, result: self._on_done(
-            done, state, result), feedback_cb=self._on_feedback)
+        self.sent = _SentGoal(self.client, position, self._on_end)
         rospy.loginfo("goal sent: x %.2f y %.2f in %s", position.x, position.y, self.p.goal_frame)
         self._report()
 
@@ -118,14 +114,9 @@ class Bridge:
         wait_until(lambda: action_servers.is_up(self.client) or self.click is not None, float("inf"))
         return self.click is None and not rospy.is_shutdown()
 
-    def _on_feedback(self, feedback: GoToPositionFeedback) -> None:
-        self.feedback = feedback
-
-    def _on_done(self, done: threading.Event, state: int, result: Optional[GoToPositionResult]) -> None:
-        name = GoalStatus.to_string(state) if state in TERMINAL else str(state)
-        self.last_result = "{}{}".format(name, ": " + result.message if result is not None and result.message else "")
-        rospy.loginfo("goal ended, %s", self.last_result)
-        done.set()
+    def _on_end(self, ending: str) -> None:
+        self.last_result = ending
+        rospy.loginfo("goal ended, %s", ending)
 
     # -- the report --
 
@@ -143,11 +134,35 @@ class Bridge:
             return action_servers.absence(ACTION)
         if self.sent is None:
             return f"{ACTION} is ready, no goal yet"
-        if self.done.is_set():
+        if self.sent.done.is_set():
             return f"{ACTION} is ready, last goal {self.last_result}"
-        state = self.client.get_state()
-        name = "PENDING" if state == GoalStatus.PENDING else "ACTIVE" if state == GoalStatus.ACTIVE else str(state)
-        where = f"goal x {self.sent.x:.2f} y {self.sent.y:.2f} is {name}"
+        return str(self.sent)
+
+
+class _SentGoal:
+    """One goal on its way, told apart from all others by its handle."""
+
+    def __init__(self, client: actionlib.ActionClient, position: Point, on_end: Callable[[str], None]) -> None:
+        self.position = position
+        self.done = threading.Event()
+        self.feedback: Optional[GoToPositionFeedback] = None
+        self._on_end = on_end
+        self.handle: ClientGoalHandle = client.send_goal(GoToPositionGoal(position), self._on_transition,
+                                                         self._on_feedback)
+
+    def _on_transition(self, handle: ClientGoalHandle) -> None:
+        if handle.get_comm_state() != CommState.DONE:
+            return
+        state, result = GoalStatus.to_string(handle.get_terminal_state()), handle.get_result()
+        self._on_end("{}{}".format(state, ": " + result.message if result is not None and result.message else ""))
+        self.done.set()
+
+    def _on_feedback(self, _handle: ClientGoalHandle, feedback: GoToPositionFeedback) -> None:
+        self.feedback = feedback
+
+    def __str__(self) -> str:
+        state = GoalStatus.to_string(self.handle.get_goal_status())
+        where = f"goal x {self.position.x:.2f} y {self.position.y:.2f} is {state}"
         feedback = self.feedback
         if feedback is None:
             return where

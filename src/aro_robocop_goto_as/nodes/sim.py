@@ -22,7 +22,7 @@ from ..params import SimParams
 from ..robot import load_robot
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
-from ..spawns import robots_from
+from ..spawns import FARTHEST, robots_from
 from ..world import find_world, load_world
 from . import convert, params
 from .pacer import Pacer
@@ -148,8 +148,8 @@ class SimNode:
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:
-        if not all(abs(value) < 1e6 for value in (pose.x, pose.y, pose.yaw)):
-            raise FrameError(f"expected finite numbers within 1000 km, got x {pose.x} y {pose.y} yaw {pose.yaw}")
+        if not all(abs(value) <= FARTHEST for value in (pose.x, pose.y, pose.yaw)):
+            raise FrameError(f"expected finite numbers within +-{FARTHEST:g}, got x {pose.x} y {pose.y} yaw {pose.yaw}")
         odom_frame = self.robots[robot].odom_frame
         if frame in (self.p.world_frame, self.p.map_frame):
             return pose
