@@ -89,7 +89,8 @@ def find_world(name_or_path: str, directory: str) -> str:
     entries = os.listdir(directory) if os.path.isdir(directory) else []
     known = sorted(entry[: -len(".sdf")] for entry in entries if entry.endswith(".sdf"))
     raise WorldError(
-        f"there is no world '{name_or_path}' (no file {os.path.abspath(path)}); worlds in {directory}: {', '.join(known) or 'none'}"
+        f"there is no world '{name_or_path}' (no file {os.path.abspath(path)}); "
+        f"worlds in {directory}: {', '.join(known) or 'none'}"
     )
 
 

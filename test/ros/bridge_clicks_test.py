@@ -3,7 +3,8 @@
 
 from actionlib_msgs.msg import GoalID, GoalStatus
 from clicks import Clicks
-from harness import ACTION, Recorder, SystemTest, distance, run, wait_for
+from harness import ACTION, BRIDGE, Recorder, SystemTest, distance, run, wait_for
+from rosgraph_msgs.msg import Log
 
 from aro_robocop_goto_as.geometry import Pose2D
 
@@ -50,6 +51,17 @@ class BridgeClicks(SystemTest):
         self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.4, 0.2)), NEAR)
         for goal in self.goals.of_others()[:-1]:
             goal.result("PREEMPTED")
+
+    def test_thirty_clicks_each_as_soon_as_the_one_before_was_sent_are_told_apart(self):
+        for count in range(1, 31):
+            self.clicks.click(1.5, 0.01 * count, "map")
+            self.wait_for_goals(count)
+        for goal in self.goals.of_others()[:-1]:
+            goal.result("PREEMPTED")
+        self.goals.of_others()[-1].cancel()
+        self.clicks.wait_for_status("last goal PREEMPTED: PREEMPTED: ")
+        errors = [m.msg for m in self.goals.log.messages if m.name == BRIDGE and m.level >= Log.ERROR]
+        self.assertEqual(errors, [])
 
     def test_click_after_a_goal_was_reached_is_served(self):
         for count, x in ((1, -0.5), (2, -0.7)):

@@ -44,6 +44,11 @@ def test_every_key_of_a_config_file_is_explained(name: str, cls: Any) -> None:
     ({"scan_rate": 7}, "scan_rate: 7 Hz does not divide physics_rate 240 Hz"),
     ({"imu_rate": 300}, "imu_rate: 300 Hz is above physics_rate 240 Hz"),
     ({"scan_range_max": 0.1}, "scan_range_max: expected more than scan_range_min 0.12, got 0.1"),
+    ({"solver_iterations": 10**9}, "solver_iterations: expected at most 10000, got 1000000000"),
+    ({"max_linear_velocity": 1e300}, "max_linear_velocity: expected at most 1e+06, got 1e+300"),
+    ({"odom_frame": "/odom"}, "odom_frame: expected a frame's name without blank or leading slash, got '/odom'"),
+    ({"map_frame": ""}, "map_frame: expected a frame's name without blank or leading slash, got ''"),
+    ({"map_frame": "odom"}, "map_frame: expected six different frames, got 'odom' 2 times"),
     ({"scan_angle_max": -1}, "scan_angle_max: expected more than scan_angle_min 0.0, got -1.0"),
 ])
 def test_a_wrong_parameter_is_refused_with_source_key_value_and_expectation(raw: Dict[str, Any], expected: str) -> None:
@@ -65,3 +70,10 @@ def test_a_whole_number_serves_where_a_real_one_is_asked_for() -> None:
 def test_speeds_whose_minimum_is_above_the_maximum_are_refused() -> None:
     with pytest.raises(ParameterError, match="min_linear_velocity: expected at most max_linear_velocity 0.2, got 0.5"):
         from_dict(GotoParams, {"min_linear_velocity": 0.5}, "goto_as.yaml")
+
+
+@pytest.mark.parametrize("frame", ["", "/map", "my map"])
+@pytest.mark.parametrize("key", ["goal_frame", "default_frame"])
+def test_a_frame_that_tf_would_refuse_is_refused_at_the_start(key: str, frame: str) -> None:
+    with pytest.raises(ParameterError, match=f"{key}: expected a frame's name without blank or leading slash"):
+        from_dict(BridgeParams, {key: frame}, "rviz_goto_ac.yaml")

@@ -54,7 +54,8 @@ def test_a_list_names_and_places_each_robot(burger: RobotModel) -> None:
     ("red 0 0; red 1 1", "'red' is given twice"),
     ("r/d 0 0", "got 'r/d 0 0'"),
     ("red 0 0;", "expected 'NAME X Y"),
-    ("red nan 0", "expected 'x y'"),
+    ("red nan 0", "robots: red: expected 'x y'"),
+    ("red 1e7 0", "numbers within +-1e+06, got '1e7 0'"),
 ])
 def test_a_list_that_makes_no_sense_is_refused_by_name(burger: RobotModel, text: str, expected: str) -> None:
     with pytest.raises(ParameterError) as refusal:
@@ -66,6 +67,6 @@ def test_a_spawn_is_two_or_three_numbers() -> None:
     assert parse_spawn(" ", Pose2D(1, 2, 3)) == Pose2D(1, 2, 3)
     assert parse_spawn("1 -2", Pose2D()) == Pose2D(1.0, -2.0, 0.0)
     assert parse_spawn("1, 2, 0.5", Pose2D()) == Pose2D(1.0, 2.0, 0.5)
-    for bad in ("1", "a b", "1 2 3 4", "nan 0"):
+    for bad in ("1", "a b", "1 2 3 4", "nan 0", "-1e300 0", "0 0 inf"):
         with pytest.raises(ParameterError, match="spawn: expected 'x y' or 'x y yaw'"):
             parse_spawn(bad, Pose2D())

@@ -5,8 +5,6 @@ import math
 import os
 import re
 import signal
-import socket
-import subprocess
 import sys
 import threading
 from typing import List, Optional
@@ -25,12 +23,11 @@ from ..errors import FrameError
 from . import action_servers
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
+from .own_system import own_system
 from .ticker import wait_until
 
-LAUNCH = ["roslaunch", "aro_robocop_goto_as", "robocop_goto_as.launch", "rviz:=false"]
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a system that is running
 START_PATIENCE = 60.0  # [s, wall] for a system that is started for this goal, on a slow machine too
-END_PATIENCE = 30.0  # [s, wall] for that system to end; roslaunch kills by itself what has not ended in 17 s
 REACHED, NOT_REACHED = 0, 1
 
 
@@ -123,52 +120,6 @@ def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
     return REACHED if result is not None and result.success else NOT_REACHED
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
-def _with_own_system(args: argparse.Namespace) -> int:
-    """Start a headless system on a master of its own, pursue the goal there, and end it."""
-    port = _free_port()
-    os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
-    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
-    world = os.path.abspath(args.world) if args.world and os.path.isfile(args.world) else args.world
-    command = LAUNCH + [f"world:={world}"] if args.world else LAUNCH
-    log_path = os.path.join(rospkg.get_ros_home(), "robocop_goto.log")
-    os.makedirs(os.path.dirname(log_path), exist_ok=True)
-    with open(log_path, "w") as log:
-        system = subprocess.Popen(command[:1] + ["-p", str(port)] + command[1:], stdout=log,
-                                  stderr=subprocess.STDOUT, start_new_session=True)
-        try:
-            if not _wait_for_master(system):
-                print(f"robocop goto: the simulator did not start; see {log_path}", file=sys.stderr)
-                return NOT_REACHED
-            return _pursue(args, START_PATIENCE)
-        finally:
-            rospy.signal_shutdown("goal ended")
-            system.terminate()
-            try:
-                system.wait(END_PATIENCE)
-            except subprocess.TimeoutExpired:
-                system.kill()
-
-
-def _wait_for_master(system: "subprocess.Popen[bytes]") -> bool:
-    deadline = threading.Event()
-    timer = threading.Timer(START_PATIENCE, deadline.set)
-    timer.daemon = True
-    timer.start()
-    while not deadline.wait(0.05):
-        if rosgraph.is_master_online():
-            timer.cancel()
-            return True
-        if system.poll() is not None:
-            return False
-    return False
-
-
 def main() -> None:
     """Entry point; exit status 0 reached, 1 not, 2 for arguments of no sense."""
     args = _arguments(rospy.myargv()[1:])
@@ -184,4 +135,21 @@ def main() -> None:
 def _run(args: argparse.Namespace) -> int:
     if rosgraph.is_master_online():
         return _pursue(args, SERVER_PATIENCE)
-    return _with_own_system(args)
+    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
+    world = os.path.abspath(args.world) if args.world and os.path.isfile(args.world) else args.world
+    log = os.path.join(rospkg.get_ros_home(), "robocop_goto.log")
+    status = NOT_REACHED
+    with own_system("robocop_goto_as.launch", ["rviz:=false"] + ([f"world:={world}"] if world else []), log) as started:
+        if started:
+            status = _pursue(args, START_PATIENCE)
+    complaints = [line for line in _lines(log) if "[FATAL]" in line]
+    if complaints or not started:
+        print("\n".join(["robocop goto: the system that was started for this goal failed:", *complaints,
+                         f"all that it said is in {log}"]), file=sys.stderr)
+    return status
+
+
+def _lines(log: str) -> List[str]:
+    """What a launched system said, without the colours."""
+    with open(log, errors="replace") as stream:
+        return [re.sub(r"\x1b\[[0-9;]*m", "", line).rstrip() for line in stream]

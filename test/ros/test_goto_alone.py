@@ -1,0 +1,97 @@
+"""`robocop goto` where no ROS runs: it starts a system for that goal, and leaves nothing of it behind."""
+
+import os
+import signal
+import socket
+import subprocess
+import time
+
+import pytest
+from test_rostests import processes_with
+
+DEADLINE = 120.0  # [s, wall]
+
+
+class Goto:
+    """The command on its own, with no master where it looks for one; its output and the processes it starts."""
+
+    def __init__(self, folder, *arguments):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.setting = b"ROS_HOME=" + os.fsencode(folder)
+        self.output = folder / "output"
+        environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",
+                       "ROS_LOG_DIR": str(folder / "log"), "ROS_MASTER_URI": f"http://localhost:{port}"}
+        environment.pop("ROS_IP", None)
+        with open(self.output, "wb") as stream:
+            self.process = subprocess.Popen(["rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments],
+                                            env=environment, stdout=stream, stderr=subprocess.STDOUT)
+
+    def wait_until(self, condition, what):
+        end = time.monotonic() + DEADLINE
+        while not condition():
+            assert self.process.poll() is None and time.monotonic() < end, f"{what}: {self.output.read_text()}"
+            time.sleep(0.01)
+
+    def runs(self, program):
+        """Whether one of its processes has this word on its command line."""
+        found = []
+        for process in processes_with(self.setting):
+            try:
+                with open(f"/proc/{process}/cmdline") as stream:
+                    found.append(stream.read())
+            except OSError:  # ended meanwhile
+                continue
+        return any(program in line for line in found)
+
+    def ends(self):
+        """Its exit status; by then nothing that it started may be there."""
+        status = self.process.wait(DEADLINE)
+        assert processes_with(self.setting) == []
+        return status
+
+
+@pytest.fixture
+def goto(tmp_path):
+    started = []
+
+    def start(*arguments):
+        started.append(Goto(tmp_path, *arguments))
+        return started[-1]
+
+    yield start
+    for it in started:
+        for process in processes_with(it.setting):
+            os.kill(process, signal.SIGKILL)
+
+
+def test_goal_is_reached_in_a_system_of_its_own(goto):
+    command = goto("0.5", "0.2", "--world", "empty")
+    assert command.ends() == 0, command.output.read_text()
+    assert "SUCCEEDED: REACHED: " in command.output.read_text()
+
+
+@pytest.mark.parametrize("word", ["roslaunch", "rosmaster", "robocop_sim.py"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, number):
+    command = goto("5", "0", "--world", "empty")
+    command.wait_until(lambda: command.runs(word), f"{word} runs")
+    command.process.send_signal(number)
+    assert command.ends() == 1
+    assert "Traceback" not in command.output.read_text()
+
+
+def test_terminated_on_its_way_it_tells_how_the_goal_ended(goto):
+    command = goto("5", "0", "--world", "empty")
+    command.wait_until(lambda: "driving" in command.output.read_text(), "driving")
+    command.process.send_signal(signal.SIGTERM)
+    assert command.ends() == 1
+    assert "PREEMPTED: PREEMPTED: " in command.output.read_text()
+
+
+def test_unknown_world_is_told_with_the_log_to_read(goto):
+    command = goto("1", "0", "--world", "no_such")
+    assert command.ends() == 1
+    assert "there is no world 'no_such'" in command.output.read_text()
+    assert "robocop_goto.log" in command.output.read_text()
