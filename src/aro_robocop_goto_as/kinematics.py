@@ -94,15 +94,19 @@ class Kinematics:
     def _share_against_walls(self, i: int, move: np.ndarray, length: float) -> float:
         """The free share against walls for one robot; renews its slack."""
         start = self._poses[i, :2]
-        walls = np.concatenate([_to_segments(start, self._segments),
-                                np.hypot(*(self._circles[:, :2] - start).T) - self._circles[:, 2], [np.inf]])
-        gap = float(walls.min()) - self._radius - SKIN
+        gap = self._room(start) - SKIN
         self._slack[i] = gap - length
         if gap >= length:
             return 1.0
         rounds = np.concatenate([self._circles + [0.0, 0.0, self._radius], _ends(self._segments, self._radius)])
         free = min(_share_to_circles(start, move, rounds), _share_to_sides(start, move, self._segments, self._radius))
         return _short_of(free, length)
+
+    def _room(self, centre: np.ndarray) -> float:
+        """How far [m] a disc at a point (2,) is from the nearest wall; negative where it is in one."""
+        walls = np.concatenate([_to_segments(centre, self._segments),
+                                np.hypot(*(self._circles[:, :2] - centre).T) - self._circles[:, 2], [np.inf]])
+        return float(walls.min()) - self._radius
 
     def _stop_short_of_robots(self, move: np.ndarray, length: np.ndarray, share: np.ndarray) -> None:
         """Cut shares so that no two robots meet; one after the other, each against where the others then are."""
@@ -128,8 +132,10 @@ class Kinematics:
         return BodyState(pose, (v * math.cos(yaw), v * math.sin(yaw), 0.0), (0.0, 0.0, w))
 
     def touching(self, robot: int) -> bool:
-        """Whether something stopped the robot in the last step."""
-        return self._blocked[robot]
+        """Whether something stopped the robot in the last step, or it stands in a wall or another robot."""
+        centre = self._poses[robot, :2]
+        others = np.hypot(*(np.delete(self._poses[:, :2], robot, axis=0) - centre).T)
+        return self._blocked[robot] or self._room(centre) < 0.0 or bool((others < 2.0 * self._radius).any())
 
     def close(self) -> None:
         """Nothing to give back."""

@@ -69,6 +69,10 @@ class Initialpose(SystemTest):
         self.put(Pose2D(0.2, 0.0), "odom")
         self.wait_until_it_is_at(compose(SPAWN, Pose2D(0.2, 0.0)))
 
+    def test_pose_in_a_wall_is_taken_and_said(self):
+        self.put(Pose2D(2.42, 0.0))  # its inner face is at 2.425
+        self.goals.log.wait_for(lambda m: "robot is set down in contact with an obstacle" in m.msg, "a warning")
+
     def test_pose_in_another_frame_or_not_a_number_is_refused(self):
         here = self.robot.pose()
         for pose, frame, text in ((Pose2D(1.0, 0.0), "base_scan", "its frame is 'base_scan'; expected 'map'"),

@@ -107,6 +107,16 @@ def test_wheels_that_slip_at_a_wall_count_on(simulator: Callable[..., Simulator]
     assert seen.odometry.odom_from_base[0, 0] > sim.world_from_base().x - 1.6 + 0.1
 
 
+@pytest.mark.parametrize("drive", ["kinematic", "wheels"])
+def test_a_robot_that_is_set_down_in_a_wall_touches_it_at_once(simulator: Callable[..., Simulator], drive: str) -> None:
+    sim = simulator("stage_1", Pose2D(1.86, 0.0), drive=drive)
+    sim.step({})
+    assert sim.touching()
+    sim.place(Pose2D(0.0, 0.0))
+    sim.step({})
+    assert not sim.touching()
+
+
 def test_both_drives_agree_where_nothing_slips(simulator: Callable[..., Simulator]) -> None:
     ends = []
     for params in ({"drive": "wheels"}, {"drive": "kinematic", "physics_rate": 60}):

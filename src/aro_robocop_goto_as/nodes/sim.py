@@ -60,6 +60,7 @@ class SimNode:
         self.on_span_end: Callable[[], None] = lambda: None
         # Not SimpleQueue: before Python 3.12 its get(timeout) waits for ever when a signal outlasts the timeout.
         self.jobs: queue.Queue[Callable[[], Any]] = queue.Queue()
+        self.placed = set(range(len(sim.robots)))  # robots set down since the last clock tick
         self.held: Dict[int, Twist2D] = {}  # lockstep: commands that wait for the tick's end, newest of each robot
 
         self.clock = publisher("/clock", Clock, latch=True)
@@ -144,6 +145,7 @@ class SimNode:
         target = self._in_world(robot, frame.lstrip("/"), convert.from_pose_msg(pose))
         self.sim.place(target, robot)
         self.held.pop(robot, None)
+        self.placed.add(robot)
         self.send_static_transforms()
         return target
 
@@ -178,9 +180,19 @@ class SimNode:
                 self._serve()
                 wanted = self._wanted()
             elif seen is not None and seen.clock:
+                self._look_at_placed()
                 self._serve()
                 self.status.tick()
                 wanted = self._wanted()
+
+    def _look_at_placed(self) -> None:
+        """Say it where a robot was set down in something: physics pushes it out, or it can't move."""
+        for robot in sorted(self.placed):
+            if self.sim.touching(robot):
+                name, pose = self.sim.robots[robot].name, self.sim.world_from_base(robot)
+                rospy.logwarn("robot %sis set down in contact with an obstacle or another robot, at x %.2f y %.2f",
+                              name and name + " ", pose.x, pose.y)
+        self.placed.clear()
 
     def _report_world(self) -> None:
         world = self.sim.world

@@ -93,6 +93,7 @@ class SimControl:
         node = self.node
         node.sim.reset(seed or None, restart_time=node.p.reset_time)
         node.held.clear()
+        node.placed.update(range(len(node.robots)))
         node.lockstep.restart(node.tick())
         node.pacer.restart(node.sim.time)
         if node.p.reset_time:
