@@ -57,34 +57,11 @@ def inverse(a_from_b: Pose2D) -> Pose2D:
     )
 
 
-def compose_rows(a_from_b: np.ndarray, b_from_c: np.ndarray) -> np.ndarray:
-    """`compose` for many: poses (n, 3) [x m, y m, yaw rad] and (n, 3) or (3,); yaw within [-pi, pi]."""
-    c, s = np.cos(a_from_b[:, 2]), np.sin(a_from_b[:, 2])
-    x, y, yaw = b_from_c[..., 0], b_from_c[..., 1], b_from_c[..., 2]
-    return np.stack([a_from_b[:, 0] + c * x - s * y, a_from_b[:, 1] + s * x + c * y,
-                     wrap_rows(a_from_b[:, 2] + yaw)], axis=1)
-
-
-def inverse_rows(a_from_b: np.ndarray) -> np.ndarray:
-    """`inverse` for many: poses (n, 3)."""
-    c, s = np.cos(a_from_b[:, 2]), np.sin(a_from_b[:, 2])
-    return np.stack([-c * a_from_b[:, 0] - s * a_from_b[:, 1], s * a_from_b[:, 0] - c * a_from_b[:, 1],
-                     wrap_rows(-a_from_b[:, 2])], axis=1)
-
-
-def wrap_rows(angles: np.ndarray) -> np.ndarray:
-    """`wrap_angle` for many angles [rad] of any shape."""
-    return angles - 2.0 * math.pi * np.round(angles / (2.0 * math.pi))
-
-
-def row(pose: Pose2D) -> np.ndarray:
-    """A pose as an array (3,)."""
-    return np.array([pose.x, pose.y, pose.yaw])
-
-
-def from_row(pose: np.ndarray) -> Pose2D:
-    """An array (3,) as a pose."""
-    return Pose2D(float(pose[0]), float(pose[1]), float(pose[2]))
+def arc(yaw: float, distance: float, turn: float) -> Tuple[float, float]:
+    """Displacement [m] along a circular arc of this length [m] that starts at heading yaw and turns by turn [rad]."""
+    half = turn / 2.0
+    chord = distance * (math.sin(half) / half if half else 1.0)
+    return chord * math.cos(yaw + half), chord * math.sin(yaw + half)
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:

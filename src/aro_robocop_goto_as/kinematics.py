@@ -6,18 +6,40 @@ blocked its encoders count on, as wheels that slip do.
 """
 
 import math
-from typing import List, Sequence
+from typing import List, Sequence, Set
 
 import numpy as np
 
-from .geometry import Pose2D, Pose3D, quaternion_from_rpy, row, wrap_rows
-from .robot import BodyState, FleetState, RobotModel
-from .sensors.odometry import arc
+from .geometry import STANDSTILL, Pose2D, Pose3D, Twist2D, arc, quaternion_from_rpy, wrap_angle
+from .robot import BodyState, Pair, RobotModel, RobotState
 from .slice import Slice
 from .world import World
 
 HEIGHTS = (0.02, 0.10, 0.18)  # [m] at which obstacles are met: a Burger's bottom plate, middle, and lidar
 SKIN = 1e-6  # [m] kept free, so that rounding never puts a disc inside a wall
+
+
+class _Disc:
+    """What is kept of one robot."""
+
+    def __init__(self, model: RobotModel, pose: Pose2D) -> None:
+        self.model = model
+        self.wheels: Pair = (0.0, 0.0)  # angles [rad]
+        self.set_down(pose)
+
+    def set_down(self, pose: Pose2D) -> None:
+        """At rest at a pose."""
+        self.pose = pose
+        self.twist = STANDSTILL
+        self.spin((0.0, 0.0))
+        self.room = 0.0  # [m] that it may certainly travel before a wall has to be looked for
+        self.blocked = False
+
+    def spin(self, speeds: Pair) -> None:
+        """Wheel speeds [rad/s] from now on."""
+        left, right = self.spins = speeds
+        radius = self.model.wheel_radius
+        self.wish = Twist2D((left + right) * radius / 2.0, (right - left) * radius / self.model.wheel_separation)
 
 
 class Kinematics:
@@ -29,113 +51,113 @@ class Kinematics:
         cuts = [Slice(world, height) for height in HEIGHTS]
         self._segments = np.unique(np.concatenate([cut.segments for cut in cuts]), axis=0)
         self._circles = np.unique(np.concatenate([cut.circles for cut in cuts]), axis=0)
-        self._models: List[RobotModel] = []
-        self._poses = np.zeros((0, 3))
-        self._twists = np.zeros((0, 2))
-        self._spins = np.zeros((0, 2))  # wheel speeds [rad/s]
-        self._wheels = np.zeros((0, 2))  # wheel angles [rad]
-        self._slack = np.zeros(0)  # [m] that each robot may certainly travel before a wall has to be looked for
-        self._blocked: List[bool] = []
+        self._discs: List[_Disc] = []
+        self._apart = 0.0  # [m] that any two robots may certainly travel, both together, before they meet
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float = 0.0) -> int:
         """Put a robot down; torque is of no account here. Returns its index."""
-        self._models.append(model)
-        self._poses = np.vstack([self._poses, row(world_from_footprint)])
-        self._twists, self._spins, self._wheels = (
-            np.vstack([array, np.zeros(2)]) for array in (self._twists, self._spins, self._wheels))
-        self._slack = np.append(self._slack, 0.0)
-        self._blocked.append(False)
-        return len(self._models) - 1
+        self._discs.append(_Disc(model, world_from_footprint))
+        self._apart = 0.0
+        return len(self._discs) - 1
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Set a robot down at a pose, at rest; its wheels keep their angles."""
-        self._poses, self._twists, self._spins = self._poses.copy(), self._twists.copy(), self._spins.copy()
-        self._poses[robot] = row(world_from_footprint)
-        self._twists[robot] = self._spins[robot] = 0.0
-        self._slack[robot] = 0.0
+        self._discs[robot].set_down(world_from_footprint)
+        self._apart = 0.0
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
         """All robots set down anew at their poses, wheels at angle zero."""
-        for robot, pose in enumerate(poses):
-            self.place(robot, pose)
-        self._wheels = np.zeros_like(self._wheels)
+        self._discs = [_Disc(disc.model, pose) for disc, pose in zip(self._discs, poses)]
+        self._apart = 0.0
 
-    def drive(self, wheel_speeds: np.ndarray) -> None:
-        """Speeds (n, 2) [rad/s] of the left and right wheels from the next step on."""
-        self._spins = wheel_speeds
+    def drive(self, robot: int, wheel_speeds: Pair) -> None:
+        """Speeds [rad/s] of the left and right wheel from the next step on."""
+        self._discs[robot].spin(wheel_speeds)
 
     def step(self) -> None:
-        """Advance every robot by one step."""
-        dt, model = self._dt, self._models[0]
-        rim = self._spins * model.wheel_radius
-        forward, turn = (rim[:, 0] + rim[:, 1]) / 2.0, (rim[:, 1] - rim[:, 0]) / model.wheel_separation
-        move = arc(self._poses[:, 2], forward * dt, turn * dt)
-        share = self._free_share(move)
-        self._poses = np.concatenate([
-            self._poses[:, :2] + move * share[:, None], wrap_rows(self._poses[:, 2] + turn * dt)[:, None]], axis=1)
-        self._wheels = self._wheels + self._spins * dt
-        self._twists = np.stack([forward * share, turn], axis=1)
+        """Advance every robot by one step, one after the other, each against where the others then are."""
+        dt = self._dt
+        crowd = self._crowd()
+        for i, it in enumerate(self._discs):
+            v, w = it.wish.v, it.wish.w
+            it.wheels = it.wheels[0] + it.spins[0] * dt, it.wheels[1] + it.spins[1] * dt
+            x, y, yaw = it.pose.x, it.pose.y, it.pose.yaw
+            share = 1.0
+            if v:
+                dx, dy = arc(yaw, v * dt, w * dt)
+                it.room -= abs(v * dt)  # no chord is longer than its arc
+                if it.room < 0.0 or i in crowd:
+                    share = self._free_share(i, np.array([dx, dy]), i in crowd)
+                x, y = x + share * dx, y + share * dy
+            it.pose = Pose2D(x, y, wrap_angle(yaw + w * dt))
+            it.twist = it.wish if share == 1.0 else Twist2D(v * share, w)
+            it.blocked = share < 1.0
 
-    def _free_share(self, move: np.ndarray) -> np.ndarray:
-        """How much of each displacement (n, 2) [m] is free: shares (n,) from 0 to 1."""
-        share = np.ones(len(move))
-        self._blocked = [False] * len(move)
-        if not move.any():
-            return share
-        length = np.hypot(move[:, 0], move[:, 1])
-        self._slack -= length
-        for i in np.flatnonzero((self._slack < 0.0) & (length > 0.0)):
-            share[i] = self._share_against_walls(int(i), move[i], float(length[i]))
-        if len(move) > 1:
-            self._stop_short_of_robots(move, length, share)
-        self._blocked = (share < 1.0).tolist()
+    def _crowd(self) -> Set[int]:
+        """The robots that may meet another one in this step."""
+        if len(self._discs) == 1:
+            return set()
+        longest = max(abs(it.wish.v) for it in self._discs) * self._dt
+        self._apart -= 2.0 * longest
+        if self._apart >= 0.0:
+            return set()
+        centres = np.array([(it.pose.x, it.pose.y) for it in self._discs])
+        between = np.hypot(centres[:, 0:1] - centres[:, 0], centres[:, 1:2] - centres[:, 1])
+        np.fill_diagonal(between, np.inf)
+        free = between - 2.0 * (self._radius + longest + SKIN)
+        self._apart = float(free.min())
+        return set(np.flatnonzero((free < 0.0).any(axis=1)).tolist())
+
+    def _free_share(self, i: int, move: np.ndarray, crowded: bool) -> float:
+        """How much of a robot's displacement (2,) [m] is free, from 0 to 1."""
+        it, length = self._discs[i], math.hypot(*move)
+        centre = np.array([it.pose.x, it.pose.y])
+        share = self._share_against_walls(it, centre, move, length) if it.room < 0.0 else 1.0
+        if crowded:
+            others = self._others(i)
+            rings = np.column_stack([others, np.full(len(others), 2.0 * self._radius + SKIN)])
+            share = min(share, _short_of(_share_to_circles(centre, move, rings), length))
         return share
 
-    def _share_against_walls(self, i: int, move: np.ndarray, length: float) -> float:
-        """The free share against walls for one robot; renews its slack."""
-        start = self._poses[i, :2]
-        gap = self._room(start) - SKIN
-        self._slack[i] = gap - length
+    def _share_against_walls(self, it: _Disc, centre: np.ndarray, move: np.ndarray, length: float) -> float:
+        """The share that is free of walls; renews the robot's room."""
+        gap = self._gap(centre) - SKIN
+        it.room = gap - length  # what is left of it after this step
         if gap >= length:
             return 1.0
         rounds = np.concatenate([self._circles + [0.0, 0.0, self._radius], _ends(self._segments, self._radius)])
-        free = min(_share_to_circles(start, move, rounds), _share_to_sides(start, move, self._segments, self._radius))
+        free = min(_share_to_circles(centre, move, rounds),
+                   _share_to_sides(centre, move, self._segments, self._radius))
         return _short_of(free, length)
 
-    def _room(self, centre: np.ndarray) -> float:
+    def _gap(self, centre: np.ndarray) -> float:
         """How far [m] a disc at a point (2,) is from the nearest wall; negative where it is in one."""
         walls = np.concatenate([_to_segments(centre, self._segments),
                                 np.hypot(*(self._circles[:, :2] - centre).T) - self._circles[:, 2], [np.inf]])
         return float(walls.min()) - self._radius
 
-    def _stop_short_of_robots(self, move: np.ndarray, length: np.ndarray, share: np.ndarray) -> None:
-        """Cut shares so that no two robots meet; one after the other, each against where the others then are."""
-        centres = self._poses[:, :2].copy()
-        apart = np.hypot(centres[:, 0:1] - centres[:, 0], centres[:, 1:2] - centres[:, 1])
-        np.fill_diagonal(apart, np.inf)
-        near = apart < 2.0 * (self._radius + length.max())
-        for i in range(len(move)):
-            if near[i].any() and length[i] > 0.0:
-                others = np.column_stack([centres[near[i]], np.full(near[i].sum(), 2.0 * self._radius + SKIN)])
-                share[i] = min(share[i], _short_of(_share_to_circles(centres[i], move[i], others), length[i]))
-            centres[i] += share[i] * move[i]
+    def _others(self, i: int) -> np.ndarray:
+        """Where the other robots are (n - 1, 2) [m]."""
+        return np.array([(it.pose.x, it.pose.y) for k, it in enumerate(self._discs) if k != i]).reshape(-1, 2)
 
-    def state(self) -> FleetState:
-        """All robots as of the last step."""
-        return FleetState(self._poses, self._twists, self._wheels, self._spins)
+    def state(self, robot: int) -> RobotState:
+        """One robot as of the last step."""
+        it = self._discs[robot]
+        return RobotState(it.pose, it.twist, it.wheels, it.spins)
 
     def body(self, robot: int) -> BodyState:
         """One robot's base in space as of the last step."""
-        (x, y, yaw), (v, w) = self._poses[robot].tolist(), self._twists[robot].tolist()
-        height = self._models[robot].footprint_from_base.position[2]
-        pose = Pose3D((x, y, height), quaternion_from_rpy(0.0, 0.0, yaw))
+        it = self._discs[robot]
+        (x, y, yaw), (v, w) = (it.pose.x, it.pose.y, it.pose.yaw), (it.twist.v, it.twist.w)
+        pose = Pose3D((x, y, it.model.footprint_from_base.position[2]), quaternion_from_rpy(0.0, 0.0, yaw))
         return BodyState(pose, (v * math.cos(yaw), v * math.sin(yaw), 0.0), (0.0, 0.0, w))
 
     def touching(self, robot: int) -> bool:
         """Whether something stopped the robot in the last step, or it stands in a wall or another robot."""
-        centre = self._poses[robot, :2]
-        others = np.hypot(*(np.delete(self._poses[:, :2], robot, axis=0) - centre).T)
-        return self._blocked[robot] or self._room(centre) < 0.0 or bool((others < 2.0 * self._radius).any())
+        it = self._discs[robot]
+        centre = np.array([it.pose.x, it.pose.y])
+        near = np.hypot(*(self._others(robot) - centre).T) < 2.0 * self._radius
+        return it.blocked or self._gap(centre) < 0.0 or bool(near.any())
 
     def close(self) -> None:
         """Nothing to give back."""
@@ -189,7 +211,8 @@ def _share_to_sides(start: np.ndarray, move: np.ndarray, segments: np.ndarray, r
     approach = -(normal @ move) * side
     nearing = approach > 0.0
     share = np.full(len(segments), 1.0)
-    share[nearing] = np.maximum((np.abs(away[nearing]) - radius) / approach[nearing], 0.0)
+    with np.errstate(over="ignore"):  # hardly nearing: never met
+        share[nearing] = np.maximum((np.abs(away[nearing]) - radius) / approach[nearing], 0.0)
     share = np.minimum(share, 1.0)
     touch = ((offset + share[:, None] * move) * along).sum(axis=1)
     met = (share < 1.0) & (touch >= 0.0) & (touch <= length)

@@ -9,8 +9,8 @@ import numpy as np
 import pybullet
 
 from .errors import RobotModelError
-from .geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Vector3, compose3, lifted, yaw_of
-from .robot import CASTER_PREFIX, WHEEL_JOINTS, BodyState, FleetState, RobotModel
+from .geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Twist2D, Vector3, compose3, lifted, yaw_of
+from .robot import CASTER_PREFIX, WHEEL_JOINTS, BodyState, Pair, RobotModel, RobotState
 from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
 
 WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits; rays see the world only, never the robot itself
@@ -27,7 +27,7 @@ class _Body:
         self.wheels = wheels
         self.model = model
         self.forces = [torque, torque]
-        self.targets = (0.0, 0.0)
+        self.targets: Pair = (0.0, 0.0)
         self.resting_steps = 0
         self.parked = False
 
@@ -113,13 +113,13 @@ class Physics:
         self._set_motors(it)
         self._unpark(it)
 
-    def drive(self, wheel_speeds: np.ndarray) -> None:
-        """Target speeds (n, 2) [rad/s] of the left and right wheel motors from the next step on."""
-        for it, (left, right) in zip(self._robots, wheel_speeds.tolist()):
-            if (left, right) != it.targets:
-                it.targets = (left, right)
-                self._set_motors(it)
-                self._unpark(it)
+    def drive(self, robot: int, wheel_speeds: Pair) -> None:
+        """Target speeds [rad/s] of the left and right wheel motor from the next step on."""
+        it = self._robots[robot]
+        if wheel_speeds != it.targets:
+            it.targets = wheel_speeds
+            self._set_motors(it)
+            self._unpark(it)
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
         """All robots set down anew at their poses, wheels at angle zero, in a Bullet world made from nothing.
@@ -167,19 +167,15 @@ class Physics:
         for state in states:
             pybullet.changeDynamics(it.body, -1, activationState=state, physicsClientId=self._client)
 
-    def state(self) -> FleetState:
-        """All robots as of the last step."""
-        n = len(self._robots)
-        poses, twists, wheels = np.empty((n, 3)), np.empty((n, 2)), np.empty((n, 2, 2))
-        for i, it in enumerate(self._robots):
-            (x, y, _), orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
-            (vx, vy, _), (_, _, spin) = pybullet.getBaseVelocity(it.body, physicsClientId=self._client)
-            left, right = pybullet.getJointStates(it.body, it.wheels, physicsClientId=self._client)
-            yaw = yaw_of(orientation)
-            poses[i] = x, y, yaw
-            twists[i] = math.cos(yaw) * vx + math.sin(yaw) * vy, spin
-            wheels[i] = left[:2], right[:2]
-        return FleetState(poses, twists, wheels[:, :, 0], wheels[:, :, 1])
+    def state(self, robot: int) -> RobotState:
+        """One robot as of the last step."""
+        it = self._robots[robot]
+        (x, y, _), orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
+        (vx, vy, _), (_, _, spin) = pybullet.getBaseVelocity(it.body, physicsClientId=self._client)
+        left, right = pybullet.getJointStates(it.body, it.wheels, physicsClientId=self._client)
+        yaw = yaw_of(orientation)
+        return RobotState(Pose2D(x, y, yaw), Twist2D(math.cos(yaw) * vx + math.sin(yaw) * vy, spin),
+                          (left[0], right[0]), (left[1], right[1]))
 
     def body(self, robot: int) -> BodyState:
         """One robot's base in space as of the last step."""

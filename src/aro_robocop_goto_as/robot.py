@@ -4,16 +4,17 @@ import copy
 import math
 import os
 from dataclasses import dataclass
-from typing import Dict, List
+from typing import Dict, List, NamedTuple, Tuple
 
-import numpy as np
 from lxml import etree
 
 from .errors import RobotModelError
-from .geometry import Pose2D, Pose3D, Vector3, compose3
+from .geometry import Pose2D, Pose3D, Twist2D, Vector3, compose3
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"
+
+Pair = Tuple[float, float]  # of the left and the right wheel
 
 
 @dataclass(frozen=True)
@@ -30,14 +31,13 @@ class RobotModel:
     base_from_imu: Pose3D
 
 
-@dataclass(frozen=True)
-class FleetState:
-    """n robots after one step, seen from above; base is base_footprint."""
+class RobotState(NamedTuple):
+    """A robot after one step, seen from above; base is base_footprint. A tuple: one is made in every step."""
 
-    poses: np.ndarray  # world_from_base (n, 3) [m, m, rad]
-    twists: np.ndarray  # true velocity in base (n, 2): forward [m/s], counter-clockwise [rad/s]
-    wheel_angles: np.ndarray  # (n, 2) left, right [rad], never wrapped
-    wheel_velocities: np.ndarray  # (n, 2) [rad/s]
+    world_from_base: Pose2D
+    twist: Twist2D  # true velocity in base
+    wheel_angles: Pair  # left, right [rad], never wrapped
+    wheel_velocities: Pair  # left, right [rad/s]
 
 
 @dataclass(frozen=True)

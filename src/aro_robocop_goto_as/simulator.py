@@ -7,11 +7,11 @@ import numpy as np
 
 from . import drive
 from .drive import DriveLimits
-from .geometry import Pose2D, Twist2D, compose, compose_rows, from_row, inverse, inverse_rows, row
+from .geometry import Pose2D, Twist2D, compose, inverse
 from .kinematics import Kinematics
 from .params import SimParams
 from .physics import Physics
-from .robot import BodyState, FleetState, RobotModel
+from .robot import BodyState, RobotModel, RobotState
 from .sensors import imu as imu_sensor
 from .sensors import odometry
 from .sensors.imu import ImuSample
@@ -41,7 +41,7 @@ class RobotSpec:
 class Observations:
     """What one step brought, all of it at one simulated time; None = not due on this step, or not wanted.
 
-    Arrays hold all n robots in order; `scans` and `imus` only those that were wanted, by index.
+    Sequences hold all robots in order; `scans` and `imus` only those that were wanted, by index.
     """
 
     stamp_ns: int
@@ -49,9 +49,9 @@ class Observations:
     control: bool
     scans: Mapping[int, np.ndarray]  # ranges (scan_samples,) [m] in base_scan
     imus: Mapping[int, ImuSample]
-    odometry: Optional[Odometry] = None
-    joints: Optional[FleetState] = None
-    ground_truth: Optional[FleetState] = None
+    odometry: Optional[Sequence[Odometry]] = None
+    joints: Optional[Sequence[RobotState]] = None
+    ground_truth: Optional[Sequence[RobotState]] = None
 
 
 class Simulator:
@@ -77,11 +77,19 @@ class Simulator:
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
         self._walls = Slice(world, self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2])
-        self._base_from_scan = row(self.model.base_from_scan.on_plane())
+        self._base_from_scan = self.model.base_from_scan.on_plane()
         self._schedule = self._make_schedule()
-        self._drive = drive.standing(len(self.robots))
-        self._odometry = odometry.starting(self._physics.state().wheel_angles)
-        self._map_from_odom = np.array([row(robot.spawn) for robot in self.robots])
+        self._start()
+
+    def _start(self) -> None:
+        """All robots stand at their spawn poses, odometry at zero."""
+        self._drives = [drive.STANDING for _ in self.robots]
+        self._odometry = [odometry.starting(state.wheel_angles) for state in self._states()]
+        self._map_from_odom = [robot.spawn for robot in self.robots]
+
+    def _states(self) -> List[RobotState]:
+        """All robots as of the last step."""
+        return [self._physics.state(robot) for robot in range(len(self.robots))]
 
     def _make_schedule(self) -> List[FrozenSet[str]]:
         """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
@@ -107,47 +115,54 @@ class Simulator:
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
         """Take a velocity command; CommandError on NaN or infinity leaves the one before in force."""
-        self._drive = drive.accept(self._drive, robot, twist, self.time, self._limits)
+        self._drives[robot] = drive.accept(self._drives[robot], twist, self.time, self._limits)
 
     def step(self, wanted: Wanted) -> Optional[Observations]:
         """Advance by one physics step, then measure what is due and wanted; None when nothing is due."""
         due_now = self._schedule[self.steps % self.params.physics_rate]
         imus = wanted.get(IMU, ()) if IMU in due_now else ()
         before = {robot: self._physics.body(robot) for robot in imus}
-        moving = drive.advance(self._drive, self.time, self.dt, self._limits)
-        if moving is not self._drive:
-            self._drive = moving
-            self._physics.drive(drive.wheel_speeds(moving.velocity, self.model.wheel_radius,
-                                                   self.model.wheel_separation))
+        self._turn_wheels()
         self._physics.step()
         self.steps += 1
         if not due_now or (due_now == ONLY_IMU and not imus):
             return None
         # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
         asked = {sensor for sensor in (SCAN, JOINTS, TRUTH) if sensor in due_now and wanted.get(sensor)}
-        state = self._physics.state() if asked or ODOM in due_now else None
+        states = self._states() if asked or ODOM in due_now else None
         return Observations(
             self.stamp_ns, CLOCK in due_now, CONTROL in due_now,
-            scans=self._scan(state, wanted[SCAN]) if state is not None and SCAN in asked else {},
+            scans=self._scan(states, wanted[SCAN]) if states is not None and SCAN in asked else {},
             imus={robot: self._imu(robot, body) for robot, body in before.items()},
-            odometry=self._update_odometry(state) if state is not None and ODOM in due_now else None,
-            joints=state if JOINTS in asked else None,
-            ground_truth=state if TRUTH in asked else None)
+            odometry=self._update_odometry(states) if states is not None and ODOM in due_now else None,
+            joints=states if JOINTS in asked else None,
+            ground_truth=states if TRUTH in asked else None)
+
+    def _turn_wheels(self) -> None:
+        """Each robot's wheels as its command, its limits and the time-out have them."""
+        now = self.time
+        for robot, before in enumerate(self._drives):
+            after = drive.advance(before, now, self.dt, self._limits)
+            if after is not before:
+                self._drives[robot] = after
+                self._physics.drive(robot, drive.wheel_speeds(after.velocity, self.model.wheel_radius,
+                                                              self.model.wheel_separation))
 
     def _rng(self, sensor: int) -> np.random.Generator:
         """Noise of one sensor on this step: a function of seed, sensor and steps since the reset, whoever listens."""
         step = self.steps - self._noise_origin
         return np.random.Generator(np.random.Philox(key=[self.seed, sensor], counter=[0, 0, 0, step]))
 
-    def _scan(self, state: FleetState, robots: Sequence[int]) -> Dict[int, np.ndarray]:
-        distances = self._distances(state, robots)
+    def _scan(self, states: Sequence[RobotState], robots: Sequence[int]) -> Dict[int, np.ndarray]:
+        distances = self._distances(states, robots)
         # Drawn for all robots, so that one robot's noise does not depend on whether another is listened to.
         noise = self._rng(0).standard_normal((len(self.robots), self.params.scan_samples))
         return dict(zip(robots, self.lidar.measure(distances, noise[list(robots)])))
 
-    def _distances(self, state: FleetState, robots: Sequence[int]) -> np.ndarray:
+    def _distances(self, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
         """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
-        world_from_scans = compose_rows(state.poses, self._base_from_scan)
+        scans = [compose(state.world_from_base, self._base_from_scan) for state in states]
+        world_from_scans = np.array([(pose.x, pose.y, pose.yaw) for pose in scans])
         return self.lidar.distances(world_from_scans[list(robots)], self._walls, self._others(world_from_scans, robots))
 
     def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
@@ -160,13 +175,16 @@ class Simulator:
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""
-        return self._distances(self._physics.state(), [robot])[0]
+        return self._distances(self._states(), [robot])[0]
 
-    def _update_odometry(self, state: FleetState) -> Odometry:
-        self._odometry = odometry.integrate(self._odometry, state.wheel_angles, 1.0 / self.params.odom_rate,
-                                            self.model.wheel_radius, self.model.wheel_separation)
+    def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
+        dt, model = 1.0 / self.params.odom_rate, self.model
+        self._odometry = [
+            odometry.integrate(before, state.wheel_angles, dt, model.wheel_radius, model.wheel_separation)
+            for before, state in zip(self._odometry, states)]
         if self.params.localization == "truth":
-            self._map_from_odom = compose_rows(state.poses, inverse_rows(self._odometry.odom_from_base))
+            self._map_from_odom = [compose(state.world_from_base, inverse(it.odom_from_base))
+                                   for state, it in zip(states, self._odometry)]
         return self._odometry
 
     def _imu(self, robot: int, before: BodyState) -> ImuSample:
@@ -176,16 +194,15 @@ class Simulator:
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Where the odometry's origin is in the map."""
-        return from_row(self._map_from_odom[robot])
+        return self._map_from_odom[robot]
 
     def world_from_base(self, robot: int = 0) -> Pose2D:
         """The robot's true pose as of the last step."""
-        return from_row(self._physics.state().poses[robot])
+        return self._physics.state(robot).world_from_base
 
     def velocity(self, robot: int = 0) -> Twist2D:
         """The robot's true velocity as of the last step."""
-        v, w = self._physics.state().twists[robot]
-        return Twist2D(float(v), float(w))
+        return self._physics.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
         """Whether the robot touches anything but the floor."""
@@ -198,9 +215,8 @@ class Simulator:
     def place(self, world_from_base: Pose2D, robot: int = 0) -> None:
         """Set a robot down elsewhere, at rest; odometry goes on, so map -> odom takes up the jump."""
         self._physics.place(robot, world_from_base)
-        self._drive = drive.stopped(self._drive, robot)
-        odom_from_base = from_row(self._odometry.odom_from_base[robot])
-        self._map_from_odom[robot] = row(compose(world_from_base, inverse(odom_from_base)))
+        self._drives[robot] = drive.STANDING
+        self._map_from_odom[robot] = compose(world_from_base, inverse(self._odometry[robot].odom_from_base))
 
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
         """Robots to their spawn poses, odometry to zero, noise from its start, of `seed` if one is given.
@@ -208,9 +224,7 @@ class Simulator:
         Simulated time goes on, unless `restart_time` sets it back to zero.
         """
         self._physics.reset([robot.spawn for robot in self.robots])
-        self._map_from_odom = np.array([row(robot.spawn) for robot in self.robots])
-        self._drive = drive.standing(len(self.robots))
-        self._odometry = odometry.starting(self._physics.state().wheel_angles)
+        self._start()
         self.seed = self.seed if seed is None else seed
         self.steps = 0 if restart_time else self.steps
         self._noise_origin = self.steps

@@ -29,7 +29,8 @@ def _kinematics(model: RobotModel, world: World, *spawns: Pose2D, rate: int = 30
 
 
 def _drive(it: Kinematics, *velocities: "tuple[float, float]") -> None:
-    it.drive(wheel_speeds(np.array(velocities), 0.033, 0.16))
+    for robot, (v, w) in enumerate(velocities):
+        it.drive(robot, wheel_speeds(Twist2D(v, w), 0.033, 0.16))
 
 
 @given(st.floats(-0.3, 0.3), st.floats(-3.0, 3.0), st.integers(1, 100))
@@ -41,7 +42,7 @@ def test_without_obstacles_it_is_the_ideal_arc(burger: RobotModel, v: float, w: 
     t = steps / 30.0
     x, y = (v / w * math.sin(w * t), v / w * (1.0 - math.cos(w * t))) if abs(w) > 1e-2 else (v * t, 0.0)
     tolerance = 1e-9 if abs(w) > 1e-2 else 0.05
-    assert tuple(it.state().poses[0, :2]) == pytest.approx((x, y), abs=tolerance)
+    assert (it.state(0).world_from_base.x, it.state(0).world_from_base.y) == pytest.approx((x, y), abs=tolerance)
 
 
 @pytest.mark.parametrize("v", [0.1, 1.0, 30.0, 1e4])
@@ -51,8 +52,8 @@ def test_a_wall_stops_it_at_any_speed_with_its_rim_at_the_wall(burger: RobotMode
     _drive(it, (v, 0.0))
     for _ in range(int(2.5 / v * rate) + 2):
         it.step()
-    assert it.state().poses[0, 0] == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
-    assert it.touching(0) and it.state().twists[0, 0] == pytest.approx(0.0, abs=1e-3)
+    assert it.state(0).world_from_base.x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
+    assert it.touching(0) and it.state(0).twist.v == pytest.approx(0.0, abs=1e-3)
 
 
 def test_it_can_back_out_and_turn_at_a_wall(burger: RobotModel) -> None:
@@ -63,11 +64,11 @@ def test_it_can_back_out_and_turn_at_a_wall(burger: RobotModel) -> None:
     _drive(it, (0.0, 1.0))
     for _ in range(30):
         it.step()
-    assert it.state().poses[0, 2] == pytest.approx(1.0)
+    assert it.state(0).world_from_base.yaw == pytest.approx(1.0)
     _drive(it, (-1.0, 0.0))
     for _ in range(30):
         it.step()
-    assert it.state().poses[0, 0] == pytest.approx(2.0 - 0.01 - RADIUS - math.cos(1.0), abs=1e-3)
+    assert it.state(0).world_from_base.x == pytest.approx(2.0 - 0.01 - RADIUS - math.cos(1.0), abs=1e-3)
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(0.01, 300.0), st.floats(-5.0, 5.0))
@@ -77,7 +78,7 @@ def test_nothing_is_ever_entered(burger: RobotModel, yaw: float, v: float, w: fl
     _drive(it, (v, w))
     for _ in range(40):
         it.step()
-        x, y, _ = it.state().poses[0]
+        x, y = it.state(0).world_from_base.x, it.state(0).world_from_base.y
         assert max(abs(x), abs(y)) < 1.85 - RADIUS + 1e-9
         for cx in (-0.6, 0.6):
             for cy in (-0.6, 0.6):
@@ -92,7 +93,8 @@ def test_robots_bump_into_each_other_and_never_overlap(
     _drive(it, *velocities)
     for _ in range(60):
         it.step()
-        places = it.state().poses[:, :2]
+        poses = [it.state(robot).world_from_base for robot in range(4)]
+        places = np.array([(pose.x, pose.y) for pose in poses])
         apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(4)
         assert apart.min() > 2.0 * RADIUS - 1e-9
 
@@ -104,7 +106,7 @@ def test_wheels_that_slip_at_a_wall_count_on(simulator: Callable[..., Simulator]
         seen = sim.step({})
     assert seen is not None and seen.odometry is not None
     assert sim.touching()
-    assert seen.odometry.odom_from_base[0, 0] > sim.world_from_base().x - 1.6 + 0.1
+    assert seen.odometry[0].odom_from_base.x > sim.world_from_base().x - 1.6 + 0.1
 
 
 @pytest.mark.parametrize("drive", ["kinematic", "wheels"])

@@ -58,14 +58,14 @@ def test_noise_has_the_sigma_that_was_asked_for_and_no_bias() -> None:
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
 def test_odometry_of_constant_wheel_speeds_lies_on_the_ideal_arc(v: float, w: float, updates: int) -> None:
     left, right = (v - w * SEPARATION / 2) / RADIUS, (v + w * SEPARATION / 2) / RADIUS
-    odometry, dt = starting(np.zeros((1, 2))), 1.0 / 30.0
+    odometry, dt = starting((0.0, 0.0)), 1.0 / 30.0
     for i in range(1, updates + 1):
-        odometry = integrate(odometry, np.array([[left * i * dt, right * i * dt]]), dt, RADIUS, SEPARATION)
+        odometry = integrate(odometry, (left * i * dt, right * i * dt), dt, RADIUS, SEPARATION)
     t = updates * dt
     x, y = (v / w * math.sin(w * t), v / w * (1 - math.cos(w * t))) if abs(w) > 1e-3 else (None, None)
     if x is not None:
-        assert tuple(odometry.odom_from_base[0, :2]) == pytest.approx((x, y), abs=1e-6)
-    assert tuple(odometry.twist[0]) == pytest.approx((v, w), abs=1e-6)
+        assert (odometry.odom_from_base.x, odometry.odom_from_base.y) == pytest.approx((x, y), abs=1e-6)
+    assert (odometry.twist.v, odometry.twist.w) == pytest.approx((v, w), abs=1e-6)
 
 
 def _state(velocity: "tuple[float, float, float]", spin: float) -> BodyState:
@@ -86,4 +86,4 @@ def test_an_imu_off_the_centre_feels_the_acceleration_of_its_own_place() -> None
 
 
 def test_odometry_starts_at_zero() -> None:
-    assert not starting(np.array([[3.0, 4.0]])).odom_from_base.any()
+    assert starting((3.0, 4.0)).odom_from_base == Pose2D()

@@ -134,7 +134,7 @@ def test_reset_puts_the_robot_back_and_lets_time_go_on(simulator: Make) -> None:
     assert observed is not None and observed.stamp_ns > before
     assert (truth.x, truth.y, truth.yaw) == pytest.approx((-0.7, 0.0, 0.0), abs=1e-4)
     assert observed.odometry is not None
-    assert observed.odometry.odom_from_base[0, 0] == pytest.approx(0.0, abs=1e-4)
+    assert observed.odometry[0].odom_from_base.x == pytest.approx(0.0, abs=1e-4)
 
 
 def test_placing_the_robot_moves_map_from_odom_and_not_the_odometry(simulator: Make) -> None:
@@ -154,7 +154,7 @@ def test_encoders_and_ground_truth_differ_when_the_wheels_slip(simulator: Make) 
         seen = sim.step(NOTHING)
     assert seen is not None and seen.odometry is not None
     travelled = sim.world_from_base().x - 1.7
-    assert seen.odometry.odom_from_base[0, 0] > travelled + 0.05
+    assert seen.odometry[0].odom_from_base.x > travelled + 0.05
 
 
 def test_a_bad_command_leaves_the_good_one_in_force(simulator: Make) -> None:

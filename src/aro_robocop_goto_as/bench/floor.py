@@ -13,7 +13,7 @@ import numpy as np
 import rospkg
 
 from .. import drive
-from ..geometry import Pose2D, Twist2D, compose_rows, row
+from ..geometry import Pose2D, Twist2D, compose
 from ..kinematics import Kinematics
 from ..nodes import convert
 from ..params import SimParams, from_dict
@@ -44,8 +44,10 @@ class Bare:
                        else Kinematics(world, p.physics_rate, p.footprint_radius))
         for robot in robots_from(p, world, model):
             self.engine.add_robot(robot.model, robot.spawn, p.wheel_torque)
-        velocity = np.array([[LINEAR, ANGULAR]] * case.robots)
-        self.engine.drive(drive.wheel_speeds(velocity, model.wheel_radius, model.wheel_separation))
+        self.robots = range(case.robots)
+        for robot in self.robots:
+            self.engine.drive(robot, drive.wheel_speeds(Twist2D(LINEAR, ANGULAR), model.wheel_radius,
+                                                        model.wheel_separation))
         spec = LidarSpec(p.scan_angle_min, p.scan_angle_max, p.scan_samples, p.scan_range_min, p.scan_range_max, 0.0)
         self._prepare_scans(world, model, Lidar(spec))
         stamp = convert.to_time(1)
@@ -55,16 +57,20 @@ class Bare:
     def _prepare_scans(self, world: World, model: RobotModel, lidar: Lidar) -> None:
         self._lidar = lidar
         self._walls = Slice(world, model.footprint_from_base.position[2] + model.base_from_scan.position[2])
-        self._base_from_scan = row(model.base_from_scan.on_plane())
+        self._base_from_scan = model.base_from_scan.on_plane()
         # The others as they stand at the start: to gather them for each scan is not the rays' own work.
-        poses = compose_rows(self.engine.state().poses, self._base_from_scan)
+        poses = self._scanners()
         circles = np.column_stack([poses[:, :2], np.full(len(poses), LIDAR_RADIUS)])
         others = [np.delete(circles, robot, axis=0) for robot in range(len(poses))]
         self._others = np.stack(others) if len(poses) > 1 else None
 
+    def _scanners(self) -> np.ndarray:
+        poses = [compose(self.engine.state(robot).world_from_base, self._base_from_scan) for robot in self.robots]
+        return np.array([(pose.x, pose.y, pose.yaw) for pose in poses])
+
     def distances(self) -> np.ndarray:
         """Scans of all robots (n, beams) [m] from where they are now."""
-        poses = compose_rows(self.engine.state().poses, self._base_from_scan)
+        poses = self._scanners()
         return self._lidar.distances(poses, self._walls, self._others)
 
 

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 
 from ..geometry import Pose2D, Twist2D, yaw_of
 from ..params import SimParams
-from ..robot import WHEEL_JOINTS
+from ..robot import WHEEL_JOINTS, Pair
 from ..sensors.imu import ImuSample
 from ..sensors.lidar import LidarSpec
 from ..simtime import NANOSECONDS
@@ -88,7 +88,7 @@ def to_scan(ranges: List[float], spec: LidarSpec, stamp: Time, frame: str) -> La
         range_min=spec.range_min, range_max=spec.range_max, ranges=ranges, intensities=[])
 
 
-def to_joint_state(angles: List[float], velocities: List[float], stamp: Time) -> JointState:
+def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
     """Wheel angles [rad] and speeds [rad/s], left then right."""
     return JointState(Header(0, stamp, ""), list(WHEEL_JOINTS), angles, velocities, [])
 

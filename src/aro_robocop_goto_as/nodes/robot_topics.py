@@ -10,7 +10,7 @@ from sensor_msgs.msg import Imu, JointState, LaserScan
 from aro_robocop_goto_as.msg import TickAnswer
 
 from .. import simulator
-from ..geometry import Pose2D, Twist2D, from_row
+from ..geometry import Pose2D, Twist2D
 from ..params import SimParams
 from ..sensors.lidar import LidarSpec
 from ..simulator import Observations
@@ -93,16 +93,16 @@ class RobotTopics:
         i = self.index
         if seen.ground_truth is not None and simulator.TRUTH in wanted:
             self.truth.publish(convert.to_odometry(
-                from_row(seen.ground_truth.poses[i]), Twist2D(*seen.ground_truth.twists[i].tolist()), stamp,
+                seen.ground_truth[i].world_from_base, seen.ground_truth[i].twist, stamp,
                 self.p.world_frame, self.base_frame, TRUTH_COVARIANCE))
         if i in seen.imus:
             self.imu.publish(convert.to_imu(seen.imus[i], stamp, self.imu_frame, self.p))
         if seen.joints is not None and simulator.JOINTS in wanted:
             self.joints.publish(convert.to_joint_state(
-                seen.joints.wheel_angles[i].tolist(), seen.joints.wheel_velocities[i].tolist(), stamp))
+                seen.joints[i].wheel_angles, seen.joints[i].wheel_velocities, stamp))
         if seen.odometry is not None and simulator.ODOM in wanted:
             self.odom.publish(convert.to_odometry(
-                from_row(seen.odometry.odom_from_base[i]), Twist2D(*seen.odometry.twist[i].tolist()), stamp,
+                seen.odometry[i].odom_from_base, seen.odometry[i].twist, stamp,
                 self.odom_frame, self.base_frame, ODOM_COVARIANCE))
         if i in seen.scans:
             self.scan.publish(convert.to_scan(seen.scans[i].tolist(), self.spec, stamp, self.scan_frame))
@@ -114,7 +114,7 @@ class RobotTopics:
         found = []
         if self.p.odom_tf:
             found.append(convert.to_transform(self.odom_frame, self.base_frame,
-                                              from_row(seen.odometry.odom_from_base[self.index]), stamp))
+                                              seen.odometry[self.index].odom_from_base, stamp))
         if self.p.localization == "truth":
             found.append(convert.to_transform(self.p.map_frame, self.odom_frame, map_from_odom, stamp))
         return found
