@@ -65,6 +65,8 @@ class Simulator:
         self.seed = params.seed
         self.steps = 0
         self._noise_origin = 0
+        self._noise = np.random.Generator(np.random.Philox(0))
+        self._noise_state = self._noise.bit_generator.state
         self.dt = 1.0 / params.physics_rate
         self.lidar = Lidar(LidarSpec(params.scan_angle_min, params.scan_angle_max, params.scan_samples,
                                      params.scan_range_min, params.scan_range_max, params.scan_noise))
@@ -151,7 +153,10 @@ class Simulator:
     def _rng(self, sensor: int) -> np.random.Generator:
         """Noise of one sensor on this step: a function of seed, sensor and steps since the reset, whoever listens."""
         step = self.steps - self._noise_origin
-        return np.random.Generator(np.random.Philox(key=[self.seed, sensor], counter=[0, 0, 0, step]))
+        # A new Philox would ask the system for entropy first, which costs more than the noise.
+        self._noise.bit_generator.state = {**self._noise_state, "state": {
+            "counter": np.array([0, 0, 0, step], np.uint64), "key": np.array([self.seed, sensor], np.uint64)}}
+        return self._noise
 
     def _scan(self, states: Sequence[RobotState], robots: Sequence[int]) -> Dict[int, np.ndarray]:
         distances = self._distances(states, robots)

@@ -15,6 +15,7 @@ from ..params import SimParams
 from ..sensors.lidar import LidarSpec
 from ..simulator import Observations
 from . import convert
+from .packed import PackedOdometry
 from .publishing import publisher
 
 OnCommand = Callable[[int, str, Twist2D], None]  # robot, sender, velocity
@@ -46,6 +47,8 @@ class RobotTopics:
         self.truth = publisher(self.topic("ground_truth_odom"), Odometry)
         self.odom_frame, self.base_frame = self.frame(p.odom_frame), self.frame(p.base_frame)
         self.scan_frame, self.imu_frame = self.frame(p.scan_frame), self.frame(p.imu_frame)
+        self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, ODOM_COVARIANCE)
+        self._truth_message = PackedOdometry(p.world_frame, self.base_frame, TRUTH_COVARIANCE)
         self._inputs: List[rospy.Subscriber] = []
         self._answers: Optional[rospy.Subscriber] = None
 
@@ -92,18 +95,16 @@ class RobotTopics:
         """Send what one step brought of this robot."""
         i = self.index
         if seen.ground_truth is not None and simulator.TRUTH in wanted:
-            self.truth.publish(convert.to_odometry(
-                seen.ground_truth[i].world_from_base, seen.ground_truth[i].twist, stamp,
-                self.p.world_frame, self.base_frame, TRUTH_COVARIANCE))
+            self.truth.publish(self._truth_message.update(
+                seen.ground_truth[i].world_from_base, seen.ground_truth[i].twist, stamp))
         if i in seen.imus:
             self.imu.publish(convert.to_imu(seen.imus[i], stamp, self.imu_frame, self.p))
         if seen.joints is not None and simulator.JOINTS in wanted:
             self.joints.publish(convert.to_joint_state(
                 seen.joints[i].wheel_angles, seen.joints[i].wheel_velocities, stamp))
         if seen.odometry is not None and simulator.ODOM in wanted:
-            self.odom.publish(convert.to_odometry(
-                seen.odometry[i].odom_from_base, seen.odometry[i].twist, stamp,
-                self.odom_frame, self.base_frame, ODOM_COVARIANCE))
+            self.odom.publish(self._odom_message.update(
+                seen.odometry[i].odom_from_base, seen.odometry[i].twist, stamp))
         if i in seen.scans:
             self.scan.publish(convert.to_scan(seen.scans[i].tolist(), self.spec, stamp, self.scan_frame))
 
