@@ -91,7 +91,7 @@ class SimParams:
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
     physics_rate: int = _param(240, low=1, high=10000)
     footprint_radius: float = _positive(0.105)
-    solver_iterations: int = _param(50, low=1, high=10000)
+    solver_iterations: int = _param(20, low=1, high=10000)
     wheel_torque: float = _positive(1.0)
     real_time_factor: float = _param(1.0, low=0.0, high=1e6)
     clock_rate: int = _param(60, low=1)
