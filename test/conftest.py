@@ -1,0 +1,6 @@
+"""For all tests: what they start can be interrupted, even where the shell that started the tests ignores it."""
+
+import signal
+
+# A shell without job control starts background jobs with SIGINT ignored, and ignored signals are inherited.
+signal.signal(signal.SIGINT, signal.default_int_handler)
