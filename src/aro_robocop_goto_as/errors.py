@@ -41,3 +41,9 @@ class BenchError(RobocopError):
     """A measurement can't be made."""
 
     code = "BENCH"
+
+
+class HostingError(RobocopError):
+    """Somebody's package can't be found, built or started."""
+
+    code = "HOSTING"

@@ -79,7 +79,7 @@ class SimParams:
     """Parameters of robocop_sim; config/sim.yaml says what each one means, in which unit and from which source."""
 
     world: str = "stage_4"
-    model: str = "turtlebot3_burger"
+    model: str = "burger"
     spawn: str = ""
     robots: str = ""
     seed: int = _param(1, low=1, high=2**31 - 1)
@@ -87,6 +87,7 @@ class SimParams:
     localization: str = _param("static", choices=("static", "truth"))
     odom_tf: bool = True
     ground_truth: bool = True
+    gazebo_services: bool = False
 
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
     physics_rate: int = _param(240, low=1, high=10000)

@@ -23,7 +23,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 
 @pytest.fixture(scope="session")
 def burger() -> RobotModel:
-    return load_robot(os.path.join(ROOT, "urdf", "turtlebot3_burger.urdf"))
+    return load_robot(os.path.join(ROOT, "urdf", "burger.urdf"))
 
 
 def world_named(name: str) -> World:

@@ -8,7 +8,7 @@ from support import ROOT
 from aro_robocop_goto_as.errors import RobotModelError
 from aro_robocop_goto_as.robot import RobotModel, load_robot
 
-URDF = Path(ROOT, "urdf", "turtlebot3_burger.urdf").read_text()
+URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
 
 
 def test_the_burger_has_the_makers_figures(burger: RobotModel) -> None:

@@ -5,7 +5,7 @@ from typing import List, Tuple
 
 import rospy
 from genpy import Time
-from geometry_msgs.msg import Point, Quaternion, Transform, TransformStamped, Twist, Vector3
+from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry as OdometryMsg
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Header
@@ -59,6 +59,11 @@ def from_twist_msg(twist: Twist) -> Twist2D:
 def to_twist_msg(twist: Twist2D) -> Twist:
     """A velocity as geometry_msgs/Twist."""
     return Twist(Vector3(twist.v, 0.0, 0.0), Vector3(0.0, 0.0, twist.w))
+
+
+def to_pose_msg(pose: Pose2D) -> Pose:
+    """A pose on the plane as geometry_msgs/Pose."""
+    return Pose(Point(pose.x, pose.y, 0.0), to_quaternion(pose.yaw))
 
 
 def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time) -> TransformStamped:

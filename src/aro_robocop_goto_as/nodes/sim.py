@@ -15,7 +15,7 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ..errors import CommandError, FrameError, RobocopError
+from ..errors import CommandError, FrameError, ParameterError, RobocopError
 from ..geometry import Pose2D, Twist2D, compose
 from ..lockstep import Lockstep
 from ..params import SimParams
@@ -73,6 +73,8 @@ class SimNode:
         for robot in self.robots:
             robot.listen(self._on_command, self._on_answer, self._on_place)
         self.control = SimControl(self)
+        if p.gazebo_services:
+            _serve_gazebo(self)
 
     # -- handed over from rospy's threads --
 
@@ -312,6 +314,16 @@ class SimNode:
         self.tf_static.publish(transforms)
 
 
+def _serve_gazebo(node: SimNode) -> None:
+    """Gazebo's services, whose types are there only where somebody has built them."""
+    try:
+        from .gazebo import GazeboServices
+    except ImportError as error:
+        advice = "link compat/gazebo_msgs into the workspace, and build"
+        raise ParameterError(f"gazebo_services: {error}; {advice}") from error
+    GazeboServices(node)
+
+
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: rospy runs on the wall clock here.
@@ -319,11 +331,12 @@ def main() -> None:
     try:
         p = params.load(SimParams)
         sim = build_simulator(p)
+        node = SimNode(p, sim)
     except RobocopError as error:
         rospy.logfatal("%s: %s", error.code, error)
         sys.exit(1)
     try:
-        SimNode(p, sim).run()
+        node.run()
     except rospy.ROSException as error:  # a topic closed under a publish: shutting down
         if not rospy.is_shutdown():
             raise

@@ -43,12 +43,13 @@ class SimControl:
         self.reconfigure = Server(SimConfig, self._on_reconfigure)
 
     def _on_pause(self, _request: TriggerRequest) -> TriggerResponse:
-        return TriggerResponse(True, self.node.in_loop(lambda: self._set_paused(True)))
+        return TriggerResponse(True, self.node.in_loop(lambda: self.set_paused(True)))
 
     def _on_unpause(self, _request: TriggerRequest) -> TriggerResponse:
-        return TriggerResponse(True, self.node.in_loop(lambda: self._set_paused(False)))
+        return TriggerResponse(True, self.node.in_loop(lambda: self.set_paused(False)))
 
-    def _set_paused(self, paused: bool) -> str:
+    def set_paused(self, paused: bool) -> str:
+        """Let simulated time stand, or go on."""
         node = self.node
         node.paused = paused
         node.pacer.restart(node.sim.time)
@@ -87,9 +88,10 @@ class SimControl:
     def _on_reset(self, request: ResetRequest) -> ResetResponse:
         if request.seed < 0:
             return ResetResponse(False, f"seed {request.seed}: expected a positive number, or 0 to keep the seed")
-        return ResetResponse(True, self.node.in_loop(lambda: self._reset(request.seed)))
+        return ResetResponse(True, self.node.in_loop(lambda: self.reset(request.seed)))
 
-    def _reset(self, seed: int) -> str:
+    def reset(self, seed: int) -> str:
+        """Robots to their spawn poses, odometry to zero, noise from its start; seed 0 keeps the seed."""
         node = self.node
         node.sim.reset(seed or None, restart_time=node.p.reset_time)
         node.held.clear()

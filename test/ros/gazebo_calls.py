@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Calls Gazebo's services on a running simulator as lab code does, and prints what they answer, as JSON."""
+
+import json
+
+import rospy
+from gazebo_msgs.msg import ModelState
+from gazebo_msgs.srv import DeleteLight, GetModelState, GetWorldProperties, SetModelState
+from geometry_msgs.msg import Point, Pose, Twist
+from std_srvs.srv import Empty
+
+ROBOT = "turtlebot3_burger"
+
+
+def call(name, kind, *arguments):
+    rospy.wait_for_service(f"/gazebo/{name}")
+    return rospy.ServiceProxy(f"/gazebo/{name}", kind)(*arguments)
+
+
+def sim_time():
+    return call("get_world_properties", GetWorldProperties).sim_time
+
+
+def position(name=ROBOT, relative_to="world"):
+    answer = call("get_model_state", GetModelState, name, relative_to)
+    return [answer.success, round(answer.pose.position.x, 3), round(answer.pose.position.y, 3), answer.status_message]
+
+
+def set_position(x, y, name=ROBOT, frame="world"):
+    state = ModelState(name, Pose(position=Point(x, y, 0.0)), Twist(), frame)
+    return call("set_model_state", SetModelState, state).success
+
+
+def main():
+    rospy.init_node("gazebo_calls")
+    said = {"light": call("delete_light", DeleteLight, "sun").success}
+    world = call("get_world_properties", GetWorldProperties)
+    said["models"] = world.model_names
+    call("pause_physics", Empty)
+    before = sim_time()
+    said["set"] = set_position(0.5, -0.25)
+    said["position"] = position()
+    said["relative"] = position(relative_to=ROBOT)
+    said["paused"] = sim_time() == before
+    call("unpause_physics", Empty)
+    while sim_time() == before:
+        rospy.rostime.wallsleep(0.01)
+    said["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT)
+    said["then"] = position()
+    said["unknown"] = position("table")
+    said["unknown set"] = set_position(0.0, 0.0, name="table")
+    for name in ("reset_world", "reset_simulation"):
+        call(name, Empty)
+        said[name] = position()
+    said["time"] = sim_time() >= before
+    print(json.dumps(said))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""Which package is at a path, and what of it is started; Gazebo's types are Gazebo's."""
+
+from pathlib import Path
+from typing import Dict
+
+import pytest
+from support import ROOT
+
+from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.hosting.main import launch_file, sort_arguments
+from aro_robocop_goto_as.hosting.package import find_package
+
+LAB = "aro_robocop_goto_as"
+MANIFEST = "<package><name> {} </name></package>"
+
+
+def _tree(top: Path, files: Dict[str, str]) -> Path:
+    for name, text in files.items():
+        (top / name).parent.mkdir(parents=True, exist_ok=True)
+        (top / name).write_text(text)
+    return top
+
+
+def test_a_package_is_found_in_its_folder_in_a_workspace_and_among_others_by_its_name(tmp_path: Path) -> None:
+    _tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name) for name in (LAB, "tools")})
+    _tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": "", "build/x/package.xml": "<package/>"})
+    for path in ("", "src", f"src/{LAB}"):
+        package = find_package(str(tmp_path / path))
+        assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
+        assert package.nodes == (("robocop_goto_as.py", "aro_robocop_goto_as_node"),)
+
+
+@pytest.mark.parametrize("files, expected", [
+    ({}, "no package.xml in it or below it"),
+    ({"package.xml": "<package>"}, "package.xml: no element found"),
+    ({"package.xml": "<package/>"}, "package.xml: expected a <name>"),
+    ({"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")}, "2 packages are there, give the"),
+    ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
+])
+def test_what_is_no_package_to_start_is_refused(tmp_path: Path, files: Dict[str, str], expected: str) -> None:
+    with pytest.raises(HostingError, match=expected):
+        find_package(str(_tree(tmp_path, files)))
+
+
+def test_a_path_that_is_not_there_is_refused() -> None:
+    with pytest.raises(HostingError, match="/no/such/place: expected the folder of a catkin package"):
+        find_package("/no/such/place")
+
+
+PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
+
+
+def test_the_labs_launch_file_comes_first_then_the_only_one_then_the_one_that_is_named(tmp_path: Path) -> None:
+    _tree(tmp_path, PAIR)
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "a.launch"
+    _tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "launch" / "robocop_goto_as.launch"
+    assert find_package(str(tmp_path), "a.launch").launch_file == tmp_path / "a.launch"
+    with pytest.raises(HostingError, match="no launch file 'b.launch'; there are: a.launch, robocop_goto_as.launch"):
+        find_package(str(tmp_path), "b.launch")
+
+
+def test_arguments_go_to_the_launch_file_that_knows_them_and_the_others_to_the_simulator(tmp_path: Path) -> None:
+    package = find_package(str(_tree(tmp_path, PAIR)))
+    assert sort_arguments(package, ["speed:=0.1", "seed:=7", "spawn:=1 2"]) == ({"speed": "0.1"},
+                                                                              "seed:=7 'spawn:=1 2'")
+
+
+@pytest.mark.parametrize("text, starts", [
+    ('<launch><include file="$(find aro_sim)/launch/robocop_sim.launch"/></launch>', True),
+    ("<launch/>", False),
+])
+def test_the_simulator_is_started_where_the_package_does_not(tmp_path: Path, text: str, starts: bool) -> None:
+    package = find_package(str(_tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": text})))
+    assert package.starts_simulator == starts
+    assert ("aro_sim" in launch_file(package, tmp_path, {}).read_text()) != starts
+
+
+def _md5sums() -> Dict[str, str]:
+    """File of a type -> its md5sum, as ROS's tools compute it."""
+    from genmsg import MsgContext, gentools, msg_loader
+
+    share = Path(ROOT, "compat", "gazebo_msgs")
+    search = {"gazebo_msgs": [str(share / "msg")],
+              **{name: [f"/usr/share/{name}/msg"] for name in ("geometry_msgs", "std_msgs")}}
+    found = {}
+    for path in sorted(share.glob("*/*.[ms][sr][gv]")):
+        context = MsgContext.create_default()
+        load = msg_loader.load_msg_from_file if path.suffix == ".msg" else msg_loader.load_srv_from_file
+        spec = load(context, str(path), f"gazebo_msgs/{path.stem}")
+        msg_loader.load_depends(context, spec, search)
+        found[path.name] = gentools.compute_md5(context, spec)
+    return found
+
+
+def test_gazebos_types_have_gazebos_md5sums() -> None:
+    assert _md5sums() == {
+        "ContactState.msg": "48c0ffb054b8c444f870cecea1ee50d9",
+        "ContactsState.msg": "acbcb1601a8e525bf72509f18e6f668d",
+        "DeleteLight.srv": "ae11ea8100d536d5b92c2b5917abf912",
+        "DeleteModel.srv": "9ce56b4e9e54616de25d796dc972a262",
+        "GetModelState.srv": "4c515e936d3319c9610c559c60bfc3d4",
+        "GetWorldProperties.srv": "36bb0f2eccf4d8be971410c22818ba3f",
+        "LinkStates.msg": "48c080191eb15c41858319b4d8a609c2",
+        "ModelState.msg": "9330fd35f2fcd82d457e54bd54e10593",
+        "ModelStates.msg": "48c080191eb15c41858319b4d8a609c2",
+        "SetModelState.srv": "5b3ab0281d4f5445def017e3a2e4a07b",
+        "SpawnModel.srv": "9ed9c82c96abe1a00c3e8cdaeee24413",
+    }
