@@ -191,8 +191,8 @@ def poses_at(ros, trajectory, seconds):
     return trajectory.read_text().splitlines()
 
 
-def start_metronome(ros, simulator):
-    controller = ros.script("metronome.py")
+def start_metronome(ros, simulator, rate=10):
+    controller = ros.script("metronome.py", f"_rate:={rate}")
     ros.wait(lambda: "/metronome" in status_of(ros).get("drivers", []), "it drives", (simulator, controller))
     return controller
 
@@ -215,6 +215,16 @@ def test_a_controller_that_knows_nothing_of_lockstep_gives_the_same_trajectory(r
     assert len(set(first)) > 290, "the robot did not move"
     for _ in range(2):
         assert run_metronome(ros) == (first, 0)
+
+
+@pytest.mark.parametrize("rate", [3, 4])
+def test_a_loop_whose_period_is_no_whole_number_of_ticks_costs_no_miss(ros, rate):
+    simulator = ros.simulator(cmd_vel_timeout=0.0)
+    step(ros, 1.0)
+    start_metronome(ros, simulator, rate)
+    step(ros, 30.0)
+    status = status_of(ros)
+    assert (status["lockstep_misses"], status["drivers"]) == (0, ["/metronome"])
 
 
 def test_a_controller_that_hangs_costs_one_time_out_and_is_followed_again_when_it_is_back(ros):

@@ -1,9 +1,11 @@
 """Whom simulated time waits for."""
 
+from fractions import Fraction
+
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.lockstep import Lockstep
+from aro_robocop_goto_as.lockstep import SURE, Lockstep
 
 
 def test_with_nobody_driving_it_waits_for_nobody() -> None:
@@ -22,8 +24,10 @@ def test_who_commanded_once_is_waited_for_at_the_next_tick_and_not_at_this_one()
 
 def test_who_stops_answering_costs_one_miss_and_is_waited_for_again_when_back() -> None:
     lockstep = Lockstep()
-    lockstep.commanded("/a")
-    lockstep.tick += 1
+    for _ in range(2):
+        lockstep.commanded("/a")
+        lockstep.tick += 1
+    assert lockstep.patience() == SURE
     assert lockstep.give_up() == ["/a"] and lockstep.misses == 1
     for _ in range(100):
         lockstep.tick += 1
@@ -33,15 +37,53 @@ def test_who_stops_answering_costs_one_miss_and_is_waited_for_again_when_back() 
     assert lockstep.missing() == ["/a"]
 
 
-def test_a_slower_loop_is_waited_for_at_its_own_period_once_that_is_known() -> None:
+def test_who_commands_just_once_costs_no_miss_and_little_time() -> None:
     lockstep = Lockstep()
-    given_up = []
-    for tick in range(40):
-        if tick % 3 == 0:
-            lockstep.commanded("/slow")
-        given_up += lockstep.give_up()
+    lockstep.commanded("/a")
+    spent = 0.0
+    for _ in range(100):
         lockstep.tick += 1
-    assert given_up == ["/slow"]
+        spent += lockstep.patience()
+        assert lockstep.give_up() == []
+    assert spent < 1.5
+    assert lockstep.drivers() == []
+
+
+class Loop:
+    """rospy's Rate on simulated time, from a phase on: at which ticks its command comes."""
+
+    def __init__(self, period: Fraction, phase: Fraction) -> None:
+        self.period, self.next = period, phase
+
+    def due(self, tick: int) -> bool:
+        """Whether it wakes up after the tick before and not after this one."""
+        if self.next > tick:
+            return False
+        self.next += self.period
+        return True
+
+
+@given(st.sampled_from([Fraction(hz) for hz in ("10", "8", "7", "5", "4", "3", "5/2", "2", "1", "4/5", "2/3")]),
+       st.fractions(0, 1, max_denominator=60))
+def test_a_loop_of_any_rate_is_waited_for_when_it_is_due_and_only_then(hz: Fraction, phase: Fraction) -> None:
+    lockstep, loop = Lockstep(), Loop(10 / hz, phase)
+    misses, spent, answers = [], [], []
+    for tick in range(1, 800):
+        lockstep.tick = tick
+        missing, patience = lockstep.missing(), lockstep.patience()
+        if loop.due(tick):
+            if missing:
+                answers.append(patience)
+            else:
+                answers.append(0.0)
+            lockstep.commanded("/a")
+        elif missing:
+            spent.append((tick, patience))
+            misses += [tick for _ in lockstep.give_up()]
+    assert len(misses) <= 1, "once, when a rhythm looked simpler than it is"
+    assert sum(patience for _, patience in spent) < 5.0
+    assert max([tick for tick, _ in spent], default=0) < 500, "it is still not known"
+    assert set(answers[-5:]) == {SURE}
 
 
 def test_a_faster_loop_is_one_driver() -> None:

@@ -242,12 +242,14 @@ class SimNode:
         """Let simulated time stand until every controller has answered this tick, or the time-out is over."""
         self._enroll_connected()
         self.lockstep.tick = self.tick()
-        deadline = time.monotonic() + self.p.lockstep_timeout
+        started = time.monotonic()
         while self.lockstep.missing() and not rospy.is_shutdown():
-            remaining = deadline - time.monotonic()
+            remaining = started + self.lockstep.patience() * self.p.lockstep_timeout - time.monotonic()
             if remaining <= 0.0:
-                rospy.logwarn("lockstep: no answer within %g s from %s; simulated time goes on without",
-                              self.p.lockstep_timeout, ", ".join(self.lockstep.give_up()))
+                late = self.lockstep.give_up()
+                if late:
+                    rospy.logwarn("lockstep: no answer within %g s from %s; simulated time goes on without",
+                                  self.p.lockstep_timeout, ", ".join(late))
                 break
             try:
                 self.jobs.get(timeout=min(remaining, LOOK_PERIOD))()
