@@ -116,7 +116,7 @@ class Lockstep:
         return sorted(name for name, it in self._controllers.items() if it.awaited)
 
     def restart(self, tick: int) -> None:
-        """Everything was set anew, time perhaps to run towards this tick; who stamps its answers has still to answer it.
+        """All was set anew, time perhaps to run towards this tick; who stamps its answers has still to answer it.
 
         A plain loop's rhythm goes on where time does; where time was set back it has to be learnt again.
         """

@@ -62,6 +62,9 @@ class BridgeClicks(SystemTest):
         self.clicks.wait_for_status("last goal PREEMPTED: PREEMPTED: ")
         errors = [m.msg for m in self.goals.log.messages if m.name == BRIDGE and m.level >= Log.ERROR]
         self.assertEqual(errors, [])
+        said = [m.data for m in self.clicks.status.messages if m.data.startswith("goal x")]
+        states = {text.split(" is ")[1].split(":")[0] for text in said}
+        self.assertLessEqual(states, {"PENDING", "ACTIVE"})
 
     def test_click_after_a_goal_was_reached_is_served(self):
         for count, x in ((1, -0.5), (2, -0.7)):

@@ -45,7 +45,7 @@ class Parameters(unittest.TestCase):
     def test_world_robot_or_spawn_that_is_not_there_is_named(self):
         self.check((SIM, ["world:=nowhere"], ["WORLD: there is no world 'nowhere'", "stage_4"]),
                    (SIM, ["model:=turtlebot9"], ["ROBOT_MODEL: ", "turtlebot9"]),
-                   (SIM, ["spawn:=here"], ["spawn: expected 'x y' or 'x y yaw' in metres and radians, got 'here'"]))
+                   (SIM, ["spawn:=here"], ["spawn: expected 'x y' or 'x y yaw' in metres", "got 'here'"]))
 
 
 if __name__ == "__main__":

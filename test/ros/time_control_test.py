@@ -55,11 +55,16 @@ class TimeControl(SystemTest):
         client = Client(SIMULATOR[1:], timeout=60)
         client.update_configuration({"real_time_factor": 2.0})
         self.status.wait_for(lambda m: m.factor_asked == 2.0, "factor 2")
+        self.assertEqual(client.update_configuration({"real_time_factor": -3.0})["real_time_factor"], 2.0)
+        self.goals.log.wait_for(lambda m: "expected a number, 0 or more, got -3; it stays 2" in m.msg, "a complaint")
+        rospy.set_param(f"{SIMULATOR}/real_time_factor", 1e-5)  # a clock tick in half an hour
+        self.status.wait_for(lambda m: m.factor_asked == 1e-5, "hardly any time")
         rospy.set_param(f"{SIMULATOR}/real_time_factor", 0)
         self.status.wait_for(lambda m: m.factor_asked == 0.0, "as fast as possible", len(self.status))
         rospy.set_param(f"{SIMULATOR}/real_time_factor", "fast")
         wait_for(lambda: any("expected a number, 0 or more, got 'fast'" in m.msg for m in self.goals.log.messages),
                  "a complaint")
+        wait_for(lambda: rospy.get_param(f"{SIMULATOR}/real_time_factor") == 0.0, "the parameter as it was")
         self.goals.log.forget()
         rospy.set_param(f"{SIMULATOR}/real_time_factor", 4.0)
         self.status.wait_for(lambda m: m.factor_asked == 4.0, "factor 4", len(self.status))
@@ -97,6 +102,8 @@ class TimeControl(SystemTest):
         wait_for(lambda: distance(self.robot.pose(), Pose2D(1.5, -0.4)) < 0.001, "the robot there")
         request.pose.header.frame_id = "nowhere"
         self.assertIn("its frame is 'nowhere'", self.set_pose(request).message)
+        request.pose.pose.orientation.x = float("inf")
+        self.assertIn("expected a quaternion of length 1, got x inf", self.set_pose(request).message)
         request.robot = "robot_9"
         self.assertIn("robot 'robot_9' is not one of: ''", self.set_pose(request).message)
 

@@ -4,7 +4,7 @@
 import unittest
 
 from clicks import Clicks
-from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, run, wait_for
+from harness import ACTION, SERVER, SIMULATOR, Goals, Process, Recorder, Robot, distance, run, script, wait_for
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
@@ -58,6 +58,19 @@ class TwoRobots(unittest.TestCase):
         target = compose(self.robots[1].pose(), Pose2D(-0.1, 0.5))
         self.clicks[0].click(-0.1, 0.5, "robot_2/base_footprint")
         self.check_arrival(0, target)
+
+    def test_goto_from_the_command_line_sends_the_robot_that_is_named(self):
+        with Process(script("robocop_goto.py"), "-1.6", "-0.4", "--frame", "map", "--robot", "robot_2") as command:
+            self.assertEqual(command.wait_for_exit(), 0, command.output)
+        self.assertLess(distance(self.robots[1].wait_until_it_stands(), Pose2D(-1.6, -0.4)), NEAR)
+        with Process(script("robocop_goto.py"), "0.2", "0", "--frame", "base_footprint", "--robot=robot_1") as command:
+            self.assertEqual(command.wait_for_exit(), 0, command.output)
+
+    def test_goto_without_a_robots_name_asks_for_one(self):
+        with Process(script("robocop_goto.py"), "0.5", "0") as command:
+            self.assertEqual(command.wait_for_exit(), 1)
+        both = "'/robot_1/robocop_goto_as' and '/robot_2/robocop_goto_as'"
+        self.assertIn(f"{both} of the same type: which robot is meant?", command.output)
 
     def test_simulator_shows_rviz_each_robot_with_its_name_in_its_frame(self):
         shapes = Recorder(f"{SIMULATOR}/world", MarkerArray).newest().markers

@@ -23,6 +23,12 @@ def test_a_config_file_holds_every_parameter_with_its_default(name: str, cls: An
     assert from_dict(cls, raw, name) == cls()
 
 
+def test_the_kinematic_drives_rates_fit_each_other() -> None:
+    with open(os.path.join(ROOT, "config", "kinematic.yaml")) as stream:
+        raw = yaml.safe_load(stream)
+    assert from_dict(SimParams, {**raw, "drive": "kinematic"}, "kinematic.yaml").physics_rate == 30
+
+
 @pytest.mark.parametrize("name, cls", CONFIGS)
 def test_every_key_of_a_config_file_is_explained(name: str, cls: Any) -> None:
     with open(os.path.join(ROOT, "config", name)) as stream:

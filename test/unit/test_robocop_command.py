@@ -114,6 +114,13 @@ def test_explicit_rviz_wins(wish):
     assert command == f"roslaunch aro_robocop_goto_as robocop_goto_as.launch {wish}"
 
 
+@pytest.mark.parametrize("command", ["run", "sim"])
+def test_argument_that_no_launch_file_knows_is_refused_with_those_that_it_knows(command):
+    done = robocop(command, "wrld:=empty", ROBOCOP_DRY_RUN="1")
+    assert done.returncode == 1
+    assert "there is no argument wrld; there are: " in done.stderr and " world " in done.stderr
+
+
 def test_goto_passes_negative_numbers():
     assert dry_run("goto", "-0.5", "-1", "--frame", "map")[0].endswith("/robocop_goto.py -0.5 -1 --frame map")
 

@@ -50,7 +50,9 @@ def absence(action: str) -> str:
         return f"waiting for {action}; the ROS master does not answer"
     hint = ""
     if others:
-        hint = "; there is {} of the same type: a misspelt name?".format(" and ".join(map(repr, others)))
+        many = [name for name in others if name.endswith("/" + wanted.rpartition("/")[2])]
+        hint = "; there is {} of the same type: {}".format(
+            " and ".join(map(repr, others)), "which robot is meant?" if many else "a misspelt name?")
     return f"waiting for {action}{hint}"
 
 

@@ -6,29 +6,32 @@ import os
 import re
 import signal
 import sys
-import threading
+import time
 from typing import List, Optional
 
 import actionlib
 import rosgraph
 import rospkg
 import rospy
-from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback
 
 from ..errors import FrameError
 from . import action_servers
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
 from .own_system import own_system
+from .sent_goal import SentGoal
 from .ticker import wait_until
 
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a system that is running
 START_PATIENCE = 60.0  # [s, wall] for a system that is started for this goal, on a slow machine too
 REACHED, NOT_REACHED = 0, 1
+OWN_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # of many robots each has its own
+STANDSTILL_PATIENCE = 1.0  # [s, wall]
+STANDING = "simulated time stands still; is the simulator paused? (rosservice call /robocop_sim/unpause)"
 
 
 def _arguments(argv: List[str]) -> argparse.Namespace:
@@ -39,6 +42,7 @@ def _arguments(argv: List[str]) -> argparse.Namespace:
     parser.add_argument("x", type=_finite, help="[m]")
     parser.add_argument("y", type=_finite, help="[m]")
     parser.add_argument("--frame", default="odom", help="of X and Y: odom, map, base_footprint, ... (default odom)")
+    parser.add_argument("--robot", default="", help="of many, the name of the one to send; F is given without it")
     parser.add_argument("--world", help="world of the simulator that is started when none runs")
     return parser.parse_args(argv)
 
@@ -79,45 +83,77 @@ class _Progress:
 def _pursue(args: argparse.Namespace, patience: float) -> int:
     """Send the goal to the server and wait for its end."""
     rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
+    started = rospy.get_rostime()
     latest: List[Optional[Odometry]] = [None]
-    rospy.Subscriber("odom", Odometry, lambda message: latest.__setitem__(0, message), queue_size=1)
-    transformer = GoalTransformer("odom", "odom", SERVER_PATIENCE, lambda: latest[0])
-    client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
-    missing = action_servers.wait_or_explain(client.action_client, ACTION, patience)
+    rospy.Subscriber(_of(args.robot, "odom"), Odometry, lambda message: latest.__setitem__(0, message), queue_size=1)
+    transformer = GoalTransformer(_frame(args.robot, "odom"), _frame(args.robot, "odom"), SERVER_PATIENCE,
+                                  lambda: latest[0])
+    action = _of(args.robot, ACTION)
+    client = actionlib.ActionClient(action, GoToPositionAction)
+    missing = action_servers.wait_or_explain(client, action, patience)
     if missing:
         print(f"robocop goto: {missing}", file=sys.stderr)
         return NOT_REACHED
     pose = PoseStamped()
-    pose.header.frame_id = args.frame
+    pose.header.frame_id = _frame(args.robot, args.frame)
     pose.pose.position = Point(args.x, args.y, 0.0)
     try:
         position = transformer.resolve(pose)
     except FrameError as error:
         print(f"robocop goto: {error}", file=sys.stderr)
+        if rospy.get_rostime() == started:
+            print(f"robocop goto: {STANDING}", file=sys.stderr)
         return NOT_REACHED
     return _follow(client, position)
 
 
-def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
+def _of(robot: str, name: str) -> str:
+    """A topic of one of many robots; of a lone one, the name as it is."""
+    return f"/{robot}/{name}" if robot else name
+
+
+def _frame(robot: str, frame: str) -> str:
+    """A frame that each robot has for itself, of this robot; others, such as map, as they are."""
+    return f"{robot}/{frame}" if robot and frame in OWN_FRAMES else frame
+
+
+def _follow(client: actionlib.ActionClient, position: Point) -> int:
     """Send a position in odom, show feedback, cancel on Ctrl-C."""
-    ended = threading.Event()
     progress = _Progress()
-    client.send_goal(GoToPositionGoal(position), done_cb=lambda _state, _result: ended.set(),
-                     feedback_cb=progress.show)
+    ending: List[str] = []
+    goal = SentGoal(client, position, ending.append, progress.show)
+    standstill = _Standstill()
     try:
-        while not ended.wait(0.1):
-            if not action_servers.is_up(client.action_client):
+        while not goal.done.wait(0.1):
+            standstill.look()
+            if not action_servers.is_up(client):
                 progress.close()
                 print("robocop goto: the server is gone", file=sys.stderr)
                 return NOT_REACHED
     except KeyboardInterrupt:
-        client.cancel_goal()
-        wait_until(ended.is_set, SERVER_PATIENCE)
+        goal.cancel()
+        wait_until(goal.done.is_set, SERVER_PATIENCE)
     progress.close()
-    result = client.get_result()
-    state = GoalStatus.to_string(client.get_state())
-    print("{}{}".format(state, "" if result is None else ": " + result.message))
-    return REACHED if result is not None and result.success else NOT_REACHED
+    print(ending[0] if ending else "no answer from the server")
+    return REACHED if goal.result is not None and goal.result.success else NOT_REACHED
+
+
+class _Standstill:
+    """Says it once when simulated time does not pass."""
+
+    def __init__(self) -> None:
+        self.time = rospy.get_rostime()
+        self.since = time.monotonic()
+        self.said = False
+
+    def look(self) -> None:
+        """To be called again and again."""
+        now = rospy.get_rostime()
+        if now != self.time:
+            self.time, self.since, self.said = now, time.monotonic(), False
+        elif time.monotonic() - self.since > STANDSTILL_PATIENCE and not self.said:
+            self.said = True
+            print(f"robocop goto: {STANDING}", file=sys.stderr, flush=True)
 
 
 def main() -> None:
@@ -134,6 +170,8 @@ def main() -> None:
 
 def _run(args: argparse.Namespace) -> int:
     if rosgraph.is_master_online():
+        if args.world:
+            print("robocop goto: --world is left out, for a system runs already", file=sys.stderr)
         return _pursue(args, SERVER_PATIENCE)
     print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
     world = os.path.abspath(args.world) if args.world and os.path.isfile(args.world) else args.world

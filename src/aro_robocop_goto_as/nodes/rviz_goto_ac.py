@@ -3,23 +3,22 @@
 import sys
 import threading
 import traceback
-from typing import Callable, Optional
+from typing import Optional
 
 import actionlib
 import rospy
-from actionlib import ClientGoalHandle, CommState
-from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal
+from aro_robocop_goto_as.msg import GoToPositionAction
 
 from ..errors import FrameError, RobocopError
 from ..params import BridgeParams
 from . import action_servers, params
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
+from .sent_goal import SentGoal
 from .ticker import wait_until
 from .timer import start_timer
 
@@ -34,12 +33,10 @@ class Bridge:
         self.odom: Optional[Odometry] = None
         self.click: Optional[PoseStamped] = None
         self.clicked = threading.Condition()
-        self.sent: Optional[_SentGoal] = None
+        self.sent: Optional[SentGoal] = None
         self.last_result = ""
         self.said_naive = False
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
-        # Not SimpleActionClient: it takes a newer goal's first transition for an error if it comes before the goal's
-        # handle is in place, and the older goal's last ones for the newer goal's.
         self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
         rospy.Subscriber("odom", Odometry, self._on_odom, queue_size=1)
@@ -96,13 +93,13 @@ class Bridge:
             return
         older = self.sent
         if older is not None and not older.done.is_set():
-            older.handle.cancel()
+            older.cancel()
             if not wait_until(lambda: older.done.is_set() or self.click is not None, self.p.cancel_timeout):
                 rospy.logwarn("the older goal did not end within %g s of its cancel; the newer one is sent all the "
                               "same, which preempts it", self.p.cancel_timeout)
         if self.click is not None:
             return
-        self.sent = _SentGoal(self.client, position, self._on_end)
+        self.sent = SentGoal(self.client, position, self._on_end)
         rospy.loginfo("goal sent: x %.2f y %.2f in %s", position.x, position.y, self.p.goal_frame)
         self._report()
 
@@ -137,37 +134,6 @@ class Bridge:
         if self.sent.done.is_set():
             return f"{ACTION} is ready, last goal {self.last_result}"
         return str(self.sent)
-
-
-class _SentGoal:
-    """One goal on its way, told apart from all others by its handle."""
-
-    def __init__(self, client: actionlib.ActionClient, position: Point, on_end: Callable[[str], None]) -> None:
-        self.position = position
-        self.done = threading.Event()
-        self.feedback: Optional[GoToPositionFeedback] = None
-        self._on_end = on_end
-        self.handle: ClientGoalHandle = client.send_goal(GoToPositionGoal(position), self._on_transition,
-                                                         self._on_feedback)
-
-    def _on_transition(self, handle: ClientGoalHandle) -> None:
-        if handle.get_comm_state() != CommState.DONE:
-            return
-        state, result = GoalStatus.to_string(handle.get_terminal_state()), handle.get_result()
-        self._on_end("{}{}".format(state, ": " + result.message if result is not None and result.message else ""))
-        self.done.set()
-
-    def _on_feedback(self, _handle: ClientGoalHandle, feedback: GoToPositionFeedback) -> None:
-        self.feedback = feedback
-
-    def __str__(self) -> str:
-        state = GoalStatus.to_string(self.handle.get_goal_status())
-        where = f"goal x {self.position.x:.2f} y {self.position.y:.2f} is {state}"
-        feedback = self.feedback
-        if feedback is None:
-            return where
-        errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
-        return f"{where}: {feedback.message} ({errors})"
 
 
 def main() -> None:

@@ -34,6 +34,7 @@ from .world_markers import robot_markers, world_markers
 
 PACKAGE = "aro_robocop_goto_as"
 PAUSED_CLOCK_PERIOD = 0.1  # [s, wall] a paused simulator repeats its clock, so that nodes which start then have time
+LONGEST_WAIT = 0.5  # [s, wall] between two looks for a parameter that was set
 LOOK_PERIOD = 0.05  # [s, wall] between two looks for controllers that have disconnected, while waiting for answers
 
 T = TypeVar("T")
@@ -144,6 +145,9 @@ class SimNode:
 
     def place(self, robot: int, frame: str, pose: Any) -> Pose2D:
         """Set a robot down at a geometry_msgs/Pose in world, map or its odom; FrameError for any other frame."""
+        q = pose.orientation
+        if not all(abs(value) <= 2.0 for value in (q.x, q.y, q.z, q.w)):
+            raise FrameError(f"expected a quaternion of length 1, got x {q.x} y {q.y} z {q.z} w {q.w}")
         target = self._in_world(robot, frame.lstrip("/"), convert.from_pose_msg(pose))
         self.sim.place(target, robot)
         self.held.pop(robot, None)
@@ -152,7 +156,7 @@ class SimNode:
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:
-        if not all(abs(value) <= FARTHEST for value in (pose.x, pose.y, pose.yaw)):
+        if not all(abs(value) <= FARTHEST for value in (pose.x, pose.y, pose.yaw)):  # not so for NaN
             raise FrameError(f"expected finite numbers within +-{FARTHEST:g}, got x {pose.x} y {pose.y} yaw {pose.yaw}")
         odom_frame = self.robots[robot].odom_frame
         if frame in (self.p.world_frame, self.p.map_frame):
@@ -219,7 +223,7 @@ class SimNode:
         repeat_clock = time.monotonic() + PAUSED_CLOCK_PERIOD
         while not rospy.is_shutdown():
             standing = self.paused and not self.run_until
-            wait = PAUSED_CLOCK_PERIOD if standing else self.pacer.ahead(self.sim.time)
+            wait = PAUSED_CLOCK_PERIOD if standing else min(LONGEST_WAIT, self.pacer.ahead(self.sim.time))
             if wait <= 0.0 and self.jobs.empty():
                 return
             if standing and time.monotonic() >= repeat_clock:
@@ -231,8 +235,9 @@ class SimNode:
             try:
                 job = self.jobs.get(timeout=wait) if wait > 0.0 else self.jobs.get_nowait()
             except queue.Empty:
-                if not standing:
+                if not standing and wait < LONGEST_WAIT:
                     return
+                self.status.tick()  # time passes slowly, or not at all: somebody may want it to be otherwise
                 continue
             finally:
                 self.pacer.waited(time.monotonic() - started)

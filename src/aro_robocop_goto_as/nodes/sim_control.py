@@ -119,7 +119,13 @@ class SimControl:
         return SetPoseResponse(True, f"at x {pose.x:.3f} y {pose.y:.3f} yaw {pose.yaw:.3f} in the world")
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:
-        self.node.jobs.put(lambda: self.set_factor(config.real_time_factor))
+        factor = config.real_time_factor
+        if not 0.0 <= factor < math.inf:
+            config.real_time_factor = self.node.pacer.factor
+            rospy.logerr("real_time_factor: expected a number, 0 or more, got %g; it stays %g", factor,
+                         config.real_time_factor)
+            return config
+        self.node.jobs.put(lambda: self.set_factor(factor))
         return config
 
     def set_factor(self, factor: float) -> None:

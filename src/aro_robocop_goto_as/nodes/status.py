@@ -57,6 +57,8 @@ class StatusReport:
         else:
             rospy.logerr("%s: expected a number, 0 or more, got %r; it stays %g",
                          rospy.resolve_name(FACTOR_PARAMETER), value, self.node.pacer.factor)
+            self.factor_parameter = self.node.pacer.factor
+            rospy.set_param(FACTOR_PARAMETER, self.node.pacer.factor)
 
     def publish(self) -> None:
         """Send the newest report now."""
