@@ -6,7 +6,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from .geometry import Pose3D, rotation_matrix
-from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
+from .shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
 
 CYLINDER_SIDES = 64  # of the prism that stands for a tilted cylinder; an upright one is exact
 FAR = 1e4  # [m] half length of the segment that stands for a vertical plane's infinite line
@@ -22,13 +22,17 @@ class Slice:
     def __init__(self, world: World, height: float) -> None:
         segments: List[Segment] = []
         circles: List[Circle] = []
+        meshes = [np.zeros((0, 2, 2))]
         for obstacle in world.obstacles:
             circle = _circle(obstacle, height)
             if circle is not None:
                 circles.append(circle)
+            elif isinstance(obstacle.geometry, Mesh):
+                meshes.append(_mesh_segments(obstacle.pose, obstacle.geometry, height))
             else:
                 segments += _segments(obstacle, height)
-        self.segments = np.array(segments, dtype=float).reshape(-1, 2, 2)  # (m, [start, end], [x, y]) [m]
+        plain = np.array(segments, dtype=float).reshape(-1, 2, 2)
+        self.segments = np.concatenate([plain, *meshes])  # (m, [start, end], [x, y]) [m]
         self.circles = np.array(circles, dtype=float).reshape(-1, 3)  # (k, [x, y, radius]) [m]
 
 
@@ -91,6 +95,24 @@ def _outline(corners: np.ndarray, edges: List[Tuple[int, int]], height: float) -
     points = points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))]
     ring = [(float(x), float(y)) for x, y in points]
     return list(zip(ring, ring[1:] + ring[:1]))
+
+
+def _mesh_segments(pose: Pose3D, mesh: Mesh, height: float) -> np.ndarray:
+    """Where a horizontal plane cuts triangles: segments (m, 2, 2), exact.
+
+    A corner at the very height counts as below, so that of two triangles with a common edge there both or none are cut.
+    """
+    corners = mesh.corners @ rotation_matrix(pose.orientation).T + np.array(pose.position)
+    above = corners[..., 2] > height
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    corners, above = corners[cut], above[cut]
+    # One corner is alone on its side: both edges from there are cut.
+    alone = np.argmax(np.where(above.sum(axis=1, keepdims=True) == 1, above, ~above), axis=1)
+    rows = np.arange(len(corners))
+    tip, left, right = (corners[rows, (alone + turn) % 3] for turn in range(3))
+    ends = [tip + (foot - tip) * ((height - tip[:, 2]) / (foot[:, 2] - tip[:, 2]))[:, None] for foot in (left, right)]
+    segments = np.stack(ends, axis=1)[..., :2]
+    return segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]
 
 
 def _plane_line(obstacle: Obstacle, plane: Plane, height: float) -> List[Segment]:

@@ -6,7 +6,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..world import Box, Cylinder, Obstacle, Plane, Sphere, World
+from ..shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # see-through, or walls would hide the scan and the robot behind them
 BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
@@ -27,6 +27,9 @@ def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
         marker.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
     elif isinstance(shape, Sphere):
         marker.type, marker.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
+    elif isinstance(shape, Mesh):
+        marker.type, marker.scale = Marker.TRIANGLE_LIST, Vector3(1.0, 1.0, 1.0)
+        marker.points = [Point(*corner) for corner in shape.corners.reshape(-1, 3).tolist()]
     else:
         raise TypeError(f"no marker for {shape!r}")
     return marker

@@ -1,0 +1,40 @@
+"""Geometry -> Bullet's collision shapes."""
+
+from typing import List
+
+import numpy as np
+import pybullet
+
+from .shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+
+MOST_TRIANGLES = 30000  # of one shape: pybullet refuses more than 131,072 corners
+
+
+def shapes_of(geometry: Geometry, client: int) -> List[int]:
+    """The shapes of a body that stands still; several only of a mesh with more triangles than Bullet takes at once."""
+    if isinstance(geometry, Mesh):
+        pieces = range(0, len(geometry.corners), MOST_TRIANGLES)
+        return [_triangles(geometry.corners[start : start + MOST_TRIANGLES], client) for start in pieces]
+    return [_simple(geometry, client)]
+
+
+def _simple(geometry: Geometry, client: int) -> int:
+    if isinstance(geometry, Box):
+        return int(pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[size / 2 for size in geometry.size],
+                                                 physicsClientId=client))
+    if isinstance(geometry, Cylinder):
+        return int(pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=geometry.radius,
+                                                 height=geometry.length, physicsClientId=client))
+    if isinstance(geometry, Sphere):
+        return int(pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=geometry.radius, physicsClientId=client))
+    if isinstance(geometry, Plane):
+        return int(pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=geometry.normal,
+                                                 physicsClientId=client))
+    raise TypeError(f"no shape for {geometry!r}")
+
+
+def _triangles(corners: np.ndarray, client: int) -> int:
+    """Triangles (n, 3, 3) [m] as they are, hollow, not their convex hull."""
+    return int(pybullet.createCollisionShape(
+        pybullet.GEOM_MESH, vertices=corners.reshape(-1, 3).tolist(), indices=list(range(3 * len(corners))),
+        flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH, physicsClientId=client))

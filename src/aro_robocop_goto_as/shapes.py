@@ -1,0 +1,84 @@
+"""What a world is made of: obstacles, each a geometry at a pose."""
+
+from dataclasses import dataclass, field
+from typing import Dict, Mapping, Tuple, Union
+
+import numpy as np
+
+from .geometry import Pose2D, Pose3D, Vector3
+
+
+@dataclass(frozen=True)
+class Box:
+    """A cuboid about the obstacle's origin; size: lengths [m] along the obstacle's x, y, z."""
+
+    size: Vector3
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder about the obstacle's origin, its axis along the obstacle's z; radius, length [m]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A ball about the obstacle's origin; radius [m]."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """An infinite plane through the obstacle's origin; normal: unit vector in the obstacle's frame."""
+
+    normal: Vector3
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles, met from both sides: corners (n, 3, 3) [m] in the obstacle's frame; file: where they come from."""
+
+    corners: np.ndarray
+    file: str
+
+
+Geometry = Union[Box, Cylinder, Sphere, Plane, Mesh]
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """Something that stands still for ever.
+
+    name: `model/link/collision`, unique in its world; nested models come first, as in `house/door/link/collision`
+    pose: world_from_obstacle, the centre of the geometry (for a Plane: a point on it) in the world frame [m]
+    """
+
+    name: str
+    pose: Pose3D
+    geometry: Geometry
+
+
+def _nowhere() -> Dict[str, Pose3D]:
+    return {}
+
+
+@dataclass(frozen=True)
+class World:
+    """What a world file says about the robot's surroundings.
+
+    obstacles: in the file's order, the ground among them
+    spawn: world_from_base_footprint at the start [m, rad]
+    ignored: what was left out and could be missed, once each, such as "light 'sun' (line 4)"
+    path: the file, as it was given to load_world
+    models: world_from_model of each model [m]; its obstacles' names start with its own
+    """
+
+    name: str
+    obstacles: Tuple[Obstacle, ...]
+    spawn: Pose2D
+    ignored: Tuple[str, ...]
+    path: str
+    models: Mapping[str, Pose3D] = field(default_factory=_nowhere)
