@@ -1,7 +1,7 @@
 """What a world is made of: obstacles, each a geometry at a pose."""
 
 from dataclasses import dataclass, field
-from typing import Dict, Mapping, Tuple, Union
+from typing import Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -45,7 +45,32 @@ class Mesh:
     file: str
 
 
-Geometry = Union[Box, Cylinder, Sphere, Plane, Mesh]
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """Upright faces without thickness, met from both sides, such as the outlines of a map's occupied cells.
+
+    segments: (n, [start, end], [x, y]) [m] in the obstacle's frame, at its z = 0; height: up to there [m]
+    """
+
+    segments: np.ndarray
+    height: float
+
+
+Geometry = Union[Box, Cylinder, Sphere, Plane, Mesh, Walls]
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy:
+    """A grid map, as nav_msgs/OccupancyGrid has it.
+
+    cells: (rows, columns) int8, -1 unknown, 0 free to 100 occupied; row 0, column 0 lies at the origin
+    resolution: [m] of a cell
+    origin: map_from_grid, the pose of the outer corner of cell (0, 0), columns along its x and rows along its y
+    """
+
+    cells: np.ndarray
+    resolution: float
+    origin: Pose2D
 
 
 @dataclass(frozen=True)
@@ -74,6 +99,7 @@ class World:
     ignored: what was left out and could be missed, once each, such as "light 'sun' (line 4)"
     path: the file, as it was given to load_world
     models: world_from_model of each model [m]; its obstacles' names start with its own
+    occupancy: the grid map that the world was made of, if it was
     """
 
     name: str
@@ -82,3 +108,4 @@ class World:
     ignored: Tuple[str, ...]
     path: str
     models: Mapping[str, Pose3D] = field(default_factory=_nowhere)
+    occupancy: Optional[Occupancy] = None

@@ -9,6 +9,7 @@ from . import drive
 from .drive import DriveLimits
 from .geometry import Pose2D, Twist2D, compose, inverse
 from .kinematics import Kinematics
+from .occupancy import occupancy_of
 from .params import SimParams
 from .physics import Physics
 from .robot import BodyState, RobotModel, RobotState
@@ -17,9 +18,9 @@ from .sensors import odometry
 from .sensors.imu import ImuSample
 from .sensors.lidar import Lidar, LidarSpec
 from .sensors.odometry import Odometry
+from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
 from .slice import Slice
-from .world import World
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
 ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
@@ -177,6 +178,12 @@ class Simulator:
             return None
         circles = np.column_stack([world_from_scans[:, :2], np.full(n, LIDAR_RADIUS)])
         return np.stack([np.delete(circles, robot, axis=0) for robot in robots])
+
+    def occupancy(self) -> Occupancy:
+        """The world as a grid map in its own frame: the one it was made of, else its cut at the scanners' height."""
+        if self.world.occupancy is not None:
+            return self.world.occupancy
+        return occupancy_of(self._walls, self.world.spawn, self.params.map_resolution)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""

@@ -1,4 +1,4 @@
-"""World -> its cut at the lidar's height: segments and circles."""
+"""World -> its cut at the lidar's height: segments and circles, where they are many with an index of what is near."""
 
 import math
 from typing import List, Optional, Tuple
@@ -6,11 +6,13 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from .geometry import Pose3D, rotation_matrix
-from .shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
+from .shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+from .tiles import Tiles
 
 CYLINDER_SIDES = 64  # of the prism that stands for a tilted cylinder; an upright one is exact
 FAR = 1e4  # [m] half length of the segment that stands for a vertical plane's infinite line
 UPRIGHT = 1e-9
+FEW = 1000  # segments: of more, those nearby are looked up; of fewer, it is faster to work on all
 
 Segment = Tuple[Tuple[float, float], Tuple[float, float]]
 Circle = Tuple[float, float, float]  # x, y, radius [m]
@@ -22,18 +24,21 @@ class Slice:
     def __init__(self, world: World, height: float) -> None:
         segments: List[Segment] = []
         circles: List[Circle] = []
-        meshes = [np.zeros((0, 2, 2))]
+        many: List[np.ndarray] = []
         for obstacle in world.obstacles:
             circle = _circle(obstacle, height)
             if circle is not None:
                 circles.append(circle)
             elif isinstance(obstacle.geometry, Mesh):
-                meshes.append(_mesh_segments(obstacle.pose, obstacle.geometry, height))
+                many.append(_mesh_segments(obstacle.pose, obstacle.geometry, height))
+            elif isinstance(obstacle.geometry, Walls):
+                many.append(_wall_segments(obstacle.pose, obstacle.geometry, height))
             else:
                 segments += _segments(obstacle, height)
         plain = np.array(segments, dtype=float).reshape(-1, 2, 2)
-        self.segments = np.concatenate([plain, *meshes])  # (m, [start, end], [x, y]) [m]
+        self.segments = np.concatenate([plain, *many])  # (m, [start, end], [x, y]) [m]
         self.circles = np.array(circles, dtype=float).reshape(-1, 3)  # (k, [x, y, radius]) [m]
+        self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
 
 
 def _circle(obstacle: Obstacle, height: float) -> Optional[Circle]:
@@ -113,6 +118,13 @@ def _mesh_segments(pose: Pose3D, mesh: Mesh, height: float) -> np.ndarray:
     ends = [tip + (foot - tip) * ((height - tip[:, 2]) / (foot[:, 2] - tip[:, 2]))[:, None] for foot in (left, right)]
     segments = np.stack(ends, axis=1)[..., :2]
     return segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]
+
+
+def _wall_segments(pose: Pose3D, walls: Walls, height: float) -> np.ndarray:
+    """Upright walls as they are, where the plane is not below or above them."""
+    if not 0.0 <= height - pose.position[2] < walls.height:
+        return np.zeros((0, 2, 2))
+    return walls.segments @ rotation_matrix(pose.orientation)[:2, :2].T + np.array(pose.position[:2])
 
 
 def _plane_line(obstacle: Obstacle, plane: Plane, height: float) -> List[Segment]:

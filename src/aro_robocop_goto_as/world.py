@@ -3,11 +3,14 @@
 import os
 
 from .errors import WorldError
+from .maps import read_map
 from .sdf_world import read_world
-from .shapes import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, World
+from .shapes import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
 
-__all__ = ["Box", "Cylinder", "Geometry", "Mesh", "Obstacle", "Plane", "Sphere", "World", "find_world", "load_world"]
-_ENDINGS = (".sdf", ".world")
+__all__ = ["Box", "Cylinder", "Geometry", "Mesh", "Obstacle", "Plane", "Sphere", "Walls", "World", "find_world",
+           "load_world"]
+_MAPS = (".yaml", ".yml")
+_ENDINGS = (".sdf", ".world", *_MAPS)
 
 
 def find_world(name_or_path: str, directory: str) -> str:
@@ -28,8 +31,8 @@ def find_world(name_or_path: str, directory: str) -> str:
 
 
 def load_world(path: str) -> World:
-    """The world that a file describes: SDF 1.4 to 1.7 of a <world> or a <model>.
+    """The world that a file describes: SDF 1.4 to 1.7 of a <world> or a <model>, or a map_server map's YAML.
 
     Raises WorldError that names file, line, what is wrong there, and what is supported.
     """
-    return read_world(path)
+    return read_map(path) if path.endswith(_MAPS) else read_world(path)

@@ -25,6 +25,7 @@ from ..simulator import Observations, Simulator
 from ..spawns import FARTHEST, robots_from
 from ..world import find_world, load_world
 from . import convert, params
+from .map_topics import MapTopics
 from .pacer import Pacer
 from .publishing import publisher
 from .robot_topics import RobotTopics
@@ -67,6 +68,7 @@ class SimNode:
         self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.shapes = publisher("~world", MarkerArray, latch=True)
+        self.maps = MapTopics() if p.publish_map or sim.world.occupancy is not None else None
         self.robots = [RobotTopics(index, robot.name, p, sim.lidar.spec) for index, robot in enumerate(sim.robots)]
         self.listeners: List[Set[str]] = [set() for _ in self.robots]
         self.status = StatusReport(self)
@@ -204,6 +206,13 @@ class SimNode:
                           robot.spawn.y, robot.spawn.yaw)
         if world.ignored:
             rospy.loginfo("not simulated from that file: %s", ", ".join(world.ignored))
+        self.show_world()
+
+    def show_world(self) -> None:
+        """The obstacles for RViz; where a map is published, that too."""
+        world = self.sim.world
+        if self.maps is not None:
+            self.maps.publish(self.sim.occupancy(), convert.to_time(self.sim.stamp_ns), self.p.map_frame)
         shapes = world_markers(world, self.p.world_frame)
         if self.robots[0].name:
             shapes += robot_markers({robot.name: robot.base_frame for robot in self.robots}, self.p.footprint_radius)

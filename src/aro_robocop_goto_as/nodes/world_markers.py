@@ -6,7 +6,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
+from ..shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # see-through, or walls would hide the scan and the robot behind them
 BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
@@ -36,8 +36,11 @@ def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
 
 
 def world_markers(world: World, frame: str) -> List[Marker]:
-    """One marker an obstacle in the world's `frame`; planes are left out, as RViz's grid shows the floor."""
-    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, Plane)]
+    """One marker an obstacle in the world's `frame`; left out are planes and a map's walls.
+
+    RViz's grid shows the floor, and its Map display the map that the walls were made of.
+    """
+    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, (Plane, Walls))]
     return [_marker(number, frame, obstacle) for number, obstacle in enumerate(solid)]
 
 
