@@ -15,10 +15,11 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ..errors import CommandError, FrameError, ParameterError, RobocopError
+from ..errors import CommandError, FrameError, ParameterError, RobocopError, WorldError
 from ..geometry import Pose2D, Twist2D, compose
 from ..lockstep import Lockstep
 from ..params import SimParams
+from ..random_world import random_world
 from ..robot import load_robot
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
@@ -34,16 +35,30 @@ from .status import StatusReport
 from .world_markers import robot_markers, world_markers
 
 PACKAGE = "aro_robocop_goto_as"
+RANDOM = "random"  # as `world`: one made from the seed
 PAUSED_CLOCK_PERIOD = 0.1  # [s, wall] a paused simulator repeats its clock, so that nodes which start then have time
 LOOK_PERIOD = 0.05  # [s, wall] between two looks for controllers that have disconnected, while waiting for answers
 
 T = TypeVar("T")
 
 
+def make_random(seed: int) -> str:
+    """Make a random world and leave it in ROS' home as a file, whose path can be given as `world` again."""
+    path = os.path.join(rospkg.get_ros_home(), f"random_{seed}.sdf")
+    try:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(random_world(seed))
+    except OSError as error:
+        raise WorldError(f"{path}: can't write the random world: {error.strerror}") from error
+    return path
+
+
 def build_simulator(p: SimParams) -> Simulator:
     """The simulator for these parameters; RobocopError when world, robots or their places can't be had."""
     share = rospkg.RosPack().get_path(PACKAGE)
-    world = load_world(find_world(p.world, os.path.join(share, "worlds")))
+    path = make_random(p.seed) if p.world == RANDOM else find_world(p.world, os.path.join(share, "worlds"))
+    world = load_world(path)
     model = load_robot(os.path.join(share, "urdf", p.model + ".urdf"))
     return Simulator(p, world, robots_from(p, world, model))
 
