@@ -52,10 +52,38 @@ class Kinematics:
         self._radius = radius
         cuts = [Slice(world, height) for height in HEIGHTS]
         self._segments = np.unique(np.concatenate([cut.segments for cut in cuts]), axis=0)
-        self._circles = np.unique(np.concatenate([cut.circles for cut in cuts]), axis=0)
+        self._cuts = cuts
+        self._circles = self._circles_at(0.0)
         self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
         self._discs: List[_Disc] = []
         self._apart = 0.0  # [m] that any two robots may certainly travel, both together, before they meet
+
+    def _circles_at(self, time: float) -> np.ndarray:
+        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order."""
+        return np.concatenate([cut.at(time).circles for cut in self._cuts])
+
+    def move(self, time: float) -> None:
+        """Have obstacles that move where they are at a time [s]; robots in their way are pushed up to a wall."""
+        circles = self._circles_at(time)
+        travelled = float(np.hypot(*(circles[:, :2] - self._circles[:, :2]).T).max(initial=0.0))
+        self._circles = circles
+        for it in self._discs:
+            it.room -= travelled
+            if it.room < 0.0:
+                self._push(it)
+
+    def _push(self, it: _Disc) -> None:
+        """Straight away from the round obstacle that is deepest in a robot, if one is."""
+        centre = np.array([it.pose.x, it.pose.y])
+        offsets = centre - self._circles[:, :2]
+        away = np.hypot(offsets[:, 0], offsets[:, 1])
+        depths = self._circles[:, 2] + self._radius + SKIN - away
+        deepest = int(depths.argmax())
+        if depths[deepest] > 0.0 and away[deepest] > 0.0:
+            push = offsets[deepest] * (depths[deepest] / away[deepest])
+            x, y = (centre + push * self._share_against_walls(it, centre, push, float(depths[deepest]))).tolist()
+            it.pose = Pose2D(x, y, it.pose.yaw)
+            it.blocked = True
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float = 0.0) -> int:
         """Put a robot down; torque is of no account here. Returns its index."""
@@ -69,7 +97,8 @@ class Kinematics:
         self._apart = 0.0
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
-        """All robots set down anew at their poses, wheels at angle zero."""
+        """All robots set down anew at their poses, wheels at angle zero; what moves is back where it began."""
+        self._circles = self._circles_at(0.0)
         self._discs = [_Disc(disc.model, pose) for disc, pose in zip(self._discs, poses)]
         self._apart = 0.0
 

@@ -88,6 +88,7 @@ class SimParams:
     odom_tf: bool = True
     ground_truth: bool = True
     gazebo_services: bool = False
+    moving: bool = False
     publish_map: bool = False
     map_resolution: float = _positive(0.05)
 

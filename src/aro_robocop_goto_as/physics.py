@@ -3,7 +3,7 @@
 import math
 import os
 import tempfile
-from typing import List, Sequence, Set
+from typing import List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -17,6 +17,7 @@ from .shapes import Obstacle, Plane, World
 WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits; rays see the world only, never the robot itself
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower than this with stopped wheels is creep of the solver
 REST_STEPS = 24  # steps on end below those speeds before the robot is parked
+WAKING = 1.0  # [m] from its centre to the robot's, within which an obstacle that moves keeps a robot awake
 TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
 FLOOR = Obstacle("floor", Pose3D(), Plane((0.0, 0.0, 1.0)))
 
@@ -42,11 +43,12 @@ class Physics:
         self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
         self._robots: List[_Body] = []
         self._floors: Set[int] = set()
+        self._moving: List[Tuple[int, Obstacle]] = []  # with the bodies that they are
         self._fill()
 
     def _fill(self) -> None:
         """Floor and obstacles into an empty Bullet world."""
-        self._floors = set()
+        self._floors, self._moving = set(), []
         pybullet.setGravity(0.0, 0.0, -STANDARD_GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / self._rate, numSubSteps=1, numSolverIterations=self._solver_iterations,
@@ -68,6 +70,8 @@ class Physics:
                                                  physicsClientId=client)
             if isinstance(obstacle.geometry, Plane):
                 self._floors.add(body)
+            if obstacle.motion is not None:
+                self._moving.append((body, obstacle))
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float) -> int:
         """Put a robot on the floor, wheels held by motors of `wheel_torque` [Nm]; returns its index."""
@@ -136,6 +140,20 @@ class Physics:
         for it in self._robots:
             if it.targets == (0.0, 0.0) and not it.parked:
                 self._park_when_at_rest(it)
+
+    def move(self, time: float) -> None:
+        """Have obstacles that move where they are at a time [s]; contacts push robots out of their way.
+
+        Robots nearby are kept awake: what only moves by being set somewhere wakes nobody.
+        """
+        for body, obstacle in self._moving:
+            pose = obstacle.at(time)
+            pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation,
+                                                     physicsClientId=self._client)
+            for it in self._robots:
+                (x, y, _), _ = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
+                if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKING:
+                    self._unpark(it)
 
     def _park_when_at_rest(self, it: _Body) -> None:
         """Let Bullet put a standing robot to sleep.

@@ -6,6 +6,8 @@ from typing import Dict, List, Mapping, Optional, Set, Tuple
 from . import resources, sdf
 from .errors import WorldError
 from .geometry import Pose2D, Pose3D, compose3, wrap_angle
+from .motion import Motion
+from .sdf_motion import check_can_move, is_motion, motion_of
 from .sdf_shapes import Shapes
 from .sdf_state import state_poses
 from .shapes import Obstacle, Plane, World
@@ -74,11 +76,16 @@ def _spawn(world: sdf.Element) -> Pose2D:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where an element stands: world_from_parent, the names of the models around it, and whether these are static."""
+    """Where an element stands: world_from_parent, the names of the models around it, what they do to it.
+
+    static: whether one of them is, or has been told not to be
+    motion: what moves them by script
+    """
 
     pose: Pose3D = Pose3D()
     names: Tuple[str, ...] = ()
     static: bool = False
+    motion: Optional[Motion] = None
 
 
 @dataclass(frozen=True)
@@ -115,6 +122,8 @@ class _Reading:
     def tell_skipped(self, element: sdf.Element) -> None:
         """Note which of an element's children do something that is left out here."""
         for child in element.iterchildren(*_TOLD[element.tag]):
+            if is_motion(child) and element.tag == "model":
+                continue
             self.tell(f"{child.tag} '{child.get('name', '')}'", child)
 
     def children(self, parent: sdf.Element, place: _Place) -> None:
@@ -177,11 +186,13 @@ class _Reading:
     def inside(self, model: sdf.Element, name: str, place: _Place, instead: _Instead) -> _Place:
         """The place that a model makes for what is in it. One that could move is told, once, to stand still."""
         static = sdf.boolean(model, "static", False) if instead.static is None else instead.static
-        if not (static or place.static):
-            self.tell(f"motion of model '{name}', which is not static", model)
         own = sdf.pose_of(model) if instead.pose is None else instead.pose
         names = (*place.names, name)
-        return _Place(self.saved("/".join(names), compose3(place.pose, own)), names, static=True)
+        pose = self.saved("/".join(names), compose3(place.pose, own))
+        motion = motion_of(model, pose) or place.motion
+        if not (static or place.static or motion):
+            self.tell(f"motion of model '{name}', which is not static", model)
+        return _Place(pose, names, static=True, motion=motion)
 
     def saved(self, name: str, pose: Pose3D) -> Pose3D:
         """The pose that the world's <state> has for a model or link; where it has none, the one given."""
@@ -211,5 +222,9 @@ class _Reading:
         sdf.check_children(collision, ("geometry", "pose"), _SKIPPED["collision"].split())
         name = "/".join((*place.names, sdf.name_of(collision)))
         geometry = self.shapes.read(sdf.need(collision, "geometry"))
-        if geometry is not None:
-            self.obstacles.append(Obstacle(name, compose3(place.pose, sdf.pose_of(collision)), geometry))
+        if geometry is None:
+            return
+        pose = compose3(place.pose, sdf.pose_of(collision))
+        if place.motion is not None:
+            check_can_move(collision, geometry, pose)
+        self.obstacles.append(Obstacle(name, pose, geometry, place.motion))

@@ -1,11 +1,12 @@
 """What a world is made of: obstacles, each a geometry at a pose."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
-from .geometry import Pose2D, Pose3D, Vector3
+from .geometry import Pose2D, Pose3D, Vector3, lifted
+from .motion import Motion
 
 
 @dataclass(frozen=True)
@@ -75,15 +76,25 @@ class Occupancy:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Something that stands still for ever.
+    """Something that robots bump into and scans see.
 
     name: `model/link/collision`, unique in its world; nested models come first, as in `house/door/link/collision`
     pose: world_from_obstacle, the centre of the geometry (for a Plane: a point on it) in the world frame [m]
+    motion: how it moves from there; None: it stands still for ever
     """
 
     name: str
     pose: Pose3D
     geometry: Geometry
+    motion: Optional[Motion] = None
+
+    def at(self, time: float) -> Pose3D:
+        """world_from_obstacle at a time [s]; it only moves on the plane."""
+        if self.motion is None:
+            return self.pose
+        x, y, z = self.pose.position
+        moved = self.motion.carry(Pose2D(x, y, self.pose.on_plane().yaw), time)
+        return lifted(moved, z)
 
 
 def _nowhere() -> Dict[str, Pose3D]:
@@ -109,3 +120,11 @@ class World:
     path: str
     models: Mapping[str, Pose3D] = field(default_factory=_nowhere)
     occupancy: Optional[Occupancy] = None
+
+    def moving(self) -> Tuple[Obstacle, ...]:
+        """The obstacles that move."""
+        return tuple(obstacle for obstacle in self.obstacles if obstacle.motion is not None)
+
+    def standing(self) -> "World":
+        """The same world, in which nothing moves."""
+        return replace(self, obstacles=tuple(replace(obstacle, motion=None) for obstacle in self.obstacles))

@@ -60,7 +60,8 @@ class Simulator:
 
     def __init__(self, params: SimParams, world: World, robots: Sequence[RobotSpec]) -> None:
         self.params = params
-        self.world = world
+        self.world = world = world if params.moving else world.standing()
+        self._moving = bool(world.moving())
         self.robots = tuple(robots)
         self.model = robots[0].model
         self.seed = params.seed
@@ -112,6 +113,11 @@ class Simulator:
         """Simulated time [s] of the last step."""
         return self.steps / self.params.physics_rate
 
+    @property
+    def world_time(self) -> float:
+        """Simulated time [s] since the last reset, of which the poses of moving obstacles are a function."""
+        return (self.steps - self._noise_origin) / self.params.physics_rate
+
     def everything(self) -> Dict[str, Sequence[int]]:
         """All sensors of all robots."""
         return {sensor: range(len(self.robots)) for sensor in SENSORS}
@@ -128,6 +134,8 @@ class Simulator:
         self._turn_wheels()
         self._physics.step()
         self.steps += 1
+        if self._moving:
+            self._physics.move(self.world_time)
         if not due_now or (due_now == ONLY_IMU and not imus):
             return None
         # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
@@ -169,7 +177,8 @@ class Simulator:
         """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
         scans = [compose(state.world_from_base, self._base_from_scan) for state in states]
         world_from_scans = np.array([(pose.x, pose.y, pose.yaw) for pose in scans])
-        return self.lidar.distances(world_from_scans[list(robots)], self._walls, self._others(world_from_scans, robots))
+        return self.lidar.distances(world_from_scans[list(robots)], self._walls.at(self.world_time),
+                                    self._others(world_from_scans, robots))
 
     def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
         """Circles (r, n - 1, 3) that stand for the other robots' scanners, for each robot asked for."""

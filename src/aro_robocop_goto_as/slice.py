@@ -1,11 +1,13 @@
 """World -> its cut at the lidar's height: segments and circles, where they are many with an index of what is near."""
 
+import copy
 import math
 from typing import List, Optional, Tuple
 
 import numpy as np
 
-from .geometry import Pose3D, rotation_matrix
+from .geometry import Pose2D, Pose3D, rotation_matrix
+from .motion import Motion
 from .shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 from .tiles import Tiles
 
@@ -19,15 +21,18 @@ Circle = Tuple[float, float, float]  # x, y, radius [m]
 
 
 class Slice:
-    """Segments and circles in the horizontal plane at one height, in the world frame."""
+    """Segments and circles in the horizontal plane at one height, in the world frame; at time zero, where some move."""
 
     def __init__(self, world: World, height: float) -> None:
         segments: List[Segment] = []
         circles: List[Circle] = []
         many: List[np.ndarray] = []
+        self._moving: List[Tuple[int, Motion]] = []  # circles that move, by their place among all
         for obstacle in world.obstacles:
             circle = _circle(obstacle, height)
             if circle is not None:
+                if obstacle.motion is not None:
+                    self._moving.append((len(circles), obstacle.motion))
                 circles.append(circle)
             elif isinstance(obstacle.geometry, Mesh):
                 many.append(_mesh_segments(obstacle.pose, obstacle.geometry, height))
@@ -39,6 +44,18 @@ class Slice:
         self.segments = np.concatenate([plain, *many])  # (m, [start, end], [x, y]) [m]
         self.circles = np.array(circles, dtype=float).reshape(-1, 3)  # (k, [x, y, radius]) [m]
         self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
+
+    def at(self, time: float) -> "Slice":
+        """The cut at a time [s]: what moves is round."""
+        if not self._moving:
+            return self
+        moved = copy.copy(self)
+        moved.circles = self.circles.copy()
+        for place, motion in self._moving:
+            x, y, _ = self.circles[place].tolist()
+            pose = motion.carry(Pose2D(x, y), time)
+            moved.circles[place, :2] = pose.x, pose.y
+        return moved
 
 
 def _circle(obstacle: Obstacle, height: float) -> Optional[Circle]:

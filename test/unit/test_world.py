@@ -20,6 +20,7 @@ SHIPPED = {  # name: (boxes, cylinders, spawn), each with a ground plane besides
     "empty": (0, 0, Pose2D()),
     "stage_1": (4, 0, Pose2D()),
     "stage_2": (4, 4, Pose2D()),
+    "stage_3": (4, 4, Pose2D()),
     "stage_4": (8, 2, Pose2D(-0.7, 0.0)),
     "world": (6, 9, Pose2D(-2.0, -0.5)),
     "maze_1": (18, 0, Pose2D()),
@@ -399,7 +400,7 @@ def test_unknown_world_is_refused_with_the_names_of_those_that_exist(name):
     with pytest.raises(WorldError) as caught:
         find_world(name, str(WORLDS))
     assert f"'{name}'" in str(caught.value)
-    assert "empty, maze_1, stage_1, stage_2, stage_4, world" in str(caught.value)
+    assert "empty, maze_1, stage_1, stage_2, stage_3, stage_4, world" in str(caught.value)
 
 
 def test_directory_without_worlds_is_named_as_such(tmp_path):

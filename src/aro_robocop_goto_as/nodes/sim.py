@@ -59,6 +59,8 @@ def build_simulator(p: SimParams) -> Simulator:
     share = rospkg.RosPack().get_path(PACKAGE)
     path = make_random(p.seed) if p.world == RANDOM else find_world(p.world, os.path.join(share, "worlds"))
     world = load_world(path)
+    if world.moving() and not p.moving:
+        rospy.loginfo("what world %s can move stands still, unless moving:=true", world.name)
     model = load_robot(os.path.join(share, "urdf", p.model + ".urdf"))
     return Simulator(p, world, robots_from(p, world, model))
 
@@ -77,6 +79,7 @@ class SimNode:
         # Not SimpleQueue: before Python 3.12 its get(timeout) waits for ever when a signal outlasts the timeout.
         self.jobs: queue.Queue[Callable[[], Any]] = queue.Queue()
         self.placed = set(range(len(sim.robots)))  # robots set down since the last clock tick
+        self.moving = bool(sim.world.moving())
         self.held: Dict[int, Twist2D] = {}  # lockstep: commands that wait for the tick's end, newest of each robot
 
         self.clock = publisher("/clock", Clock, latch=True)
@@ -228,7 +231,7 @@ class SimNode:
         world = self.sim.world
         if self.maps is not None:
             self.maps.publish(self.sim.occupancy(), convert.to_time(self.sim.stamp_ns), self.p.map_frame)
-        shapes = world_markers(world, self.p.world_frame)
+        shapes = world_markers(world, self.p.world_frame, self.sim.world_time)
         if self.robots[0].name:
             shapes += robot_markers({robot.name: robot.base_frame for robot in self.robots}, self.p.footprint_radius)
         self.shapes.publish(shapes)
@@ -327,6 +330,8 @@ class SimNode:
                           for transform in robot.transforms(seen, self.sim.map_from_odom(index), stamp)]
             if transforms:
                 self.tf.publish(transforms)
+        if seen.control and self.moving:
+            self.shapes.publish(world_markers(self.sim.world, self.p.world_frame, self.sim.world_time, moving=True))
         if seen.clock:
             self.clock.publish(stamp)
 

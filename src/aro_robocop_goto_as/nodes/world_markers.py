@@ -15,10 +15,11 @@ NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
 
 
-def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
+def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
     marker = Marker(ns="world", id=number, action=Marker.ADD, color=COLOR, frame_locked=True)
     marker.header.frame_id = frame
-    marker.pose = Pose(Point(*obstacle.pose.position), Quaternion(*obstacle.pose.orientation))
+    pose = obstacle.at(time)
+    marker.pose = Pose(Point(*pose.position), Quaternion(*pose.orientation))
     shape = obstacle.geometry
     if isinstance(shape, Box):
         marker.type, marker.scale = Marker.CUBE, Vector3(*shape.size)
@@ -35,13 +36,14 @@ def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
     return marker
 
 
-def world_markers(world: World, frame: str) -> List[Marker]:
-    """One marker an obstacle in the world's `frame`; left out are planes and a map's walls.
+def world_markers(world: World, frame: str, time: float, moving: bool = False) -> List[Marker]:
+    """One marker an obstacle, or one that moves, where it is at a time [s] in the world's `frame`.
 
-    RViz's grid shows the floor, and its Map display the map that the walls were made of.
+    Left out are planes and a map's walls: RViz's grid shows the floor, its Map display the map that they are made of.
     """
     solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, (Plane, Walls))]
-    return [_marker(number, frame, obstacle) for number, obstacle in enumerate(solid)]
+    return [_marker(number, frame, obstacle, time) for number, obstacle in enumerate(solid)
+            if obstacle.motion is not None or not moving]
 
 
 def robot_markers(frames: Mapping[str, str], radius: float) -> List[Marker]:
