@@ -50,13 +50,18 @@ class Kinematics:
     def __init__(self, world: World, rate: int, radius: float) -> None:
         self._dt = 1.0 / rate
         self._radius = radius
-        cuts = [Slice(world, height) for height in HEIGHTS]
-        self._segments = np.unique(np.concatenate([cut.segments for cut in cuts]), axis=0)
-        self._cuts = cuts
-        self._circles = self._circles_at(0.0)
-        self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
         self._discs: List[_Disc] = []
+        self.change_world(world, 0.0)
         self._apart = 0.0  # [m] that any two robots may certainly travel, both together, before they meet
+
+    def change_world(self, world: World, time: float) -> None:
+        """Another world from now on, as it is at a time [s]."""
+        self._cuts = [Slice(world, height) for height in HEIGHTS]
+        self._segments = np.unique(np.concatenate([cut.segments for cut in self._cuts]), axis=0)
+        self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
+        self._circles = self._circles_at(time)
+        for disc in self._discs:
+            disc.room = 0.0
 
     def _circles_at(self, time: float) -> np.ndarray:
         """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order."""

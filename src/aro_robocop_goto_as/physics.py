@@ -3,7 +3,7 @@
 import math
 import os
 import tempfile
-from typing import List, Sequence, Set, Tuple
+from typing import Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -44,19 +44,44 @@ class Physics:
         self._robots: List[_Body] = []
         self._floors: Set[int] = set()
         self._moving: List[Tuple[int, Obstacle]] = []  # with the bodies that they are
+        self._bodies: Dict[str, List[int]] = {}  # of each obstacle, by its name
         self._fill()
 
     def _fill(self) -> None:
         """Floor and obstacles into an empty Bullet world."""
-        self._floors, self._moving = set(), []
+        self._floors, self._moving, self._bodies = set(), [], {}
         pybullet.setGravity(0.0, 0.0, -STANDARD_GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / self._rate, numSubSteps=1, numSolverIterations=self._solver_iterations,
             deterministicOverlappingPairs=1, physicsClientId=self._client)
         self._add_obstacle(FLOOR)
         for obstacle in self._world.obstacles:
-            if (obstacle.pose, obstacle.geometry) != (FLOOR.pose, FLOOR.geometry):  # most world files bring their own
-                self._add_obstacle(obstacle)
+            self._add_unless_floor(obstacle)
+
+    def change_world(self, world: World, time: float) -> None:
+        """Another world from now on, as it is at a time [s]; what is the same in both stays untouched."""
+        before, now = set(map(id, self._world.obstacles)), set(map(id, world.obstacles))
+        for obstacle in self._world.obstacles:
+            if id(obstacle) not in now:
+                self._remove_obstacle(obstacle)
+        for obstacle in world.obstacles:
+            if id(obstacle) not in before:
+                self._add_unless_floor(obstacle)
+        self._world = world
+        self.move(time)
+        for it in self._robots:
+            self._unpark(it)
+
+    def _remove_obstacle(self, obstacle: Obstacle) -> None:
+        bodies = self._bodies.pop(obstacle.name, [])
+        for body in bodies:
+            pybullet.removeBody(body, physicsClientId=self._client)
+        self._floors.difference_update(bodies)
+        self._moving = [(body, other) for body, other in self._moving if body not in bodies]
+
+    def _add_unless_floor(self, obstacle: Obstacle) -> None:
+        if (obstacle.pose, obstacle.geometry) != (FLOOR.pose, FLOOR.geometry):  # most world files bring their own
+            self._add_obstacle(obstacle)
 
     def _add_obstacle(self, obstacle: Obstacle) -> None:
         """Static bodies, of many triangles several: as rigid ones, not as multibodies, they cost 0.7 us a step less."""
@@ -68,6 +93,7 @@ class Physics:
             pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
             pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, WORLD_GROUP | ROBOT_GROUP,
                                                  physicsClientId=client)
+            self._bodies.setdefault(obstacle.name, []).append(body)
             if isinstance(obstacle.geometry, Plane):
                 self._floors.add(body)
             if obstacle.motion is not None:

@@ -54,11 +54,10 @@ def read_world(path: str) -> World:
 
 
 def read_model(root: sdf.Element, name: str, pose: Pose3D) -> World:
-    """A world of nothing but the <model> within an <sdf>, under another name and at another pose in the world."""
+    """A world of nothing but the <model> within an <sdf>, at another pose and, unless it is empty, by another name."""
     reading = _Reading(sdf.file_of(root))
-    model = sdf.root_of(root, ("model",))
-    reading.model(model, _Place(), _Instead(name, pose, None))
-    return reading.world(name, Pose2D())
+    own_name = reading.model(sdf.root_of(root, ("model",)), _Place(), _Instead(name or None, pose, None))
+    return reading.world(own_name, Pose2D())
 
 
 def _spawn(world: sdf.Element) -> Pose2D:

@@ -127,4 +127,5 @@ class World:
 
     def standing(self) -> "World":
         """The same world, in which nothing moves."""
-        return replace(self, obstacles=tuple(replace(obstacle, motion=None) for obstacle in self.obstacles))
+        return replace(self, obstacles=tuple(
+            obstacle if obstacle.motion is None else replace(obstacle, motion=None) for obstacle in self.obstacles))

@@ -60,8 +60,7 @@ class Simulator:
 
     def __init__(self, params: SimParams, world: World, robots: Sequence[RobotSpec]) -> None:
         self.params = params
-        self.world = world = world if params.moving else world.standing()
-        self._moving = bool(world.moving())
+        self.world = world = self._as_asked(world)
         self.robots = tuple(robots)
         self.model = robots[0].model
         self.seed = params.seed
@@ -80,10 +79,26 @@ class Simulator:
             else Kinematics(world, params.physics_rate, params.footprint_radius))
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
-        self._walls = Slice(world, self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2])
+        self._cut()
         self._base_from_scan = self.model.base_from_scan.on_plane()
         self._schedule = self._make_schedule()
         self._start()
+
+    def _as_asked(self, world: World) -> World:
+        """A world with what moves in it, or without."""
+        return world if self.params.moving or not world.moving() else world.standing()
+
+    def _cut(self) -> None:
+        """Look at the world: its cut at the scanners' height, and whether anything moves."""
+        height = self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2]
+        self._walls = Slice(self.world, height)
+        self.moving = bool(self.world.moving())
+
+    def change_world(self, world: World) -> None:
+        """Another world from the next step on, such as world_edits makes of this one; a reset keeps it."""
+        self.world = self._as_asked(world)
+        self._cut()
+        self._physics.change_world(self.world, self.world_time)
 
     def _start(self) -> None:
         """All robots stand at their spawn poses, odometry at zero."""
@@ -134,7 +149,7 @@ class Simulator:
         self._turn_wheels()
         self._physics.step()
         self.steps += 1
-        if self._moving:
+        if self.moving:
             self._physics.move(self.world_time)
         if not due_now or (due_now == ONLY_IMU and not imus):
             return None

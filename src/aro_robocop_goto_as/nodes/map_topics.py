@@ -20,8 +20,6 @@ _LENGTH = struct.Struct("<I")
 class PackedGrid(OccupancyGrid):
     """An OccupancyGrid whose cells are an array: genpy would make a Python object of each of 16 million."""
 
-    __slots__ = ()
-
     def serialize(self, buff: Any) -> None:
         """As genpy's messages do it."""
         empty = BytesIO()

@@ -21,6 +21,7 @@ from ..lockstep import Lockstep
 from ..params import SimParams
 from ..random_world import random_world
 from ..robot import load_robot
+from ..shapes import World
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
 from ..spawns import FARTHEST, robots_from
@@ -32,7 +33,8 @@ from .publishing import publisher
 from .robot_topics import RobotTopics
 from .sim_control import SimControl
 from .status import StatusReport
-from .world_markers import robot_markers, world_markers
+from .world_control import WorldControl
+from .world_markers import CLEAR, robot_markers, world_markers
 
 PACKAGE = "aro_robocop_goto_as"
 RANDOM = "random"  # as `world`: one made from the seed
@@ -79,7 +81,6 @@ class SimNode:
         # Not SimpleQueue: before Python 3.12 its get(timeout) waits for ever when a signal outlasts the timeout.
         self.jobs: queue.Queue[Callable[[], Any]] = queue.Queue()
         self.placed = set(range(len(sim.robots)))  # robots set down since the last clock tick
-        self.moving = bool(sim.world.moving())
         self.held: Dict[int, Twist2D] = {}  # lockstep: commands that wait for the tick's end, newest of each robot
 
         self.clock = publisher("/clock", Clock, latch=True)
@@ -93,6 +94,7 @@ class SimNode:
         for robot in self.robots:
             robot.listen(self._on_command, self._on_answer, self._on_place)
         self.control = SimControl(self)
+        self.world_control = WorldControl(self)
         if p.gazebo_services:
             _serve_gazebo(self)
 
@@ -226,6 +228,12 @@ class SimNode:
             rospy.loginfo("not simulated from that file: %s", ", ".join(world.ignored))
         self.show_world()
 
+    def change_world(self, world: World) -> None:
+        """Another world from now on, shown as well."""
+        self.sim.change_world(world)
+        self.placed.update(range(len(self.robots)))
+        self.show_world()
+
     def show_world(self) -> None:
         """The obstacles for RViz; where a map is published, that too."""
         world = self.sim.world
@@ -234,7 +242,7 @@ class SimNode:
         shapes = world_markers(world, self.p.world_frame, self.sim.world_time)
         if self.robots[0].name:
             shapes += robot_markers({robot.name: robot.base_frame for robot in self.robots}, self.p.footprint_radius)
-        self.shapes.publish(shapes)
+        self.shapes.publish([CLEAR, *shapes])
 
     def _end_span(self) -> None:
         """A ~step request has run its course."""
@@ -330,7 +338,7 @@ class SimNode:
                           for transform in robot.transforms(seen, self.sim.map_from_odom(index), stamp)]
             if transforms:
                 self.tf.publish(transforms)
-        if seen.control and self.moving:
+        if seen.control and self.sim.moving:
             self.shapes.publish(world_markers(self.sim.world, self.p.world_frame, self.sim.world_time, moving=True))
         if seen.clock:
             self.clock.publish(stamp)

@@ -12,6 +12,7 @@ COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # see-through, or walls would hide th
 BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
 NOSE = ColorRGBA(0.95, 0.60, 0.10, 1.0)
 NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+CLEAR = Marker(action=Marker.DELETEALL)  # what was there before: a world that has changed may have fewer obstacles
 BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
 
 
