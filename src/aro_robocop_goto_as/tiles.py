@@ -6,6 +6,7 @@ from typing import List, Tuple
 import numpy as np
 
 TILE = 1.0  # [m] a side
+FAR = 1e12  # tiles: farther than any world reaches
 MOST_TILES = 4096  # of one segment; one that spans more is near everywhere
 
 
@@ -34,23 +35,34 @@ class Tiles:
 
     def near(self, x: float, y: float, half: float) -> np.ndarray:
         """Indices of at least the segments that meet the square x +- half, y +- half [m]; some more than once."""
-        columns, rows = self.square(x, y, half)
-        return self.members(columns, rows)
+        columns, rows = self._spans(x, y, half)
+        if not len(columns):
+            return self._everywhere
+        return self._between(rows * self._extent[0] + columns[0], rows * self._extent[0] + columns[-1])
 
     def square(self, x: float, y: float, half: float) -> Tuple[np.ndarray, np.ndarray]:
         """Columns and rows (t,) of the tiles that meet the square x +- half, y +- half [m], as far as there are any."""
+        columns, rows = self._spans(x, y, half)
+        return np.tile(columns, len(rows)), np.repeat(rows, len(columns))
+
+    def _spans(self, x: float, y: float, half: float) -> List[np.ndarray]:
+        """Columns and rows that a square spans."""
         spans = []
         for place, origin, extent in zip((x, y), self._origin, self._extent):
-            first, last = (math.floor((place + shift) / TILE) - origin for shift in (-half, half))
-            spans.append(np.arange(max(first, 0), min(last + 1, extent)))
-        columns, rows = spans
-        return np.tile(columns, len(rows)), np.repeat(rows, len(columns))
+            first = max(math.floor(max((place - half) / TILE, -FAR)) - origin, 0)
+            last = min(math.floor(min((place + half) / TILE, FAR)) - origin, extent - 1)
+            spans.append(np.arange(first, last + 1))
+        return spans
 
     def members(self, columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Indices of the segments in tiles (t,), and of those that are everywhere."""
         tiles = rows * self._extent[0] + columns
-        starts = np.searchsorted(self._tiles, tiles)
-        counts = np.searchsorted(self._tiles, tiles, "right") - starts
+        return self._between(tiles, tiles)
+
+    def _between(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """Indices of the segments in ranges of tiles (t,), both ends included, and of those that are everywhere."""
+        starts = np.searchsorted(self._tiles, first)
+        counts = np.searchsorted(self._tiles, last, "right") - starts
         ends = np.cumsum(counts)
         total = int(ends[-1]) if len(ends) else 0
         within = np.arange(total) + np.repeat(starts - ends + counts, counts)

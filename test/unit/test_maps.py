@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from aro_robocop_goto_as import raycast
 from aro_robocop_goto_as.errors import WorldError
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, inverse
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, inverse
 from aro_robocop_goto_as.kinematics import Kinematics
 from aro_robocop_goto_as.maps import outline
 from aro_robocop_goto_as.params import SimParams
@@ -17,7 +18,7 @@ from aro_robocop_goto_as.physics import Physics
 from aro_robocop_goto_as.raycast import Fan
 from aro_robocop_goto_as.simulator import RobotSpec, Simulator
 from aro_robocop_goto_as.slice import Slice
-from aro_robocop_goto_as.world import Walls, find_world, load_world
+from aro_robocop_goto_as.world import Obstacle, Walls, World, find_world, load_world
 
 HEIGHT = 0.182  # [m] of the lidar
 LAB = Fan(0.0, 6.28319 / 359, 360)
@@ -258,7 +259,27 @@ def test_scan_in_a_big_map_works_on_no_more_walls_than_some_rooms_have(big, monk
 
     monkeypatch.setattr(Fan, "_to_segments", counting)
     LAB.cast(free_poses(big, 100), cut, reach=10.0)
-    assert np.mean(tried) * len(tried) / 100 < 500 < len(cut.segments) / 50
+    assert sum(tried) / 100 < 1000 < len(cut.segments) / 40
+
+
+@pytest.mark.parametrize("at_once", [0, 20, 10**6])
+@pytest.mark.parametrize("fan", [
+    LAB, Fan(-2.0, 0.013, 300), Fan(1.0, 0.05, 200), Fan(3.0, 1.0, 1), Fan(-9.0, 0.1, 190)])
+def test_looking_up_walls_makes_no_difference_however_it_is_done(fan, at_once, monkeypatch):
+    monkeypatch.setattr(raycast, "AT_ONCE", at_once)
+    random = np.random.default_rng(4)
+    starts = random.uniform(-12.0, 12.0, (3000, 1, 2))
+    segments = np.concatenate([starts, starts + random.uniform(-0.5, 0.5, (3000, 1, 2))], axis=1)
+    segments[:3] = [[[-1e4, 11.0], [1e4, 11.0]], [[-30.0, -11.5], [30.0, -11.0]], [[0.3, -20.0], [0.3, 20.0]]]
+    segments[:, :, 0] += np.where(np.abs(segments[:, :, 0]) < 1.0, 5.0, 0.0)
+    cut = Slice(World("w", (Obstacle("o", Pose3D(), Walls(segments, 1.0)),), Pose2D(), (), ""), HEIGHT)
+    assert cut.tiles is not None
+    poses = np.column_stack([random.uniform(-13, 13, (20, 2)), random.uniform(-10, 10, 20)])
+    found = {reach: fan.cast(poses, cut, reach=reach) for reach in (0.7, 5.0, math.inf)}
+    cut.tiles = None
+    every = fan.cast(poses, cut)
+    for reach, seen in found.items():
+        assert (seen == np.where(every <= reach, every, np.inf)).all()
 
 
 def test_both_drives_hold_a_big_map(big, burger):
