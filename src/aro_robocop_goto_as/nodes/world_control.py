@@ -53,13 +53,14 @@ class WorldControl:
         rospy.Service("~move_model", MoveModel, self._on_move)
 
     def _on_spawn(self, request: SpawnModelRequest) -> SpawnModelResponse:
-        return SpawnModelResponse(*self._answer(lambda: self._spawn(request)))
+        return SpawnModelResponse(*self._answer(
+            lambda: self.spawn(request.name, request.xml, request.file, from_pose(request.pose))))
 
     def _on_delete(self, request: DeleteModelRequest) -> DeleteModelResponse:
-        return DeleteModelResponse(*self._answer(lambda: self._delete(request.name)))
+        return DeleteModelResponse(*self._answer(lambda: self.delete(request.name)))
 
     def _on_move(self, request: MoveModelRequest) -> MoveModelResponse:
-        return MoveModelResponse(*self._answer(lambda: self._move(request)))
+        return MoveModelResponse(*self._answer(lambda: self.move(request.name, from_pose(request.pose))))
 
     @staticmethod
     def _answer(action: Callable[[], str]) -> Tuple[bool, str]:
@@ -68,26 +69,25 @@ class WorldControl:
         except WorldError as error:
             return False, str(error)
 
-    def _spawn(self, request: SpawnModelRequest) -> str:
-        if bool(request.xml) == bool(request.file):
+    def spawn(self, name: str, xml: str, file: str, pose: Pose3D) -> str:
+        """Put a model in, given as XML or as a file; what was done, in words. WorldError where it can't be."""
+        if bool(xml) == bool(file):
             raise WorldError("expected either xml or file")
-        if request.xml:
-            root = sdf.parse_text(request.xml.encode(), "xml of the request")
-        else:
-            root = sdf.parse(request.file)
-        model = read_model(root, request.name, from_pose(request.pose))
+        root = sdf.parse_text(xml.encode(), "xml of the request") if xml else sdf.parse(file)
+        model = read_model(root, name, pose)
         self._change(lambda world: with_model(world, model))
         told = f"; not simulated: {', '.join(model.ignored)}" if model.ignored else ""
         return f"model '{model.name}' with {len(model.obstacles)} collisions{told}"
 
-    def _delete(self, name: str) -> str:
+    def delete(self, name: str) -> str:
+        """Take a model out; what was done, in words. WorldError if there is none of that name."""
         self._change(lambda world: without_model(world, name))
         return f"model '{name}' deleted"
 
-    def _move(self, request: MoveModelRequest) -> str:
-        pose = from_pose(request.pose)
-        self._change(lambda world: with_model_at(world, request.name, pose))
-        return "model '{}' at x {:.3f} y {:.3f} z {:.3f}".format(request.name, *pose.position)
+    def move(self, name: str, pose: Pose3D) -> str:
+        """Set a model elsewhere; what was done, in words. WorldError if there is none of that name."""
+        self._change(lambda world: with_model_at(world, name, pose))
+        return "model '{}' at x {:.3f} y {:.3f} z {:.3f}".format(name, *pose.position)
 
     def _change(self, edit: Callable[[World], World]) -> None:
         def change() -> None:
