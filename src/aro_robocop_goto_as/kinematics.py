@@ -59,13 +59,18 @@ class Kinematics:
         self._cuts = [Slice(world, height) for height in HEIGHTS]
         self._segments = np.unique(np.concatenate([cut.segments for cut in self._cuts]), axis=0)
         self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
+        self._moving = bool(world.moving())
         self._circles = self._circles_at(time)
         for disc in self._discs:
             disc.room = 0.0
 
     def _circles_at(self, time: float) -> np.ndarray:
-        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order."""
-        return np.concatenate([cut.at(time).circles for cut in self._cuts])
+        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order.
+
+        Where nothing moves, each is there once, not once a height: fewer are faster.
+        """
+        circles = np.concatenate([cut.at(time).circles for cut in self._cuts])
+        return circles if self._moving else np.unique(circles, axis=0)
 
     def move(self, time: float) -> None:
         """Have obstacles that move where they are at a time [s]; robots in their way are pushed up to a wall."""
