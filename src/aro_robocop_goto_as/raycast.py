@@ -174,7 +174,10 @@ class Fan:
 
 def _in_scans(poses: np.ndarray, points: np.ndarray) -> np.ndarray:
     """World points (m, 2), or (r, m, 2) a set for each, seen from poses (r, 3): (r, m, 2)."""
-    c, s = np.cos(poses[:, 2:3]), np.sin(poses[:, 2:3])
+    # A copy: of a column, NumPy's vectorised cosine takes another way, other in the last bits, when by its too careful
+    # reckoning the result's memory overlaps the column's. So the same run would not always give the same bytes.
+    yaw = poses[:, 2].copy()
+    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     dx, dy = points[..., 0] - poses[:, 0:1], points[..., 1] - poses[:, 1:2]
     return np.stack([c * dx + s * dy, c * dy - s * dx], axis=-1)
 

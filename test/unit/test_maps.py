@@ -245,8 +245,8 @@ def test_scan_in_a_big_map_is_exactly_what_all_of_its_walls_together_give(big):
     endless = LAB.cast(poses[:1], cut)
     cut.tiles = None
     every = LAB.cast(poses, cut)
-    assert (seen == np.where(every <= 10.0, every, np.inf)).all()
-    assert (endless == every[:1]).all()
+    np.testing.assert_array_equal(seen, np.where(every <= 10.0, every, np.inf))
+    np.testing.assert_array_equal(endless, every[:1])
 
 
 def test_scan_in_a_big_map_works_on_no_more_walls_than_some_rooms_have(big, monkeypatch):
@@ -279,7 +279,7 @@ def test_looking_up_walls_makes_no_difference_however_it_is_done(fan, at_once, m
     cut.tiles = None
     every = fan.cast(poses, cut)
     for reach, seen in found.items():
-        assert (seen == np.where(every <= reach, every, np.inf)).all()
+        np.testing.assert_array_equal(seen, np.where(every <= reach, every, np.inf))
 
 
 def test_both_drives_hold_a_big_map(big, burger):
