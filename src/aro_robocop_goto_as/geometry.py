@@ -134,6 +134,14 @@ def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
     )
 
 
+def inverse3(a_from_b: Pose3D) -> Pose3D:
+    """b_from_a, in space."""
+    x, y, z, w = a_from_b.orientation
+    back = (-x, -y, -z, w)
+    bx, by, bz = rotation_matrix(back) @ np.array(a_from_b.position)
+    return Pose3D((-float(bx), -float(by), -float(bz)), back)
+
+
 def lifted(pose: Pose2D, z: float = 0.0) -> Pose3D:
     """A pose on the plane as one in space at height z [m]."""
     return Pose3D((pose.x, pose.y, z), quaternion_from_rpy(0.0, 0.0, pose.yaw))

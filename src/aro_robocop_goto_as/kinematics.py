@@ -12,10 +12,12 @@ import numpy as np
 
 from .geometry import STANDSTILL, Pose2D, Pose3D, Twist2D, arc, quaternion_from_rpy, wrap_angle
 from .robot import BodyState, Pair, RobotModel, RobotState
-from .slice import Slice
+from .slice import FEW, Slice
+from .tiles import Tiles
 from .world import World
 
 HEIGHTS = (0.02, 0.10, 0.18)  # [m] at which obstacles are met: a Burger's bottom plate, middle, and lidar
+NEARBY = 1.0  # [m] how far many walls are looked up
 SKIN = 1e-6  # [m] kept free, so that rounding never puts a disc inside a wall
 
 
@@ -48,11 +50,50 @@ class Kinematics:
     def __init__(self, world: World, rate: int, radius: float) -> None:
         self._dt = 1.0 / rate
         self._radius = radius
-        cuts = [Slice(world, height) for height in HEIGHTS]
-        self._segments = np.unique(np.concatenate([cut.segments for cut in cuts]), axis=0)
-        self._circles = np.unique(np.concatenate([cut.circles for cut in cuts]), axis=0)
         self._discs: List[_Disc] = []
+        self.change_world(world, 0.0)
         self._apart = 0.0  # [m] that any two robots may certainly travel, both together, before they meet
+
+    def change_world(self, world: World, time: float) -> None:
+        """Another world from now on, as it is at a time [s]."""
+        self._cuts = [Slice(world, height) for height in HEIGHTS]
+        self._segments = np.unique(np.concatenate([cut.segments for cut in self._cuts]), axis=0)
+        self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
+        self._moving = bool(world.moving())
+        self._circles = self._circles_at(time)
+        for disc in self._discs:
+            disc.room = 0.0
+
+    def _circles_at(self, time: float) -> np.ndarray:
+        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order.
+
+        Where nothing moves, each is there once, not once a height: fewer are faster.
+        """
+        circles = np.concatenate([cut.at(time).circles for cut in self._cuts])
+        return circles if self._moving else np.unique(circles, axis=0)
+
+    def move(self, time: float) -> None:
+        """Have obstacles that move where they are at a time [s]; robots in their way are pushed up to a wall."""
+        circles = self._circles_at(time)
+        travelled = float(np.hypot(*(circles[:, :2] - self._circles[:, :2]).T).max(initial=0.0))
+        self._circles = circles
+        for it in self._discs:
+            it.room -= travelled
+            if it.room < 0.0:
+                self._push(it)
+
+    def _push(self, it: _Disc) -> None:
+        """Straight away from the round obstacle that is deepest in a robot, if one is."""
+        centre = np.array([it.pose.x, it.pose.y])
+        offsets = centre - self._circles[:, :2]
+        away = np.hypot(offsets[:, 0], offsets[:, 1])
+        depths = self._circles[:, 2] + self._radius + SKIN - away
+        deepest = int(depths.argmax())
+        if depths[deepest] > 0.0 and away[deepest] > 0.0:
+            push = offsets[deepest] * (depths[deepest] / away[deepest])
+            x, y = (centre + push * self._share_against_walls(it, centre, push, float(depths[deepest]))).tolist()
+            it.pose = Pose2D(x, y, it.pose.yaw)
+            it.blocked = True
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float = 0.0) -> int:
         """Put a robot down; torque is of no account here. Returns its index."""
@@ -66,7 +107,8 @@ class Kinematics:
         self._apart = 0.0
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
-        """All robots set down anew at their poses, wheels at angle zero."""
+        """All robots set down anew at their poses, wheels at angle zero; what moves is back where it began."""
+        self._circles = self._circles_at(0.0)
         self._discs = [_Disc(disc.model, pose) for disc, pose in zip(self._discs, poses)]
         self._apart = 0.0
 
@@ -121,19 +163,26 @@ class Kinematics:
 
     def _share_against_walls(self, it: _Disc, centre: np.ndarray, move: np.ndarray, length: float) -> float:
         """The share that is free of walls; renews the robot's room."""
-        gap = self._gap(centre) - SKIN
+        segments = self._near(centre, length)
+        gap = self._gap(centre, segments) - SKIN
         it.room = gap - length  # what is left of it after this step
         if gap >= length:
             return 1.0
-        rounds = np.concatenate([self._circles + [0.0, 0.0, self._radius], _ends(self._segments, self._radius)])
-        free = min(_share_to_circles(centre, move, rounds),
-                   _share_to_sides(centre, move, self._segments, self._radius))
+        rounds = np.concatenate([self._circles + [0.0, 0.0, self._radius], _ends(segments, self._radius)])
+        free = min(_share_to_circles(centre, move, rounds), _share_to_sides(centre, move, segments, self._radius))
         return _short_of(free, length)
 
-    def _gap(self, centre: np.ndarray) -> float:
-        """How far [m] a disc at a point (2,) is from the nearest wall; negative where it is in one."""
-        walls = np.concatenate([_to_segments(centre, self._segments),
-                                np.hypot(*(self._circles[:, :2] - centre).T) - self._circles[:, 2], [np.inf]])
+    def _near(self, centre: np.ndarray, length: float = 0.0) -> np.ndarray:
+        """All segments, or of many at least those within NEARBY of a disc that moves from there by a length [m]."""
+        if self._tiles is None:
+            return self._segments
+        return self._segments[self._tiles.near(float(centre[0]), float(centre[1]), self._radius + length + NEARBY)]
+
+    def _gap(self, centre: np.ndarray, segments: np.ndarray) -> float:
+        """How far [m] a disc at a point (2,) is from the nearest wall, NEARBY at most; negative where it is in one."""
+        limit = np.inf if self._tiles is None else self._radius + NEARBY
+        walls = np.concatenate([_to_segments(centre, segments),
+                                np.hypot(*(self._circles[:, :2] - centre).T) - self._circles[:, 2], [limit]])
         return float(walls.min()) - self._radius
 
     def _others(self, i: int) -> np.ndarray:
@@ -157,7 +206,7 @@ class Kinematics:
         it = self._discs[robot]
         centre = np.array([it.pose.x, it.pose.y])
         near = np.hypot(*(self._others(robot) - centre).T) < 2.0 * self._radius
-        return it.blocked or self._gap(centre) < 0.0 or bool(near.any())
+        return it.blocked or self._gap(centre, self._near(centre)) < 0.0 or bool(near.any())
 
     def close(self) -> None:
         """Nothing to give back."""

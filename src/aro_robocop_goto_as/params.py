@@ -88,6 +88,9 @@ class SimParams:
     odom_tf: bool = True
     ground_truth: bool = True
     gazebo_services: bool = False
+    moving: bool = False
+    publish_map: bool = False
+    map_resolution: float = _positive(0.05)
 
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
     physics_rate: int = _param(240, low=1, high=10000)

@@ -1,21 +1,23 @@
-"""World + wheel speeds -> robots on the move, by Bullet; the only module that imports pybullet."""
+"""World + wheel speeds -> robots on the move, by Bullet; bullet_shapes.py and this are all that imports pybullet."""
 
 import math
 import os
 import tempfile
-from typing import List, Sequence, Set
+from typing import Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
 
+from .bullet_shapes import shapes_of
 from .errors import RobotModelError
 from .geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Twist2D, Vector3, compose3, lifted, yaw_of
 from .robot import CASTER_PREFIX, WHEEL_JOINTS, BodyState, Pair, RobotModel, RobotState
-from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
+from .shapes import Obstacle, Plane, World
 
 WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits; rays see the world only, never the robot itself
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower than this with stopped wheels is creep of the solver
 REST_STEPS = 24  # steps on end below those speeds before the robot is parked
+WAKING = 1.0  # [m] from its centre to the robot's, within which an obstacle that moves keeps a robot awake
 TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
 FLOOR = Obstacle("floor", Pose3D(), Plane((0.0, 0.0, 1.0)))
 
@@ -41,43 +43,61 @@ class Physics:
         self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
         self._robots: List[_Body] = []
         self._floors: Set[int] = set()
+        self._moving: List[Tuple[int, Obstacle]] = []  # with the bodies that they are
+        self._bodies: Dict[str, List[int]] = {}  # of each obstacle, by its name
         self._fill()
 
     def _fill(self) -> None:
         """Floor and obstacles into an empty Bullet world."""
-        self._floors = set()
+        self._floors, self._moving, self._bodies = set(), [], {}
         pybullet.setGravity(0.0, 0.0, -STANDARD_GRAVITY, physicsClientId=self._client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / self._rate, numSubSteps=1, numSolverIterations=self._solver_iterations,
             deterministicOverlappingPairs=1, physicsClientId=self._client)
         self._add_obstacle(FLOOR)
         for obstacle in self._world.obstacles:
-            if (obstacle.pose, obstacle.geometry) != (FLOOR.pose, FLOOR.geometry):  # most world files bring their own
-                self._add_obstacle(obstacle)
+            self._add_unless_floor(obstacle)
+
+    def change_world(self, world: World, time: float) -> None:
+        """Another world from now on, as it is at a time [s]; what is the same in both stays untouched."""
+        before, now = set(map(id, self._world.obstacles)), set(map(id, world.obstacles))
+        for obstacle in self._world.obstacles:
+            if id(obstacle) not in now:
+                self._remove_obstacle(obstacle)
+        for obstacle in world.obstacles:
+            if id(obstacle) not in before:
+                self._add_unless_floor(obstacle)
+        self._world = world
+        self.move(time)
+        for it in self._robots:
+            self._unpark(it)
+
+    def _remove_obstacle(self, obstacle: Obstacle) -> None:
+        bodies = self._bodies.pop(obstacle.name, [])
+        for body in bodies:
+            pybullet.removeBody(body, physicsClientId=self._client)
+        self._floors.difference_update(bodies)
+        self._moving = [(body, other) for body, other in self._moving if body not in bodies]
+
+    def _add_unless_floor(self, obstacle: Obstacle) -> None:
+        if (obstacle.pose, obstacle.geometry) != (FLOOR.pose, FLOOR.geometry):  # most world files bring their own
+            self._add_obstacle(obstacle)
 
     def _add_obstacle(self, obstacle: Obstacle) -> None:
-        """A static body: as a rigid one, not as a multibody, it costs 0.7 us a step less."""
-        client, geometry = self._client, obstacle.geometry
-        if isinstance(geometry, Box):
-            x, y, z = geometry.size
-            shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[x / 2, y / 2, z / 2],
-                                                  physicsClientId=client)
-        elif isinstance(geometry, Cylinder):
-            shape = pybullet.createCollisionShape(pybullet.GEOM_CYLINDER, radius=geometry.radius,
-                                                  height=geometry.length, physicsClientId=client)
-        elif isinstance(geometry, Sphere):
-            shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=geometry.radius,
-                                                  physicsClientId=client)
-        else:
-            shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=geometry.normal,
-                                                  physicsClientId=client)
-        body = pybullet.createMultiBody(0.0, shape, basePosition=obstacle.pose.position,
-                                        baseOrientation=obstacle.pose.orientation, useMaximalCoordinates=1,
-                                        physicsClientId=client)
-        pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
-        pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client)
-        if isinstance(geometry, Plane):
-            self._floors.add(body)
+        """Static bodies, of many triangles several: as rigid ones, not as multibodies, they cost 0.7 us a step less."""
+        client = self._client
+        for shape in shapes_of(obstacle.geometry, client):
+            body = pybullet.createMultiBody(0.0, shape, basePosition=obstacle.pose.position,
+                                            baseOrientation=obstacle.pose.orientation, useMaximalCoordinates=1,
+                                            physicsClientId=client)
+            pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
+            pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, WORLD_GROUP | ROBOT_GROUP,
+                                                 physicsClientId=client)
+            self._bodies.setdefault(obstacle.name, []).append(body)
+            if isinstance(obstacle.geometry, Plane):
+                self._floors.add(body)
+            if obstacle.motion is not None:
+                self._moving.append((body, obstacle))
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float) -> int:
         """Put a robot on the floor, wheels held by motors of `wheel_torque` [Nm]; returns its index."""
@@ -146,6 +166,20 @@ class Physics:
         for it in self._robots:
             if it.targets == (0.0, 0.0) and not it.parked:
                 self._park_when_at_rest(it)
+
+    def move(self, time: float) -> None:
+        """Have obstacles that move where they are at a time [s]; contacts push robots out of their way.
+
+        Robots nearby are kept awake: what only moves by being set somewhere wakes nobody.
+        """
+        for body, obstacle in self._moving:
+            pose = obstacle.at(time)
+            pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation,
+                                                     physicsClientId=self._client)
+            for it in self._robots:
+                (x, y, _), _ = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self._client)
+                if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKING:
+                    self._unpark(it)
 
     def _park_when_at_rest(self, it: _Body) -> None:
         """Let Bullet put a standing robot to sleep.

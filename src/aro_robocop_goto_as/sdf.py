@@ -7,7 +7,7 @@ The grammar is that of http://sdformat.org/spec, versions 1.4 to 1.7.
 import math
 import os
 import re
-from typing import Any, Iterable, Optional, Set, Tuple
+from typing import Any, Iterable, Optional, Sequence, Set, Tuple
 from urllib.parse import quote, unquote
 
 from lxml import etree
@@ -28,40 +28,62 @@ def error(element: Element, message: str) -> WorldError:
     owners = [element, *element.iterancestors("model", "link", "collision")]
     names = [owner.get("name") for owner in reversed(owners) if owner.tag in ("model", "link", "collision")]
     where = "/".join(name or "?" for name in names)
-    place = f"{unquote(element.getroottree().docinfo.URL)}:{element.sourceline}"
+    place = f"{file_of(element)}:{element.sourceline}"
     return WorldError(f"{place}: in '{where}': {message}" if where else f"{place}: {message}")
 
 
-def read_world(path: str) -> Element:
-    """The one <world> element of an SDF file.
+def file_of(element: Element) -> str:
+    """The file that an element stands in, as its path was given."""
+    return unquote(element.getroottree().docinfo.URL)
 
-    Raises WorldError if the file can't be read, isn't XML, declares a DOCTYPE, or isn't one world of SDF 1.4 to 1.7.
+
+def read_root(path: str, expected: Sequence[str]) -> Element:
+    """The one element within <sdf>, which must be one of those expected: <world>, <model>.
+
+    Raises WorldError if the file can't be read, isn't XML, declares a DOCTYPE, or isn't one such of SDF 1.4 to 1.7.
     """
-    root = _parse(path)
+    return root_of(parse(path), expected)
+
+
+def root_of(root: Element, expected: Sequence[str]) -> Element:
+    """The one element within an <sdf> that is parsed already; WorldError as read_root."""
     if root.tag != "sdf":
         raise error(root, f"the outermost element is <{root.tag}>, expected <sdf>")
     if root.get("version") not in VERSIONS:
         raise error(root, f"SDF version {root.get('version')!r} is not supported; supported: {', '.join(VERSIONS)}")
-    check_children(root, read=("world",))
-    return need(root, "world")
+    check_children(root, read=expected)
+    found = [child for child in root if child.tag in expected]
+    if not found:
+        raise error(root, f"<sdf> has no <{'> and no <'.join(expected)}>")
+    if len(found) > 1:
+        raise error(found[1], f"a second <{found[1].tag}> in <sdf>; supported: one")
+    return found[0]
 
 
-def _parse(path: str) -> Element:
+def parse(path: str) -> Element:
+    """The outermost element of an XML file; WorldError if it can't be read, isn't XML, or declares a DOCTYPE."""
+    try:
+        # Not etree.parse(path), which would take a URL for a path as well.
+        with open(path, "rb") as file:
+            return parse_text(file.read(), path)
+    except OSError as exc:
+        raise WorldError(f"{path}: can't read the file: {exc.strerror or exc}") from exc
+
+
+def parse_text(text: bytes, path: str) -> Element:
+    """`parse` for what has been read already; path: what messages call it."""
     # Worlds come from strangers: a DTD could read other files, or grow without bound when its entities expand.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
     )
     try:
-        # Not etree.parse(path), which would take a URL for a path as well. Quoted, or libxml2 quotes it only at times.
-        with open(path, "rb") as file:
-            root = etree.fromstring(file.read(), parser, base_url=quote(os.fsencode(path)))
-    except OSError as exc:
-        raise WorldError(f"{path}: can't read the world: {exc.strerror or exc}") from exc
+        # Quoted, or libxml2 quotes it only at times.
+        root = etree.fromstring(text, parser, base_url=quote(os.fsencode(path)))
     except etree.XMLSyntaxError as exc:
         raise WorldError(f"{path}:{exc.lineno}: not well-formed XML: {exc.msg}") from exc
     info = root.getroottree().docinfo
     if info.doctype or info.internalDTD is not None:
-        raise WorldError(f"{path}: '{info.doctype}' is not supported; a world holds no DOCTYPE and no entities")
+        raise WorldError(f"{path}: '{info.doctype}' is not supported; a world's files hold no DOCTYPE and no entities")
     return root
 
 
@@ -80,12 +102,16 @@ def check_children(element: Element, read: Iterable[str], skipped: Iterable[str]
 
 def check_unique(elements: Iterable[Element]) -> None:
     """Refuse the second of two siblings with the same name; their obstacles couldn't be told apart."""
-    seen: Set[str] = set()
+    taken: Set[str] = set()
     for element in elements:
-        name = name_of(element)
-        if name in seen:
-            raise error(element, f"the name '{name}' of this <{element.tag}> is taken by an earlier one")
-        seen.add(name)
+        claim(name_of(element), element, taken)
+
+
+def claim(name: str, element: Element, taken: Set[str]) -> None:
+    """Add an element's name to those that are taken; WorldError if it is among them."""
+    if name in taken:
+        raise error(element, f"the name '{name}' of this <{element.tag}> is taken by an earlier one")
+    taken.add(name)
 
 
 def only(element: Element, tag: str) -> Optional[Element]:
@@ -112,12 +138,8 @@ def text_of(element: Element) -> str:
 
 
 def name_of(element: Element) -> str:
-    """The attribute `name`; an <include> is named by its <name>, else by its <uri>. WorldError if there is none."""
-    if element.tag == "include":
-        own = only(element, "name")
-        name = text_of(need(element, "uri")).rpartition("/")[2] if own is None else text_of(own)
-    else:
-        name = element.get("name", "").strip()
+    """The attribute `name`, stripped; WorldError if there is none."""
+    name = str(element.get("name", "")).strip()
     if not name:
         raise error(element, f"<{element.tag}> has no name")
     return name

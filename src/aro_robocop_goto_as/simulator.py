@@ -9,6 +9,7 @@ from . import drive
 from .drive import DriveLimits
 from .geometry import Pose2D, Twist2D, compose, inverse
 from .kinematics import Kinematics
+from .occupancy import occupancy_of
 from .params import SimParams
 from .physics import Physics
 from .robot import BodyState, RobotModel, RobotState
@@ -17,9 +18,9 @@ from .sensors import odometry
 from .sensors.imu import ImuSample
 from .sensors.lidar import Lidar, LidarSpec
 from .sensors.odometry import Odometry
+from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
 from .slice import Slice
-from .world import World
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
 ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
@@ -59,7 +60,7 @@ class Simulator:
 
     def __init__(self, params: SimParams, world: World, robots: Sequence[RobotSpec]) -> None:
         self.params = params
-        self.world = world
+        self.world = world = self._as_asked(world)
         self.robots = tuple(robots)
         self.model = robots[0].model
         self.seed = params.seed
@@ -78,10 +79,26 @@ class Simulator:
             else Kinematics(world, params.physics_rate, params.footprint_radius))
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
-        self._walls = Slice(world, self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2])
+        self._cut()
         self._base_from_scan = self.model.base_from_scan.on_plane()
         self._schedule = self._make_schedule()
         self._start()
+
+    def _as_asked(self, world: World) -> World:
+        """A world with what moves in it, or without."""
+        return world if self.params.moving or not world.moving() else world.standing()
+
+    def _cut(self) -> None:
+        """Look at the world: its cut at the scanners' height, and whether anything moves."""
+        height = self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2]
+        self._walls = Slice(self.world, height)
+        self.moving = bool(self.world.moving())
+
+    def change_world(self, world: World) -> None:
+        """Another world from the next step on, such as world_edits makes of this one; a reset keeps it."""
+        self.world = self._as_asked(world)
+        self._cut()
+        self._physics.change_world(self.world, self.world_time)
 
     def _start(self) -> None:
         """All robots stand at their spawn poses, odometry at zero."""
@@ -111,6 +128,11 @@ class Simulator:
         """Simulated time [s] of the last step."""
         return self.steps / self.params.physics_rate
 
+    @property
+    def world_time(self) -> float:
+        """Simulated time [s] since the last reset, of which the poses of moving obstacles are a function."""
+        return (self.steps - self._noise_origin) / self.params.physics_rate
+
     def everything(self) -> Dict[str, Sequence[int]]:
         """All sensors of all robots."""
         return {sensor: range(len(self.robots)) for sensor in SENSORS}
@@ -127,6 +149,8 @@ class Simulator:
         self._turn_wheels()
         self._physics.step()
         self.steps += 1
+        if self.moving:
+            self._physics.move(self.world_time)
         if not due_now or (due_now == ONLY_IMU and not imus):
             return None
         # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
@@ -168,7 +192,8 @@ class Simulator:
         """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
         scans = [compose(state.world_from_base, self._base_from_scan) for state in states]
         world_from_scans = np.array([(pose.x, pose.y, pose.yaw) for pose in scans])
-        return self.lidar.distances(world_from_scans[list(robots)], self._walls, self._others(world_from_scans, robots))
+        return self.lidar.distances(world_from_scans[list(robots)], self._walls.at(self.world_time),
+                                    self._others(world_from_scans, robots))
 
     def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
         """Circles (r, n - 1, 3) that stand for the other robots' scanners, for each robot asked for."""
@@ -177,6 +202,12 @@ class Simulator:
             return None
         circles = np.column_stack([world_from_scans[:, :2], np.full(n, LIDAR_RADIUS)])
         return np.stack([np.delete(circles, robot, axis=0) for robot in robots])
+
+    def occupancy(self) -> Occupancy:
+        """The world as a grid map in its own frame: the one it was made of, else its cut at the scanners' height."""
+        if self.world.occupancy is not None:
+            return self.world.occupancy
+        return occupancy_of(self._walls, self.world.spawn, self.params.map_resolution)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""

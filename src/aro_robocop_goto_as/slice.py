@@ -1,35 +1,61 @@
-"""World -> its cut at the lidar's height: segments and circles."""
+"""World -> its cut at the lidar's height: segments and circles, where they are many with an index of what is near."""
 
+import copy
 import math
 from typing import List, Optional, Tuple
 
 import numpy as np
 
-from .geometry import Pose3D, rotation_matrix
-from .world import Box, Cylinder, Obstacle, Plane, Sphere, World
+from .geometry import Pose2D, Pose3D, rotation_matrix
+from .motion import Motion
+from .shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+from .tiles import Tiles
 
 CYLINDER_SIDES = 64  # of the prism that stands for a tilted cylinder; an upright one is exact
 FAR = 1e4  # [m] half length of the segment that stands for a vertical plane's infinite line
 UPRIGHT = 1e-9
+FEW = 1000  # segments: of more, those nearby are looked up; of fewer, it is faster to work on all
 
 Segment = Tuple[Tuple[float, float], Tuple[float, float]]
 Circle = Tuple[float, float, float]  # x, y, radius [m]
 
 
 class Slice:
-    """Segments and circles in the horizontal plane at one height, in the world frame."""
+    """Segments and circles in the horizontal plane at one height, in the world frame; at time zero, where some move."""
 
     def __init__(self, world: World, height: float) -> None:
         segments: List[Segment] = []
         circles: List[Circle] = []
+        many: List[np.ndarray] = []
+        self._moving: List[Tuple[int, Motion]] = []  # circles that move, by their place among all
         for obstacle in world.obstacles:
             circle = _circle(obstacle, height)
             if circle is not None:
+                if obstacle.motion is not None:
+                    self._moving.append((len(circles), obstacle.motion))
                 circles.append(circle)
+            elif isinstance(obstacle.geometry, Mesh):
+                many.append(_mesh_segments(obstacle.pose, obstacle.geometry, height))
+            elif isinstance(obstacle.geometry, Walls):
+                many.append(_wall_segments(obstacle.pose, obstacle.geometry, height))
             else:
                 segments += _segments(obstacle, height)
-        self.segments = np.array(segments, dtype=float).reshape(-1, 2, 2)  # (m, [start, end], [x, y]) [m]
+        plain = np.array(segments, dtype=float).reshape(-1, 2, 2)
+        self.segments = np.concatenate([plain, *many])  # (m, [start, end], [x, y]) [m]
         self.circles = np.array(circles, dtype=float).reshape(-1, 3)  # (k, [x, y, radius]) [m]
+        self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
+
+    def at(self, time: float) -> "Slice":
+        """The cut at a time [s]: what moves is round."""
+        if not self._moving:
+            return self
+        moved = copy.copy(self)
+        moved.circles = self.circles.copy()
+        for place, motion in self._moving:
+            x, y, _ = self.circles[place].tolist()
+            pose = motion.carry(Pose2D(x, y), time)
+            moved.circles[place, :2] = pose.x, pose.y
+        return moved
 
 
 def _circle(obstacle: Obstacle, height: float) -> Optional[Circle]:
@@ -91,6 +117,31 @@ def _outline(corners: np.ndarray, edges: List[Tuple[int, int]], height: float) -
     points = points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))]
     ring = [(float(x), float(y)) for x, y in points]
     return list(zip(ring, ring[1:] + ring[:1]))
+
+
+def _mesh_segments(pose: Pose3D, mesh: Mesh, height: float) -> np.ndarray:
+    """Where a horizontal plane cuts triangles: segments (m, 2, 2), exact.
+
+    A corner at the very height counts as below, so that of two triangles with a common edge there both or none are cut.
+    """
+    corners = mesh.corners @ rotation_matrix(pose.orientation).T + np.array(pose.position)
+    above = corners[..., 2] > height
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    corners, above = corners[cut], above[cut]
+    # One corner is alone on its side: both edges from there are cut.
+    alone = np.argmax(np.where(above.sum(axis=1, keepdims=True) == 1, above, ~above), axis=1)
+    rows = np.arange(len(corners))
+    tip, left, right = (corners[rows, (alone + turn) % 3] for turn in range(3))
+    ends = [tip + (foot - tip) * ((height - tip[:, 2]) / (foot[:, 2] - tip[:, 2]))[:, None] for foot in (left, right)]
+    segments = np.stack(ends, axis=1)[..., :2]
+    return segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]
+
+
+def _wall_segments(pose: Pose3D, walls: Walls, height: float) -> np.ndarray:
+    """Upright walls as they are, where the plane is not below or above them."""
+    if not 0.0 <= height - pose.position[2] < walls.height:
+        return np.zeros((0, 2, 2))
+    return walls.segments @ rotation_matrix(pose.orientation)[:2, :2].T + np.array(pose.position[:2])
 
 
 def _plane_line(obstacle: Obstacle, plane: Plane, height: float) -> List[Segment]:

@@ -99,11 +99,12 @@ def _pose(around: Pose2D, cell: Cell) -> Pose2D:
 
 
 def _is_free(place: Pose2D, walls: Slice) -> bool:
-    return bool(LOOK.cast(np.array([[place.x, place.y, 0.0]]), walls).min() >= CLEARANCE)
+    return bool(LOOK.cast(np.array([[place.x, place.y, 0.0]]), walls, reach=CLEARANCE).min() >= CLEARANCE)
 
 
 def _in_sight(place: Pose2D, other: Pose2D, walls: Slice) -> bool:
     """Whether nothing stands between two places: so no robot is put outside a closed room, or inside a wall."""
     dx, dy = other.x - place.x, other.y - place.y
-    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[place.x, place.y, 0.0]]), walls)[0, 0]
-    return bool(ray > math.hypot(dx, dy))
+    away = math.hypot(dx, dy)
+    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[place.x, place.y, 0.0]]), walls, reach=away)[0, 0]
+    return bool(ray > away)

@@ -20,6 +20,7 @@ SHIPPED = {  # name: (boxes, cylinders, spawn), each with a ground plane besides
     "empty": (0, 0, Pose2D()),
     "stage_1": (4, 0, Pose2D()),
     "stage_2": (4, 4, Pose2D()),
+    "stage_3": (4, 4, Pose2D()),
     "stage_4": (8, 2, Pose2D(-0.7, 0.0)),
     "world": (6, 9, Pose2D(-2.0, -0.5)),
     "maze_1": (18, 0, Pose2D()),
@@ -221,11 +222,11 @@ def test_spawn_is_the_origin_unless_the_world_says_otherwise(tmp_path):
     assert load_world(write(tmp_path, "")).spawn == Pose2D(0.0, 0.0, 0.0)
 
 
-def test_what_is_left_out_and_could_be_missed_is_told_once_in_the_files_order(tmp_path):
+def test_what_is_left_out_and_could_be_missed_is_told_once_the_worlds_own_first(tmp_path):
     mover = '<model name="m"><static>1</static>\n<plugin name="mover"/><plugin name="mover"/></model>'
     silent = '<gravity>0 0 -9.8</gravity><gui><plugin name="p"/></gui>'
     world = load_world(write(tmp_path, f'<light name="lamp"/>\n{mover}\n{silent}\n<sensor name="eye"/>'))
-    assert world.ignored == ("light 'lamp' (line 3)", "plugin 'mover' (line 5)", "sensor 'eye' (line 7)")
+    assert world.ignored == ("light 'lamp' (line 3)", "sensor 'eye' (line 7)", "plugin 'mover' (line 5)")
 
 
 def test_visuals_comments_foreign_elements_and_empty_frames_do_no_harm(tmp_path):
@@ -246,7 +247,6 @@ def raised_by(path):
 
 
 BROKEN = {  # case: (body from line 3 on, line of the error, what the message must name)
-    "model that may move": ('\n<model name="cart"><link name="l"/></model>', 4, ["cart", "static"]),
     "static neither true nor false": ('<model name="m"><static>yes</static></model>', 3, ["yes", "true or false"]),
     "two static": ('<model name="m"><static>1</static>\n<static>0</static></model>', 4, ["second <static>"]),
     "model without a name": ("<model><static>true</static></model>", 3, ["<model> has no name"]),
@@ -257,12 +257,20 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         ["'ground_plane'", "taken"],
     ),
     "collision named twice": (model(collision(SPHERE) + "\n" + collision(SPHERE)), 5, ["m/l/c", "'c'", "taken"]),
-    "model within a model": ('<model name="m"><static>1</static>\n<model name="in"/></model>', 4, ["m/in", "link"]),
+    "nested model named twice": (
+        '<model name="m"><model name="in"/>\n<model name="in"/></model>', 4, ["m/in", "'in'", "taken"]),
     "misspelt element": (model('<colision name="wall"/>'), 4, ["<colision>", "wall", "collision"]),
-    "state of a paused Gazebo": ('<state world_name="w"/>', 3, ["<state>", "model"]),
-    "include of another model": ("\n<include><uri>model://cafe</uri></include>", 4, ["model://cafe", "ground_plane"]),
+    "state that adds a model": ('<state world_name="w">\n<insertions/></state>', 4, ["<insertions>", "model"]),
+    "state that scales": (
+        '<state><model name="m"><pose>0 0 0 0 0 0</pose>\n<scale>1 2 1</scale></model></state>', 4, ["1 2 1", "'m'"]),
+    "include of nothing known": (
+        "\n<include><uri>model://cafe</uri></include>", 4, ["model://cafe", "beside the file", ".gazebo/models"]),
+    "include from the web": ("<include><uri>https://fuel.org/cafe</uri></include>", 3, ["https://fuel", "model://"]),
     "include without uri": ("<include><name>i</name></include>", 3, ["<uri>"]),
-    "mesh": (model(collision("<mesh><uri>model://a.dae</uri></mesh>")), 4, ["<mesh>", "m/l/c", "cylinder"]),
+    "mesh that isn't there": (
+        model(collision("<mesh>\n<uri>model://a/b.dae</uri></mesh>")), 5, ["model://a/b.dae", "m/l/c", "not found"]),
+    "mesh without uri": (model(collision("<mesh/>")), 4, ["<mesh>", "<uri>", "m/l/c"]),
+    "part of a mesh": (model(collision("<mesh><uri>a</uri><submesh/></mesh>")), 4, ["<submesh>", "m/l/c", "scale"]),
     "heightmap": (model(collision("<heightmap/>")), 4, ["<heightmap>", "m/l/c", "box"]),
     "two shapes": (model(collision(SPHERE + "<plane/>")), 4, ["2 shapes"]),
     "no shape": (model(collision("")), 4, ["0 shapes"]),
@@ -309,7 +317,7 @@ BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message 
     "no version": ("<sdf><world name='w'/></sdf>", 1, ["version None"]),
     "no world": ("<sdf version='1.7'/>", 1, ["<world>"]),
     "two worlds": ("<sdf version='1.7'><world name='a'/>\n<world name='b'/></sdf>", 2, ["second <world>"]),
-    "model outside of a world": ("<sdf version='1.7'>\n<model name='stray'/></sdf>", 2, ["<model>", "stray"]),
+    "light outside of a world": ("<sdf version='1.7'>\n<light name='stray'/></sdf>", 2, ["<light>", "stray"]),
     "world without a name": ("<sdf version='1.7'>\n<world/></sdf>", 2, ["<world> has no name"]),
     "empty file": ("", 1, ["XML"]),
     "entity that nobody declares": ("<sdf version='1.7'>\n<world name='w'>&x;</world></sdf>", 2, ["'x'", "XML"]),
@@ -392,7 +400,7 @@ def test_unknown_world_is_refused_with_the_names_of_those_that_exist(name):
     with pytest.raises(WorldError) as caught:
         find_world(name, str(WORLDS))
     assert f"'{name}'" in str(caught.value)
-    assert "empty, maze_1, stage_1, stage_2, stage_4, world" in str(caught.value)
+    assert "empty, maze_1, stage_1, stage_2, stage_3, stage_4, world" in str(caught.value)
 
 
 def test_directory_without_worlds_is_named_as_such(tmp_path):

@@ -15,24 +15,29 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ..errors import CommandError, FrameError, ParameterError, RobocopError
+from ..errors import CommandError, FrameError, ParameterError, RobocopError, WorldError
 from ..geometry import Pose2D, Twist2D, compose
 from ..lockstep import Lockstep
 from ..params import SimParams
+from ..random_world import random_world
 from ..robot import load_robot
+from ..shapes import World
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
 from ..spawns import FARTHEST, robots_from
 from ..world import find_world, load_world
 from . import convert, params
+from .map_topics import MapTopics
 from .pacer import Pacer
 from .publishing import publisher
 from .robot_topics import RobotTopics
 from .sim_control import SimControl
 from .status import StatusReport
-from .world_markers import robot_markers, world_markers
+from .world_control import WorldControl
+from .world_markers import CLEAR, robot_markers, world_markers
 
 PACKAGE = "aro_robocop_goto_as"
+RANDOM = "random"  # as `world`: one made from the seed
 PAUSED_CLOCK_PERIOD = 0.1  # [s, wall] a paused simulator repeats its clock, so that nodes which start then have time
 LONGEST_WAIT = 0.5  # [s, wall] between two looks for a parameter that was set
 LOOK_PERIOD = 0.05  # [s, wall] between two looks for controllers that have disconnected, while waiting for answers
@@ -40,10 +45,25 @@ LOOK_PERIOD = 0.05  # [s, wall] between two looks for controllers that have disc
 T = TypeVar("T")
 
 
+def make_random(seed: int) -> str:
+    """Make a random world and leave it in ROS' home as a file, whose path can be given as `world` again."""
+    path = os.path.join(rospkg.get_ros_home(), f"random_{seed}.sdf")
+    try:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(random_world(seed))
+    except OSError as error:
+        raise WorldError(f"{path}: can't write the random world: {error.strerror}") from error
+    return path
+
+
 def build_simulator(p: SimParams) -> Simulator:
     """The simulator for these parameters; RobocopError when world, robots or their places can't be had."""
     share = rospkg.RosPack().get_path(PACKAGE)
-    world = load_world(find_world(p.world, os.path.join(share, "worlds")))
+    path = make_random(p.seed) if p.world == RANDOM else find_world(p.world, os.path.join(share, "worlds"))
+    world = load_world(path)
+    if world.moving() and not p.moving:
+        rospy.loginfo("what world %s can move stands still, unless moving:=true", world.name)
     model = load_robot(os.path.join(share, "urdf", p.model + ".urdf"))
     return Simulator(p, world, robots_from(p, world, model))
 
@@ -68,12 +88,14 @@ class SimNode:
         self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.shapes = publisher("~world", MarkerArray, latch=True)
+        self.maps = MapTopics() if p.publish_map or sim.world.occupancy is not None else None
         self.robots = [RobotTopics(index, robot.name, p, sim.lidar.spec) for index, robot in enumerate(sim.robots)]
         self.listeners: List[Set[str]] = [set() for _ in self.robots]
         self.status = StatusReport(self)
         for robot in self.robots:
             robot.listen(self._on_command, self._on_answer, self._on_place)
         self.control = SimControl(self)
+        self.world_control = WorldControl(self)
         if p.gazebo_services:
             _serve_gazebo(self)
 
@@ -208,10 +230,23 @@ class SimNode:
                           robot.spawn.y, robot.spawn.yaw)
         if world.ignored:
             rospy.loginfo("not simulated from that file: %s", ", ".join(world.ignored))
-        shapes = world_markers(world, self.p.world_frame)
+        self.show_world()
+
+    def change_world(self, world: World) -> None:
+        """Another world from now on, shown as well."""
+        self.sim.change_world(world)
+        self.placed.update(range(len(self.robots)))
+        self.show_world()
+
+    def show_world(self) -> None:
+        """The obstacles for RViz; where a map is published, that too."""
+        world = self.sim.world
+        if self.maps is not None:
+            self.maps.publish(self.sim.occupancy(), convert.to_time(self.sim.stamp_ns), self.p.map_frame)
+        shapes = world_markers(world, self.p.world_frame, self.sim.world_time)
         if self.robots[0].name:
             shapes += robot_markers({robot.name: robot.base_frame for robot in self.robots}, self.p.footprint_radius)
-        self.shapes.publish(shapes)
+        self.shapes.publish([CLEAR, *shapes])
 
     def _end_span(self) -> None:
         """A ~step request has run its course."""
@@ -308,6 +343,8 @@ class SimNode:
                           for transform in robot.transforms(seen, self.sim.map_from_odom(index), stamp)]
             if transforms:
                 self.tf.publish(transforms)
+        if seen.control and self.sim.moving:
+            self.shapes.publish(world_markers(self.sim.world, self.p.world_frame, self.sim.world_time, moving=True))
         if seen.clock:
             self.clock.publish(stamp)
 

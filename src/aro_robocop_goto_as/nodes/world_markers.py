@@ -6,19 +6,21 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
-from ..world import Box, Cylinder, Obstacle, Plane, Sphere, World
+from ..shapes import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # see-through, or walls would hide the scan and the robot behind them
 BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
 NOSE = ColorRGBA(0.95, 0.60, 0.10, 1.0)
 NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+CLEAR = Marker(action=Marker.DELETEALL)  # what was there before: a world that has changed may have fewer obstacles
 BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
 
 
-def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
+def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
     marker = Marker(ns="world", id=number, action=Marker.ADD, color=COLOR, frame_locked=True)
     marker.header.frame_id = frame
-    marker.pose = Pose(Point(*obstacle.pose.position), Quaternion(*obstacle.pose.orientation))
+    pose = obstacle.at(time)
+    marker.pose = Pose(Point(*pose.position), Quaternion(*pose.orientation))
     shape = obstacle.geometry
     if isinstance(shape, Box):
         marker.type, marker.scale = Marker.CUBE, Vector3(*shape.size)
@@ -27,15 +29,22 @@ def _marker(number: int, frame: str, obstacle: Obstacle) -> Marker:
         marker.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
     elif isinstance(shape, Sphere):
         marker.type, marker.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
+    elif isinstance(shape, Mesh):
+        marker.type, marker.scale = Marker.TRIANGLE_LIST, Vector3(1.0, 1.0, 1.0)
+        marker.points = [Point(*corner) for corner in shape.corners.reshape(-1, 3).tolist()]
     else:
         raise TypeError(f"no marker for {shape!r}")
     return marker
 
 
-def world_markers(world: World, frame: str) -> List[Marker]:
-    """One marker an obstacle in the world's `frame`; planes are left out, as RViz's grid shows the floor."""
-    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, Plane)]
-    return [_marker(number, frame, obstacle) for number, obstacle in enumerate(solid)]
+def world_markers(world: World, frame: str, time: float, moving: bool = False) -> List[Marker]:
+    """One marker an obstacle, or one that moves, where it is at a time [s] in the world's `frame`.
+
+    Left out are planes and a map's walls: RViz's grid shows the floor, its Map display the map that they are made of.
+    """
+    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, (Plane, Walls))]
+    return [_marker(number, frame, obstacle, time) for number, obstacle in enumerate(solid)
+            if obstacle.motion is not None or not moving]
 
 
 def robot_markers(frames: Mapping[str, str], radius: float) -> List[Marker]:

@@ -38,9 +38,7 @@ class Lidar:
 
         Beams start at the scanner's centre, not at range_min, so that they carry no offset. `others` as in Fan.cast.
         """
-        distances = self._fan.cast(world_from_scans, walls, others)
-        distances[distances > self.spec.range_max] = np.inf
-        return distances
+        return self._fan.cast(world_from_scans, walls, others, self.spec.range_max)
 
     def measure(self, distances: np.ndarray, noise: np.ndarray) -> np.ndarray:
         """Ranges [m] by REP-117: noise (standard normal, scaled here) added, too near = -inf, no return = +inf."""

@@ -1,0 +1,59 @@
+"""Mesh file -> triangles."""
+
+import io
+import math
+import os
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from . import sdf
+from .errors import WorldError
+
+FORMATS = (".dae", ".obj", ".stl")
+
+
+def load_triangles(path: str) -> np.ndarray:
+    """The triangles (n, 3, 3) [m] of a mesh file, its parts where the file's scene has them.
+
+    Lengths are metres, but a COLLADA file says itself what its unit is; its <up_axis> is of no account, as in Gazebo
+    Classic. WorldError if the file can't be read, is of another format, or holds no triangle.
+    """
+    kind = os.path.splitext(path)[1].lower()
+    if kind not in FORMATS:
+        raise WorldError(f"{path}: not a mesh that is read; supported: {', '.join(FORMATS)}")
+    try:
+        with open(path, "rb") as file:
+            content = file.read()
+    except OSError as exc:
+        raise WorldError(f"{path}: can't read the mesh: {exc.strerror or exc}") from exc
+    unit = _collada_unit(content, path) if kind == ".dae" else 1.0
+    triangles = _parsed(content, kind, path) * unit
+    if not len(triangles):
+        raise WorldError(f"{path}: the mesh has no triangles")
+    if not np.isfinite(triangles).all():
+        raise WorldError(f"{path}: the mesh has corners that are not finite numbers")
+    return triangles
+
+
+def _parsed(content: bytes, kind: str, path: str) -> np.ndarray:
+    # Neither trimesh nor pycollada says which errors they raise: of a broken file it is whatever they stumble over.
+    try:
+        loaded: Any = trimesh.load_scene(io.BytesIO(content), file_type=kind[1:], process=False, skip_materials=True)
+        return np.asarray(loaded.to_mesh().triangles, dtype=float)
+    except Exception as exc:
+        raise WorldError(f"{path}: not a mesh in {kind} format: {exc or type(exc).__name__}") from exc
+
+
+def _collada_unit(content: bytes, path: str) -> float:
+    """Metres in one unit of a COLLADA file, which is also seen to be XML without a DOCTYPE."""
+    found = sdf.parse_text(content, path).find("{*}asset/{*}unit")
+    text = "1" if found is None else found.get("meter", "1")
+    try:
+        unit = float(text)
+    except ValueError:
+        unit = math.nan
+    if not 0.0 < unit < math.inf:
+        raise WorldError(f"{path}:{found.sourceline}: <unit meter='{text}'>, expected a number greater than 0")
+    return unit

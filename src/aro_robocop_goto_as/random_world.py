@@ -1,0 +1,120 @@
+"""Seed -> the SDF of a random maze with clutter, every cell of which a robot can reach."""
+
+import itertools
+import random
+from typing import Dict, Iterator, List, Set, Tuple
+
+SIZES = (4, 7)  # cells a side, at least and at most; a cell is a square of 1 m, its centre at whole metres
+THICKNESS, HEIGHT = 0.15, 0.5  # [m] of walls, as in the other worlds
+LOOPS = 0.15  # share of the walls between cells that are taken out of the maze, so that there are ways around
+CLUTTER = 0.5  # share of the cells that have a thing in one corner
+THING = (0.08, 0.2)  # [m] its width. It reaches no farther than 0.275 m in, so lanes of 0.45 m stay through each cell
+
+Cell = Tuple[int, int]  # column, row
+Wall = Tuple[Cell, Cell]  # between two neighbouring cells, the lower one first; one of them may be outside
+
+
+def random_world(seed: int) -> str:
+    """The text of a world file; the same for the same seed."""
+    chance = random.Random(seed)
+    columns, rows = chance.randint(*SIZES), chance.randint(*SIZES)
+    cells = [(x, y) for x in range(columns) for y in range(rows)]
+    walls = _maze(chance, set(cells))
+    boxes = [_wall_box(run) for run in _runs(walls)]
+    things = [_thing(chance, cell) for cell in cells if cell != (0, 0) and chance.random() < CLUTTER]
+    goals = " ".join(f"({x}, {y})" for x, y in cells[1:])
+    collisions = [_collision(f"wall_{i}", pose, shape) for i, (pose, shape) in enumerate(boxes)]
+    collisions += [_collision(f"thing_{i}", pose, shape) for i, (pose, shape) in enumerate(things)]
+    return _FILE.format(seed=seed, columns=columns, rows=rows, goals=goals, collisions="".join(collisions),
+                        yaw="0" if ((0, 0), (1, 0)) not in walls else "1.5708")
+
+
+def _maze(chance: random.Random, cells: Set[Cell]) -> Set[Wall]:
+    """Walls with a way between any two cells: a walk digs until it is stuck, then on from where it was before."""
+    walls = {_between(cell, neighbour) for cell in cells for neighbour in _neighbours(cell)}
+    trail, seen = [(0, 0)], {(0, 0)}
+    while trail:
+        fresh = [cell for cell in _neighbours(trail[-1]) if cell in cells and cell not in seen]
+        if not fresh:
+            trail.pop()
+            continue
+        step = chance.choice(fresh)
+        walls.remove(_between(trail[-1], step))
+        seen.add(step)
+        trail.append(step)
+    inner = sorted(wall for wall in walls if cells.issuperset(wall))
+    return walls - set(chance.sample(inner, int(LOOPS * len(inner))))
+
+
+def _neighbours(cell: Cell) -> List[Cell]:
+    x, y = cell
+    return [(x + 1, y), (x, y + 1), (x - 1, y), (x, y - 1)]
+
+
+def _between(a: Cell, b: Cell) -> Wall:
+    return (a, b) if a < b else (b, a)
+
+
+def _runs(walls: Set[Wall]) -> Iterator[Tuple[int, float, float, float]]:
+    """Walls in line joined: (axis along which, place across it, start, end) [m]."""
+    lines: Dict[Tuple[int, float], List[int]] = {}
+    for (x, y), (other_x, _) in sorted(walls):
+        axis, across, along = (1, x + 0.5, y) if other_x > x else (0, y + 0.5, x)
+        lines.setdefault((axis, across), []).append(along)
+    for (axis, across), places in sorted(lines.items()):
+        for _, group in itertools.groupby(enumerate(sorted(places)), lambda item: item[1] - item[0]):
+            run = [place for _, place in group]
+            yield axis, across, run[0] - 0.5, run[-1] + 0.5
+
+
+def _wall_box(run: Tuple[int, float, float, float]) -> Tuple[str, str]:
+    axis, across, start, end = run
+    middle, length = (start + end) / 2.0, end - start + THICKNESS
+    place, size = ((middle, across), (length, THICKNESS)) if axis == 0 else ((across, middle), (THICKNESS, length))
+    return _pose(*place, HEIGHT), f"<box><size>{size[0]:g} {size[1]:g} {HEIGHT:g}</size></box>"
+
+
+def _thing(chance: random.Random, cell: Cell) -> Tuple[str, str]:
+    """A box or a pillar that leans on a corner of a cell."""
+    width = round(chance.uniform(*THING), 3)
+    away = 0.5 - THICKNESS / 2.0 - width / 2.0
+    x, y = (centre + chance.choice((-away, away)) for centre in cell)
+    height = round(chance.uniform(0.25, HEIGHT), 3)
+    if chance.random() < 0.5:
+        return _pose(x, y, height), f"<box><size>{width:g} {width:g} {height:g}</size></box>"
+    shape = f"<cylinder><radius>{width / 2.0:g}</radius><length>{height:g}</length></cylinder>"
+    return _pose(x, y, height), shape
+
+
+def _pose(x: float, y: float, height: float) -> str:
+    return f"{x:g} {y:g} {height / 2.0:g} 0 0 0"
+
+
+def _collision(name: str, pose: str, shape: str) -> str:
+    return f"""
+        <collision name="{name}">
+          <pose>{pose}</pose>
+          <geometry>{shape}</geometry>
+        </collision>"""
+
+
+_FILE = """<?xml version="1.0" encoding="UTF-8"?>
+<!--
+  A random maze, made from seed {seed}: {columns} x {rows} cells of 1 m, walls 0.15 m thick, 0.5 m high. A robot that
+  keeps to the middle of the lanes has 0.22 m free to each side and reaches every cell.
+
+  Free goals: {goals}
+-->
+<sdf version="1.7">
+  <world name="random_{seed}">
+    <frame name="robot_spawn">
+      <pose>0 0 0 0 0 {yaw}</pose>
+    </frame>
+    <model name="maze">
+      <static>true</static>
+      <link name="link">{collisions}
+      </link>
+    </model>
+  </world>
+</sdf>
+"""

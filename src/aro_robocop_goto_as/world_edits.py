@@ -1,0 +1,59 @@
+"""World + a model put in, taken out or moved -> World."""
+
+from dataclasses import replace
+from typing import Tuple
+
+from .errors import WorldError
+from .geometry import Pose2D, Pose3D, compose, compose3, inverse3
+from .shapes import Obstacle, World
+
+LEVEL = 1e-9
+
+
+def with_model(world: World, model: World) -> World:
+    """A world with what another one holds put in; WorldError where a model's name is taken."""
+    taken = sorted(set(model.models) & set(world.models))
+    if taken:
+        raise WorldError(f"there is a model '{taken[0]}' already; expected another name")
+    return replace(world, obstacles=world.obstacles + model.obstacles, models={**world.models, **model.models})
+
+
+def without_model(world: World, name: str) -> World:
+    """A world with a model taken out; WorldError if there is none of that name."""
+    _check_known(world, name)
+    models = {other: pose for other, pose in world.models.items() if other != name}
+    return replace(world, obstacles=tuple(o for o in world.obstacles if not _belongs(o, name)), models=models)
+
+
+def with_model_at(world: World, name: str, pose: Pose3D) -> World:
+    """A world with a model at another pose in the world; WorldError if there is none, or it moves and would lean."""
+    _check_known(world, name)
+    shift = compose3(pose, inverse3(world.models[name]))
+    obstacles = tuple(_shifted(o, shift) if _belongs(o, name) else o for o in world.obstacles)
+    return replace(world, obstacles=obstacles, models={**world.models, name: pose})
+
+
+def _check_known(world: World, name: str) -> None:
+    if name not in world.models:
+        raise WorldError(f"there is no model '{name}'; there are: {', '.join(world.models) or 'none'}")
+
+
+def _belongs(obstacle: Obstacle, model: str) -> bool:
+    return obstacle.name.startswith(model + "/")
+
+
+def _shifted(obstacle: Obstacle, shift: Pose3D) -> Obstacle:
+    moved = replace(obstacle, pose=compose3(shift, obstacle.pose))
+    if obstacle.motion is None:
+        return moved
+    flat, leaning = _on_plane(shift)
+    if leaning:
+        raise WorldError(f"'{obstacle.name}' moves by script; expected a level pose")
+    start = compose(flat, obstacle.motion.world_from_model)
+    return replace(moved, motion=replace(obstacle.motion, world_from_model=start))
+
+
+def _on_plane(pose: Pose3D) -> Tuple[Pose2D, bool]:
+    """A pose seen from above, and whether it leans."""
+    qx, qy, _, _ = pose.orientation
+    return pose.on_plane(), abs(qx) + abs(qy) > LEVEL

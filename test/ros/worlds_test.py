@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""A map as the world is published as map_server does it; models come, move and go, and scans and RViz follow."""
+
+import os
+import unittest
+
+import numpy as np
+import ros_numpy
+import rospkg
+import rospy
+from aro_robocop_goto_as.srv import DeleteModel, MoveModel, SpawnModel
+from geometry_msgs.msg import Point, Pose
+from harness import DEADLINE, SIMULATOR, Recorder, run
+from nav_msgs.msg import MapMetaData, OccupancyGrid
+from sensor_msgs.msg import LaserScan
+from visualization_msgs.msg import Marker, MarkerArray
+
+CRATE = """<sdf version="1.6"><model name="crate"><static>1</static>{}<link name="l"><pose>0 0 0.25 0 0 0</pose>
+<collision name="c"><geometry><box><size>0.4 0.4 0.5</size></box></geometry></collision></link></model></sdf>"""
+
+
+def at(x, y=0.0):
+    return Pose(position=Point(x, y, 0.0))
+
+
+class Worlds(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scan = Recorder("/scan", LaserScan)
+        cls.markers = Recorder(f"{SIMULATOR}/world", MarkerArray)
+
+    def call(self, name, kind, *arguments):
+        service = f"{SIMULATOR}/{name}"
+        rospy.wait_for_service(service, DEADLINE)
+        return rospy.ServiceProxy(service, kind)(*arguments)
+
+    def ahead(self):
+        """What the robot sees straight ahead [m], from the second scan on from now: the next may be under way."""
+        return self.scan.take(2)[1].ranges[0]
+
+    def test_map_is_latched_with_the_cells_origin_and_resolution_of_its_file(self):
+        grid = Recorder("/map", OccupancyGrid).newest()
+        metadata = Recorder("/map_metadata", MapMetaData).newest()
+        cells = ros_numpy.numpify(grid).data
+        self.assertEqual(grid.header.frame_id, "map")
+        self.assertEqual(grid.info, metadata)
+        self.assertEqual((grid.info.width, grid.info.height), (80, 60))
+        self.assertAlmostEqual(grid.info.resolution, 0.1, places=6)
+        self.assertEqual((grid.info.origin.position.x, grid.info.origin.position.y), (-4.0, -3.0))
+        self.assertTrue((cells[[0, -1]] == 100).all() and (cells[:, [0, -1]] == 100).all())
+        self.assertEqual(sorted(np.unique(cells)), [-1, 0, 100])
+
+    def test_map_of_another_world_is_made_of_its_cut_on_request(self):
+        grid = Recorder("/other/map", OccupancyGrid).newest()
+        cells = ros_numpy.numpify(grid).data
+        origin = np.array([grid.info.origin.position.x, grid.info.origin.position.y])
+        column, row = np.floor(-origin / grid.info.resolution).astype(int)
+        self.assertEqual(cells[row, column], 0, "the robot's cell at (0, 0)")
+        self.assertEqual(sorted(np.unique(cells)), [-1, 0, 100])
+
+    def test_random_world_is_left_in_ros_home_as_a_file(self):
+        path = os.path.join(rospkg.get_ros_home(), "random_7.sdf")
+        with open(path, encoding="utf-8") as file:
+            self.assertIn("seed 7", file.read())
+
+    def test_scan_sees_the_wall_of_the_map(self):
+        self.assertAlmostEqual(self.ahead(), 3.9 + 0.032, delta=0.06)
+
+    def test_models_come_move_and_go_and_scans_and_markers_follow(self):
+        spawned = self.call("spawn_model", SpawnModel, "", CRATE.format('<plugin name="p"/>'), "", at(1.0))
+        self.assertTrue(spawned.success, spawned.message)
+        self.assertIn("model 'crate' with 1 collisions; not simulated: plugin 'p'", spawned.message)
+        self.assertAlmostEqual(self.ahead(), 0.832, delta=0.06)
+        self.markers.wait_for(lambda m: [x.type for x in m.markers[1:]] == [Marker.CUBE], "the crate in RViz")
+        self.assertTrue(self.call("move_model", MoveModel, "crate", at(2.0)).success)
+        self.assertAlmostEqual(self.ahead(), 1.832, delta=0.06)
+        start = len(self.markers)
+        self.assertTrue(self.call("delete_model", DeleteModel, "crate").success)
+        self.assertAlmostEqual(self.ahead(), 3.932, delta=0.06)
+        self.markers.wait_for(lambda m: [x.action for x in m.markers] == [Marker.DELETEALL], "nothing in RViz", start)
+
+    def test_model_is_read_from_a_file_too(self):
+        path = os.path.join(rospkg.get_ros_home(), "crate.sdf")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(CRATE.format(""))
+        self.assertTrue(self.call("spawn_model", SpawnModel, "box", "", path, at(-2.0)).success)
+        taken = self.call("spawn_model", SpawnModel, "box", "", path, at(-2.0))
+        self.assertFalse(taken.success)
+        self.assertIn("'box' already", taken.message)
+        self.assertTrue(self.call("delete_model", DeleteModel, "box").success)
+
+    def test_what_cannot_be_done_is_answered_in_words_and_changes_nothing(self):
+        level = at(1.0)
+        leaning = Pose(position=Point(1.0, 0.0, 0.0))
+        leaning.orientation.w = 0.5
+        for name, kind, arguments, words in (
+                ("spawn_model", SpawnModel, ("a", "<sdf", "", level), "xml of the request:1: not well-formed XML"),
+                ("spawn_model", SpawnModel, ("a", "<robot/>", "", level), "<robot>, expected <sdf>"),
+                ("spawn_model", SpawnModel, ("a", "", "/no/such.sdf", level), "/no/such.sdf: can't read the file"),
+                ("spawn_model", SpawnModel, ("a", "", "", level), "expected either xml or file"),
+                ("spawn_model", SpawnModel, ("a", CRATE.format("<gaol/>"), "", level), "<gaol> in <model>"),
+                ("spawn_model", SpawnModel, ("a", CRATE.format(""), "", leaning), "quaternion of length 1"),
+                ("move_model", MoveModel, ("walls", level), "no model 'walls'; there are:"),
+                ("move_model", MoveModel, ("ground_plane", at(float("nan"))), "expected numbers"),
+                ("delete_model", DeleteModel, ("map",), "no model 'map'")):
+            answer = self.call(name, kind, *arguments)
+            self.assertFalse(answer.success, answer.message)
+            self.assertIn(words, answer.message)
+        self.assertAlmostEqual(self.ahead(), 3.932, delta=0.06)
+
+
+if __name__ == "__main__":
+    run(Worlds)

@@ -1,0 +1,41 @@
+"""Random worlds: the same for the same seed, and every goal that they name can be reached."""
+
+import itertools
+import re
+
+import numpy as np
+import pytest
+from test_world import cell_of, clearance, flood, free_cells
+
+from aro_robocop_goto_as.random_world import random_world
+from aro_robocop_goto_as.world import load_world
+
+
+def made(directory, seed):
+    path = directory / f"random_{seed}.sdf"
+    path.write_text(random_world(seed), encoding="utf-8")
+    return load_world(str(path))
+
+
+@pytest.mark.parametrize("seed", [*range(1, 10), 2**31 - 1])
+def test_every_goal_that_a_random_world_names_can_be_reached_and_none_beyond_it(tmp_path, seed):
+    world = made(tmp_path, seed)
+    goals = re.findall(r"\((\d), (\d)\)", random_world(seed).split("Free goals:")[1])
+    free = free_cells(world)
+    inside, outside = flood(free, cell_of(world.spawn.x, world.spawn.y)), flood(free, (0, 0))
+    assert len(goals) >= 15
+    assert [goal for goal in goals if not inside[cell_of(*map(float, goal))]] == []
+    assert not (inside & outside).any()
+
+
+def test_seed_decides_everything(tmp_path):
+    assert random_world(7) == random_world(7)
+    texts = [re.sub(r"random_\d+|seed \d+", "", random_world(seed)) for seed in range(1, 30)]
+    assert all(a != b for a, b in itertools.combinations(texts, 2))
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_random_world_is_a_world_file_like_any_other(tmp_path, seed):
+    world = made(tmp_path, seed)
+    assert world.name == f"random_{seed}" and world.ignored == ()
+    assert clearance(world, np.array([0.0, 0.0])) >= 0.3

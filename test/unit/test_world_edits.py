@@ -1,0 +1,104 @@
+"""Models put in, taken out and moved while the simulator runs: scans and both drives follow."""
+
+import math
+
+import numpy as np
+import pytest
+from support import ORIGIN, world_named
+
+from aro_robocop_goto_as import sdf
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, compose3, inverse3
+from aro_robocop_goto_as.sdf_world import read_model
+from aro_robocop_goto_as.world_edits import with_model, with_model_at, without_model
+
+CRATE = b"""<sdf version="1.6"><model name="crate"><static>1</static><link name="l"><pose>0 0 0.25 0 0 0</pose>
+<collision name="c"><geometry><box><size>0.4 0.4 0.5</size></box></geometry></collision></link></model></sdf>"""
+AHEAD = Pose3D((1.0, 0.0, 0.0))
+
+
+def crate(name="", pose=AHEAD):
+    return read_model(sdf.parse_text(CRATE, "crate.sdf"), name, pose)
+
+
+def names(world):
+    return [obstacle.name for obstacle in world.obstacles]
+
+
+def test_model_is_put_in_by_its_own_name_or_another():
+    world = world_named("empty")
+    assert names(with_model(world, crate()))[-1] == "crate/l/c"
+    assert names(with_model(world, crate("box")))[-1] == "box/l/c"
+    assert with_model(world, crate()).models["crate"] == AHEAD
+
+
+def test_name_that_is_taken_or_unknown_is_refused_with_what_there_is():
+    world = with_model(world_named("empty"), crate())
+    with pytest.raises(WorldError, match="there is a model 'crate' already"):
+        with_model(world, crate())
+    for edit in (lambda: without_model(world, "crat"), lambda: with_model_at(world, "crat", AHEAD)):
+        with pytest.raises(WorldError, match="no model 'crat'; there are: ground_plane, crate"):
+            edit()
+
+
+def test_only_the_model_of_that_name_is_taken_out():
+    world = with_model(with_model(world_named("empty"), crate("box")), crate("box_2"))
+    assert names(without_model(world, "box"))[-1] == "box_2/l/c"
+    assert set(without_model(world, "box").models) == {"ground_plane", "box_2"}
+
+
+def test_moved_model_takes_its_collisions_along():
+    pose = Pose3D.from_xyz_rpy((2.0, 1.0, 0.1), (0.1, 0.2, 0.3))
+    world = with_model_at(with_model(world_named("empty"), crate()), "crate", pose)
+    expected = compose3(pose, Pose3D((0.0, 0.0, 0.25)))
+    assert world.obstacles[-1].pose.position == pytest.approx(expected.position)
+    assert world.obstacles[-1].pose.orientation == pytest.approx(expected.orientation)
+    assert world.models["crate"] == pose
+
+
+def test_model_that_moves_by_script_goes_on_from_where_it_is_set():
+    world = with_model_at(world_named("stage_4"), "pillar_1", Pose3D.from_xyz_rpy((1.0, 0.0, 0.25), (0, 0, math.pi)))
+    assert [o.at(5.0).position[:2] for o in world.moving()][0] == pytest.approx((1.0, 1.0))
+    with pytest.raises(WorldError, match="level"):
+        with_model_at(world, "pillar_1", Pose3D.from_xyz_rpy((0, 0, 0), (0.5, 0, 0)))
+
+
+def test_inverse_pose_undoes_a_pose():
+    pose = Pose3D.from_xyz_rpy((1.0, 2.0, 3.0), (0.3, -0.7, 2.0))
+    both = compose3(inverse3(pose), pose)
+    assert both.position == pytest.approx((0, 0, 0)) and np.abs(both.orientation) == pytest.approx([0, 0, 0, 1])
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_scans_and_robots_meet_what_was_put_in_and_no_longer_what_was_taken_out(simulator, drive):
+    sim = simulator("empty", ORIGIN, drive=drive, cmd_vel_timeout=0.0)
+    before = sim.world
+    assert np.isinf(sim.exact_distances()[0])
+    sim.change_world(with_model(sim.world, crate()))
+    assert sim.exact_distances()[0] == pytest.approx(0.832)
+    sim.command(Twist2D(0.2))
+    for _ in range(240 * 6):
+        sim.step({})
+    assert 0.6 < sim.world_from_base().x < 0.8 and sim.touching()
+    sim.change_world(with_model_at(sim.world, "crate", Pose3D((1.5, 0.0, 0.0))))
+    for _ in range(240):
+        sim.step({})
+    assert sim.world_from_base().x > 0.85
+    assert sim.exact_distances()[0] == pytest.approx(1.332 - sim.world_from_base().x, abs=1e-3)
+    sim.change_world(without_model(sim.world, "crate"))
+    assert np.isinf(sim.exact_distances()[0]) and names(sim.world) == names(before)
+    for _ in range(240 * 5):
+        sim.step({})
+    assert sim.world_from_base().x > 1.5
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_reset_keeps_the_world_as_it_was_made(simulator, drive):
+    sim = simulator("empty", ORIGIN, drive=drive)
+    sim.change_world(with_model(sim.world, crate()))
+    sim.reset()
+    sim.command(Twist2D(0.2))
+    assert sim.exact_distances()[0] == pytest.approx(0.832)
+    sim.change_world(without_model(sim.world, "crate"))
+    assert np.isinf(sim.exact_distances()[0])
+    assert sim.world_from_base() == Pose2D()
