@@ -5,11 +5,13 @@ import json
 
 import rospy
 from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import DeleteLight, GetModelState, GetWorldProperties, SetModelState
+from gazebo_msgs.srv import DeleteLight, DeleteModel, GetModelState, GetWorldProperties, SetModelState, SpawnModel
 from geometry_msgs.msg import Point, Pose, Twist
 from std_srvs.srv import Empty
 
 ROBOT = "turtlebot3_burger"
+BOX = """<sdf version="1.6"><model name="box"><link name="link"><collision name="collision"><geometry>
+<box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""
 
 
 def call(name, kind, *arguments):
@@ -31,6 +33,10 @@ def set_position(x, y, name=ROBOT, frame="world"):
     return call("set_model_state", SetModelState, state).success
 
 
+def spawn(name, xml, x):
+    return call("spawn_sdf_model", SpawnModel, name, xml, "", Pose(position=Point(x, 0.0, 0.0)), "world")
+
+
 def main():
     rospy.init_node("gazebo_calls")
     said = {"light": call("delete_light", DeleteLight, "sun").success}
@@ -47,6 +53,13 @@ def main():
         rospy.rostime.wallsleep(0.01)
     said["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT)
     said["then"] = position()
+    said["spawned"] = spawn("table", BOX, 2.0).success
+    said["spawned twice"] = spawn("table", BOX, 2.0).success
+    said["spawned nonsense"] = spawn("chair", "<sdf", 2.0).status_message[:12]
+    said["table"] = position("table")
+    said["table moved"] = set_position(1.0, 1.0, name="table") and position("table")
+    said["deleted"] = call("delete_model", DeleteModel, "table").success
+    said["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
     said["unknown"] = position("table")
     said["unknown set"] = set_position(0.0, 0.0, name="table")
     for name in ("reset_world", "reset_simulation"):

@@ -92,12 +92,15 @@ def test_a_package_in_the_labs_own_style_is_built_and_reaches_a_goal_with_gazebo
                     PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}").stdout
     said = json.loads(calls.splitlines()[-1])
     assert said.pop("models") == ["ground_plane", "turtlebot3_burger"]
-    assert said.pop("unknown")[3].startswith("model [table] does not exist; there are: turtlebot3_burger")
+    assert said.pop("unknown")[3].startswith("model [table] does not exist; there are: ground_plane, turtlebot3_burger")
     positions = {name: said.pop(name)[:3] for name in ("position", "relative", "then", "reset_world",
                                                        "reset_simulation")}
     assert positions == {"position": [True, 0.5, -0.25], "relative": [True, 0.0, 0.0], "then": [True, 1.0, -0.25],
                          "reset_world": [True, 0.0, 0.0], "reset_simulation": [True, 0.0, 0.0]}
-    assert said == {"light": True, "set": True, "paused": True, "moved by itself": True, "unknown set": False,
+    assert said.pop("table")[:3] == [True, 2.0, 0.0] and said.pop("table moved")[:3] == [True, 1.0, 1.0]
+    assert said.pop("spawned nonsense") == "SpawnModel: "
+    assert said == {"spawned": True, "spawned twice": False, "deleted": True, "deleted a robot": False,
+                    "light": True, "set": True, "paused": True, "moved by itself": True, "unknown set": False,
                     "time": True}
 
 

@@ -26,7 +26,7 @@ def main():
     """Never returns: this process becomes roslaunch, so that whoever ends it ends the simulator."""
     words = [word for word in sys.argv[1:] if not word.startswith("__")]  # rospy's own remappings
     args, spawn_args = words[:words.index("--")], words[words.index("--") + 1:]
-    args += ["cmd_vel_timeout:=0.0", "odom_tf:=false", "gazebo_services:=true"] + spawn_from(spawn_args)
+    args += ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"] + spawn_from(spawn_args)
     args += shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))
     command = ["roslaunch", "--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
     workspace = os.environ.get("ROBOCOP_WS")

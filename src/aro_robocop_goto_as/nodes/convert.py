@@ -10,7 +10,7 @@ from nav_msgs.msg import Odometry as OdometryMsg
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Header
 
-from ..geometry import Pose2D, Twist2D, yaw_of
+from ..geometry import Pose2D, Pose3D, Twist2D, yaw_of
 from ..params import SimParams
 from ..robot import WHEEL_JOINTS, Pair
 from ..sensors.imu import ImuSample
@@ -61,9 +61,9 @@ def to_twist_msg(twist: Twist2D) -> Twist:
     return Twist(Vector3(twist.v, 0.0, 0.0), Vector3(0.0, 0.0, twist.w))
 
 
-def to_pose_msg(pose: Pose2D) -> Pose:
-    """A pose on the plane as geometry_msgs/Pose."""
-    return Pose(Point(pose.x, pose.y, 0.0), to_quaternion(pose.yaw))
+def to_pose_msg(pose: Pose3D) -> Pose:
+    """A pose in space as geometry_msgs/Pose."""
+    return Pose(Point(*pose.position), Quaternion(*pose.orientation))
 
 
 def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time) -> TransformStamped:

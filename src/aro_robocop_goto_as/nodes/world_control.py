@@ -86,8 +86,12 @@ class WorldControl:
 
     def move(self, name: str, pose: Pose3D) -> str:
         """Set a model elsewhere; what was done, in words. WorldError if there is none of that name."""
-        self._change(lambda world: with_model_at(world, name, pose))
+        self.node.in_loop(lambda: self.set_down(name, pose))
         return "model '{}' at x {:.3f} y {:.3f} z {:.3f}".format(name, *pose.position)
+
+    def set_down(self, name: str, pose: Pose3D) -> None:
+        """`move`, for who is in the loop's thread already."""
+        self.node.change_world(with_model_at(self.node.sim.world, name, pose))
 
     def _change(self, edit: Callable[[World], World]) -> None:
         def change() -> None:
