@@ -159,13 +159,14 @@ class _Standstill:
 def main() -> None:
     """Entry point; exit status 0 reached, 1 not, 2 for arguments of no sense."""
     args = _arguments(rospy.myargv()[1:])
-    for ending in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(ending, signal.default_int_handler)  # all of them like Ctrl-C: cancel, and end what was started
+    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.default_int_handler)  # cancel, and end what was started
     try:
         sys.exit(_run(args))
     except KeyboardInterrupt:
-        print("robocop goto: interrupted", file=sys.stderr)
-        sys.exit(NOT_REACHED)
+        rospy.signal_shutdown("interrupted")
+        print("robocop goto: interrupted", file=sys.stderr, flush=True)
+        os._exit(NOT_REACHED)  # what was interrupted while it was being made, a tf2 listener say, has no proper end
 
 
 def _run(args: argparse.Namespace) -> int:
