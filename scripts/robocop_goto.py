@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One goal from the command line."""
+"""Send one goal from the command line; the exit status says how it ended."""
 import signal
 
 for ending in (signal.SIGINT, signal.SIGTERM):
