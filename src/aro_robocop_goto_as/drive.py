@@ -5,6 +5,7 @@ from typing import NamedTuple, Tuple
 
 from .errors import CommandError
 from .geometry import STANDSTILL, Twist2D
+from .params import ModelFigures, SimParams
 
 
 class DriveLimits(NamedTuple):
@@ -15,6 +16,14 @@ class DriveLimits(NamedTuple):
     max_dv: float  # [m/s^2]
     max_dw: float  # [rad/s^2]
     timeout: float  # [s]
+
+
+def limits_from(p: SimParams, own: ModelFigures) -> DriveLimits:
+    """What the parameters ask for; where they are 0, the model's own."""
+    return DriveLimits(
+        p.max_linear_velocity or own.max_linear_velocity, p.max_angular_velocity or own.max_angular_velocity,
+        p.max_linear_acceleration or own.max_linear_acceleration,
+        p.max_angular_acceleration or own.max_angular_acceleration, p.cmd_vel_timeout)
 
 
 class DriveState(NamedTuple):

@@ -94,7 +94,7 @@ class SimParams:
 
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
     physics_rate: int = _param(240, low=1, high=10000)
-    footprint_radius: float = _positive(0.105)
+    footprint_radius: float = _param(0.0, low=0.0, high=100.0)
     solver_iterations: int = _param(20, low=1, high=10000)
     wheel_torque: float = _positive(1.0)
     real_time_factor: float = _param(1.0, low=0.0, high=1e6)
@@ -106,10 +106,10 @@ class SimParams:
     start_paused: bool = False
 
     cmd_vel_timeout: float = _param(0.5, low=0.0)
-    max_linear_velocity: float = _positive(0.22)
-    max_angular_velocity: float = _positive(2.84)
-    max_linear_acceleration: float = _positive(2.5)
-    max_angular_acceleration: float = _positive(3.2)
+    max_linear_velocity: float = _param(0.0, low=0.0, high=1e6)
+    max_angular_velocity: float = _param(0.0, low=0.0, high=1e6)
+    max_linear_acceleration: float = _param(0.0, low=0.0, high=1e6)
+    max_angular_acceleration: float = _param(0.0, low=0.0, high=1e6)
 
     scan_rate: int = _param(10, low=1)
     scan_samples: int = _param(360, low=2, high=100000)
@@ -155,6 +155,26 @@ class SimParams:
             found.append(
                 f"scan_range_max: expected more than scan_range_min {self.scan_range_min}, got {self.scan_range_max}")
         return found
+
+
+@dataclass(frozen=True)
+class ModelFigures:
+    """What a model's drive allows, from config/models/NAME.yaml, which explains each; none may be missing."""
+
+    footprint_radius: float = _param(0.0, high=100.0)
+    max_linear_velocity: float = _param(0.0, high=1e6)
+    max_angular_velocity: float = _param(0.0, high=1e6)
+    firmware_linear_velocity: float = _param(0.0, high=1e6)
+    firmware_angular_velocity: float = _param(0.0, high=1e6)
+    max_linear_acceleration: float = _param(0.0, high=1e6)
+    max_angular_acceleration: float = _param(0.0, high=1e6)
+    cmd_vel_timeout: float = _param(0.0, high=1e6)
+
+    def conflicts(self) -> List[str]:
+        """Figures that are missing or not positive, in words; empty when all is well."""
+        values = {spec.name: getattr(self, spec.name) for spec in fields(self)}
+        return [f"{name}: expected a positive number, got {value or 'none'}"
+                for name, value in values.items() if value <= 0.0]
 
 
 @dataclass(frozen=True)

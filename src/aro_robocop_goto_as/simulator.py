@@ -6,13 +6,13 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import drive
-from .drive import DriveLimits
 from .geometry import Pose2D, Twist2D, compose, inverse
 from .kinematics import Kinematics
 from .occupancy import occupancy_of
 from .params import SimParams
 from .physics import Physics
 from .robot import BodyState, RobotModel, RobotState
+from .scanners import Scanners
 from .sensors import imu as imu_sensor
 from .sensors import odometry
 from .sensors.imu import ImuSample
@@ -20,12 +20,10 @@ from .sensors.lidar import Lidar, LidarSpec
 from .sensors.odometry import Odometry
 from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
-from .slice import Slice
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
 ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
 SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH)
-LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another robot's scan sees of a Burger
 Wanted = Mapping[str, Sequence[int]]  # sensor -> the robots it is wanted of
 
 
@@ -62,7 +60,6 @@ class Simulator:
         self.params = params
         self.world = world = self._as_asked(world)
         self.robots = tuple(robots)
-        self.model = robots[0].model
         self.seed = params.seed
         self.steps = 0
         self._noise_origin = 0
@@ -71,16 +68,14 @@ class Simulator:
         self.dt = 1.0 / params.physics_rate
         self.lidar = Lidar(LidarSpec(params.scan_angle_min, params.scan_angle_max, params.scan_samples,
                                      params.scan_range_min, params.scan_range_max, params.scan_noise))
-        self._limits = DriveLimits(params.max_linear_velocity, params.max_angular_velocity,
-                                   params.max_linear_acceleration, params.max_angular_acceleration,
-                                   params.cmd_vel_timeout)
+        self._limits = [drive.limits_from(params, robot.model.figures) for robot in robots]
         self._physics: Union[Physics, Kinematics] = (
             Physics(world, params.physics_rate, params.solver_iterations, params.gui) if params.drive == "wheels"
             else Kinematics(world, params.physics_rate, params.footprint_radius))
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
-        self._cut()
-        self._base_from_scan = self.model.base_from_scan.on_plane()
+        self._scanners = Scanners(self.lidar, [robot.model for robot in robots], world)
+        self.moving = bool(world.moving())
         self._schedule = self._make_schedule()
         self._start()
 
@@ -88,16 +83,11 @@ class Simulator:
         """A world with what moves in it, or without."""
         return world if self.params.moving or not world.moving() else world.standing()
 
-    def _cut(self) -> None:
-        """Look at the world: its cut at the scanners' height, and whether anything moves."""
-        height = self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2]
-        self._walls = Slice(self.world, height)
-        self.moving = bool(self.world.moving())
-
     def change_world(self, world: World) -> None:
         """Another world from the next step on, such as world_edits makes of this one; a reset keeps it."""
         self.world = self._as_asked(world)
-        self._cut()
+        self.moving = bool(self.world.moving())
+        self._scanners.change_world(self.world)
         self._physics.change_world(self.world, self.world_time)
 
     def _start(self) -> None:
@@ -139,7 +129,7 @@ class Simulator:
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
         """Take a velocity command; CommandError on NaN or infinity leaves the one before in force."""
-        self._drives[robot] = drive.accept(self._drives[robot], twist, self.time, self._limits)
+        self._drives[robot] = drive.accept(self._drives[robot], twist, self.time, self._limits[robot])
 
     def step(self, wanted: Wanted) -> Optional[Observations]:
         """Advance by one physics step, then measure what is due and wanted; None when nothing is due."""
@@ -168,11 +158,12 @@ class Simulator:
         """Each robot's wheels as its command, its limits and the time-out have them."""
         now = self.time
         for robot, before in enumerate(self._drives):
-            after = drive.advance(before, now, self.dt, self._limits)
+            after = drive.advance(before, now, self.dt, self._limits[robot])
             if after is not before:
                 self._drives[robot] = after
-                self._physics.drive(robot, drive.wheel_speeds(after.velocity, self.model.wheel_radius,
-                                                              self.model.wheel_separation))
+                model = self.robots[robot].model
+                self._physics.drive(robot, drive.wheel_speeds(after.velocity, model.wheel_radius,
+                                                              model.wheel_separation))
 
     def _rng(self, sensor: int) -> np.random.Generator:
         """Noise of one sensor on this step: a function of seed, sensor and steps since the reset, whoever listens."""
@@ -189,35 +180,23 @@ class Simulator:
         return dict(zip(robots, self.lidar.measure(distances, noise[list(robots)])))
 
     def _distances(self, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
-        """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
-        scans = [compose(state.world_from_base, self._base_from_scan) for state in states]
-        world_from_scans = np.array([(pose.x, pose.y, pose.yaw) for pose in scans])
-        return self.lidar.distances(world_from_scans[list(robots)], self._walls.at(self.world_time),
-                                    self._others(world_from_scans, robots))
-
-    def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
-        """Circles (r, n - 1, 3) that stand for the other robots' scanners, for each robot asked for."""
-        n = len(self.robots)
-        if n == 1:
-            return None
-        circles = np.column_stack([world_from_scans[:, :2], np.full(n, LIDAR_RADIUS)])
-        return np.stack([np.delete(circles, robot, axis=0) for robot in robots])
+        return self._scanners.distances([state.world_from_base for state in states], robots, self.world_time)
 
     def occupancy(self) -> Occupancy:
-        """The world as a grid map in its own frame: the one it was made of, else its cut at the scanners' height."""
+        """The world as a grid map in its own frame: the one it was made of, else cut at the first robot's scanner."""
         if self.world.occupancy is not None:
             return self.world.occupancy
-        return occupancy_of(self._walls, self.world.spawn, self.params.map_resolution)
+        return occupancy_of(self._scanners.walls(0), self.world.spawn, self.params.map_resolution)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""
         return self._distances(self._states(), [robot])[0]
 
     def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
-        dt, model = 1.0 / self.params.odom_rate, self.model
+        dt = 1.0 / self.params.odom_rate
         self._odometry = [
-            odometry.integrate(before, state.wheel_angles, dt, model.wheel_radius, model.wheel_separation)
-            for before, state in zip(self._odometry, states)]
+            odometry.integrate(before, state.wheel_angles, dt, robot.model.wheel_radius, robot.model.wheel_separation)
+            for robot, before, state in zip(self.robots, self._odometry, states)]
         if self.params.localization == "truth":
             self._map_from_odom = [compose(state.world_from_base, inverse(it.odom_from_base))
                                    for state, it in zip(states, self._odometry)]
@@ -225,7 +204,7 @@ class Simulator:
 
     def _imu(self, robot: int, before: BodyState) -> ImuSample:
         rng = self._rng(1 + robot)
-        return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.model.base_from_imu,
+        return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.robots[robot].model.base_from_imu,
                                   self.params.gyro_noise, self.params.accelerometer_noise, rng)
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:

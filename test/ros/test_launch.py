@@ -1,5 +1,6 @@
 """Which nodes the launch files start for one robot and for many, with which names and frames; nothing is started."""
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 import roslaunch.config
@@ -50,6 +51,23 @@ def test_each_of_many_robots_has_its_nodes_in_its_namespace_and_its_frames(robot
     assert launch.named("tf_prefix") == {f"/{name}/robot_state_publisher/tf_prefix": name for name in names}
     assert launch.named("/goal_frame") == {
         f"/{name}/robocop_rviz_goto_ac_node/goal_frame": f"{name}/odom" for name in names}
+
+
+def test_each_robot_has_the_description_of_its_own_model():
+    def robots_described(*arguments):
+        found = Launch(*arguments, "rviz:=false").named("robot_description")
+        return {name: ElementTree.fromstring(text).get("name") for name, text in found.items()}
+
+    assert robots_described() == {"/robot_description": "turtlebot3_burger"}
+    assert robots_described("model:=waffle") == {"/robot_description": "turtlebot3_waffle"}
+    assert robots_described("robots:=red 0 0; blue:waffle_pi 1 0", "model:=turtlebot2") == {
+        "/red/robot_description": "turtlebot2", "/blue/robot_description": "turtlebot3_waffle_pi"}
+
+
+def test_a_robots_model_is_no_part_of_its_name():
+    launch = Launch("robots:=red:waffle 0 0; blue 1 0")
+    assert set(launch.nodes) == {"/robocop_sim", "/red/rviz"} | of_robots("red", "blue")
+    assert launch.params["/robocop_sim/robots"] == "red:waffle 0 0; blue 1 0"
 
 
 def test_simulator_alone_publishes_the_state_of_each_robot():
