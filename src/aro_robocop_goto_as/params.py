@@ -2,10 +2,11 @@
 
 import difflib
 import math
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields, replace
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar
 
 from .errors import ParameterError
+from .sensors.scan_profiles import PROFILES, LidarSpec, ScanProfile
 
 T = TypeVar("T")
 
@@ -111,13 +112,14 @@ class SimParams:
     max_linear_acceleration: float = _param(0.0, low=0.0, high=1e6)
     max_angular_acceleration: float = _param(0.0, low=0.0, high=1e6)
 
-    scan_rate: int = _param(10, low=1)
-    scan_samples: int = _param(360, low=2, high=100000)
+    scan_profile: str = _param("gazebo", choices=tuple(PROFILES))
+    scan_rate: int = _param(0, low=0)
+    scan_samples: int = _param(0, low=0, high=100000)
     scan_angle_min: float = _param(0.0, low=-10.0, high=10.0)
-    scan_angle_max: float = _param(6.28319, low=-10.0, high=10.0)
-    scan_range_min: float = _positive(0.12)
-    scan_range_max: float = _positive(10.0)
-    scan_noise: float = _param(0.01, low=0.0, high=100.0)
+    scan_angle_max: float = _param(0.0, low=-10.0, high=10.0)
+    scan_range_min: float = _param(0.0, low=0.0, high=1e6)
+    scan_range_max: float = _param(0.0, low=0.0, high=1e6)
+    scan_noise: float = _param(-1.0, low=-1.0, high=100.0)
 
     odom_rate: int = _param(30, low=1)
     joint_state_rate: int = _param(30, low=1)
@@ -133,11 +135,31 @@ class SimParams:
     scan_frame: str = "base_scan"
     imu_frame: str = "imu_link"
 
+    def given_scan(self) -> Dict[str, Any]:
+        """The figures of the scanner that are given, and so win over those of its profile."""
+        none = {"scan_noise": -1.0}
+        names = [spec.name for spec in fields(self) if spec.name.startswith("scan_")]
+        found = {name: getattr(self, name) for name in names if name not in ("scan_profile", "scan_frame")}
+        given = {name: value for name, value in found.items() if value != none.get(name, 0)}
+        span = ("scan_angle_min", "scan_angle_max")  # one may be 0 as well
+        return {**given, **{name: found[name] for name in span if any(end in given for end in span)}}
+
+    def scanner(self) -> ScanProfile:
+        """The scanner of this profile, but for what is given."""
+        rate, spec = PROFILES[self.scan_profile]
+        given = {name[len("scan_"):]: value for name, value in self.given_scan().items()}
+        rate = given.pop("rate", rate)
+        if "noise" in given:
+            given["accuracy"] = ()
+        return ScanProfile(rate, replace(spec, **given))
+
     def conflicts(self) -> List[str]:
         """What can't be true at once, in words; empty when all is well."""
         found = []
-        for name in ("clock_rate", "control_rate", "scan_rate", "odom_rate", "joint_state_rate", "ground_truth_rate"):
-            rate = getattr(self, name)
+        scan_rate, spec = self.scanner()
+        rates = {name: getattr(self, name) for name in (
+            "clock_rate", "control_rate", "odom_rate", "joint_state_rate", "ground_truth_rate")}
+        for name, rate in {**rates, "scan_rate": scan_rate}.items():
             if self.physics_rate % rate:
                 found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
         names = [f"{name}_frame" for name in ("world", "map", "odom", "base", "scan", "imu")]
@@ -148,12 +170,18 @@ class SimParams:
                 found.append(f"{name}: expected six different frames, got {frame!r} {frames.count(frame)} times")
         if self.imu_rate > self.physics_rate:
             found.append(f"imu_rate: {self.imu_rate} Hz is above physics_rate {self.physics_rate} Hz")
-        if self.scan_angle_max <= self.scan_angle_min:
-            found.append(
-                f"scan_angle_max: expected more than scan_angle_min {self.scan_angle_min}, got {self.scan_angle_max}")
-        if self.scan_range_max <= self.scan_range_min:
-            found.append(
-                f"scan_range_max: expected more than scan_range_min {self.scan_range_min}, got {self.scan_range_max}")
+        return found + self._scan_conflicts(spec)
+
+    def _scan_conflicts(self, spec: LidarSpec) -> List[str]:
+        found = []
+        if spec.angle_max <= spec.angle_min:
+            found.append(f"scan_angle_max: expected more than scan_angle_min {spec.angle_min}, got {spec.angle_max}")
+        if spec.range_max <= spec.range_min:
+            found.append(f"scan_range_max: expected more than scan_range_min {spec.range_min}, got {spec.range_max}")
+        if spec.samples < 2:
+            found.append(f"scan_samples: expected at least 2, or 0 for the profile's own, got {spec.samples}")
+        if -1.0 < self.scan_noise < 0.0:
+            found.append(f"scan_noise: expected at least 0, or -1 for the profile's own, got {self.scan_noise}")
         return found
 
 

@@ -58,8 +58,7 @@ class _Level:
 class Scanners:
     """One scanner a robot, all of the same kind; robots of different models carry them at different heights."""
 
-    def __init__(self, lidar: Lidar, models: Sequence[RobotModel], world: World) -> None:
-        self.lidar = lidar
+    def __init__(self, models: Sequence[RobotModel], world: World) -> None:
         self._base_from_scans = [model.base_from_scan.on_plane() for model in models]
         levels: Dict[float, _Level] = {}
         for model in models:
@@ -79,7 +78,8 @@ class Scanners:
         """The world's cut at the height of one robot's scanner, at time zero."""
         return self._levels[robot].walls
 
-    def distances(self, world_from_bases: Sequence[Pose2D], robots: Sequence[int], time: float) -> np.ndarray:
+    def distances(self, lidar: Lidar, world_from_bases: Sequence[Pose2D], robots: Sequence[int],
+                  time: float) -> np.ndarray:
         """Exact distances (r, samples) [m] of the robots asked for, at a time [s]; +inf where nothing is in reach.
 
         In the plane that TF speaks of: scanners level, at their height on robots that stand upright.
@@ -91,9 +91,9 @@ class Scanners:
         for row, robot in enumerate(robots):
             level = self._levels[robot]
             groups.setdefault((level.height, level.counts[robot]), []).append(row)
-        found = np.empty((len(robots), self.lidar.spec.samples))
+        found = np.empty((len(robots), lidar.spec.samples))
         for rows in groups.values():
             level, seeing = self._levels[robots[rows[0]]], [robots[row] for row in rows]
             others = level.others(bases, seeing) if len(bases) > 1 else None
-            found[rows] = self.lidar.distances(poses[rows], level.walls.at(time), others)
+            found[rows] = lidar.distances(poses[rows], level.walls.at(time), others)
         return found

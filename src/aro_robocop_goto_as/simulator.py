@@ -16,7 +16,7 @@ from .scanners import Scanners
 from .sensors import imu as imu_sensor
 from .sensors import odometry
 from .sensors.imu import ImuSample
-from .sensors.lidar import Lidar, LidarSpec
+from .sensors.lidar import Lidar
 from .sensors.odometry import Odometry
 from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
@@ -46,7 +46,7 @@ class Observations:
     stamp_ns: int
     clock: bool
     control: bool
-    scans: Mapping[int, np.ndarray]  # ranges (scan_samples,) [m] in base_scan
+    scans: Mapping[int, np.ndarray]  # ranges (samples,) [m] in base_scan
     imus: Mapping[int, ImuSample]
     odometry: Optional[Sequence[Odometry]] = None
     joints: Optional[Sequence[RobotState]] = None
@@ -66,15 +66,14 @@ class Simulator:
         self._noise = np.random.Generator(np.random.Philox(0))
         self._noise_state = self._noise.bit_generator.state
         self.dt = 1.0 / params.physics_rate
-        self.lidar = Lidar(LidarSpec(params.scan_angle_min, params.scan_angle_max, params.scan_samples,
-                                     params.scan_range_min, params.scan_range_max, params.scan_noise))
+        self.lidar = Lidar(params.scanner().spec)
         self._limits = [drive.limits_from(params, robot.model.figures) for robot in robots]
         self._physics: Union[Physics, Kinematics] = (
             Physics(world, params.physics_rate, params.solver_iterations, params.gui) if params.drive == "wheels"
             else Kinematics(world, params.physics_rate, params.footprint_radius))
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
-        self._scanners = Scanners(self.lidar, [robot.model for robot in robots], world)
+        self._scanners = Scanners([robot.model for robot in robots], world)
         self.moving = bool(world.moving())
         self._schedule = self._make_schedule()
         self._start()
@@ -103,7 +102,7 @@ class Simulator:
     def _make_schedule(self) -> List[FrozenSet[str]]:
         """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
         p = self.params
-        rates = {SCAN: p.scan_rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
+        rates = {SCAN: p.scanner().rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
                  TRUTH: p.ground_truth_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
         return [frozenset(name for name, rate in rates.items() if due(step, rate, p.physics_rate))
                 for step in range(1, p.physics_rate + 1)]
@@ -174,13 +173,15 @@ class Simulator:
         return self._noise
 
     def _scan(self, states: Sequence[RobotState], robots: Sequence[int]) -> Dict[int, np.ndarray]:
-        distances = self._distances(states, robots)
+        rng = self._rng(0)
+        lidar = self.lidar.next_turn(rng)
+        distances = self._distances(lidar, states, robots)
         # Drawn for all robots, so that one robot's noise does not depend on whether another is listened to.
-        noise = self._rng(0).standard_normal((len(self.robots), self.params.scan_samples))
-        return dict(zip(robots, self.lidar.measure(distances, noise[list(robots)])))
+        noise = rng.standard_normal((len(self.robots), lidar.spec.samples))
+        return dict(zip(robots, lidar.measure(distances, noise[list(robots)])))
 
-    def _distances(self, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
-        return self._scanners.distances([state.world_from_base for state in states], robots, self.world_time)
+    def _distances(self, lidar: Lidar, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
+        return self._scanners.distances(lidar, [state.world_from_base for state in states], robots, self.world_time)
 
     def occupancy(self) -> Occupancy:
         """The world as a grid map in its own frame: the one it was made of, else cut at the first robot's scanner."""
@@ -189,8 +190,8 @@ class Simulator:
         return occupancy_of(self._scanners.walls(0), self.world.spawn, self.params.map_resolution)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
-        """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""
-        return self._distances(self._states(), [robot])[0]
+        """What a scanner would measure now without noise or range_min (samples,) [m]; no return = +inf."""
+        return self._distances(self.lidar, self._states(), [robot])[0]
 
     def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
         dt = 1.0 / self.params.odom_rate

@@ -21,7 +21,7 @@ from ..params import SimParams, from_dict
 from ..physics import Physics
 from ..robot import RobotModel
 from ..scanners import rounds_at
-from ..sensors.lidar import Lidar, LidarSpec
+from ..sensors.lidar import Lidar
 from ..simtime import due
 from ..slice import Slice
 from ..spawns import robots_from
@@ -49,7 +49,7 @@ class Bare:
         for robot in self.robots:
             self.engine.drive(robot, drive.wheel_speeds(Twist2D(LINEAR, ANGULAR), model.wheel_radius,
                                                         model.wheel_separation))
-        spec = LidarSpec(p.scan_angle_min, p.scan_angle_max, p.scan_samples, p.scan_range_min, p.scan_range_max, 0.0)
+        spec = p.scanner().spec
         self._prepare_scans(world, model, Lidar(spec))
         stamp = convert.to_time(1)
         self.scan = _bytes(convert.to_scan(self.distances()[0].tolist(), spec, stamp, p.scan_frame))

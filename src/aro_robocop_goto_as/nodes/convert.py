@@ -14,7 +14,7 @@ from ..geometry import Pose2D, Twist2D, yaw_of
 from ..params import SimParams
 from ..robot import WHEEL_JOINTS, Pair
 from ..sensors.imu import ImuSample
-from ..sensors.lidar import LidarSpec
+from ..sensors.scan_profiles import LidarSpec
 from ..simtime import NANOSECONDS
 
 # Variances of x, y, z, roll, pitch, yaw; what the drive can't move is marked unknown by a huge one. The figures are

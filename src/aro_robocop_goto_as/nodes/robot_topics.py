@@ -12,7 +12,7 @@ from aro_robocop_goto_as.msg import TickAnswer
 from .. import simulator
 from ..geometry import Pose2D, Twist2D
 from ..params import SimParams
-from ..sensors.lidar import LidarSpec
+from ..sensors.scan_profiles import LidarSpec
 from ..simulator import Observations
 from . import convert
 from .packed import PackedOdometry
@@ -106,7 +106,9 @@ class RobotTopics:
             self.odom.publish(self._odom_message.update(
                 seen.odometry[i].odom_from_base, seen.odometry[i].twist, stamp))
         if i in seen.scans:
-            self.scan.publish(convert.to_scan(seen.scans[i].tolist(), self.spec, stamp, self.scan_frame))
+            ranges = seen.scans[i].tolist()
+            spec = self.spec if len(ranges) == self.spec.samples else self.spec.with_samples(len(ranges))
+            self.scan.publish(convert.to_scan(ranges, spec, stamp, self.scan_frame))
 
     def transforms(self, seen: Observations, map_from_odom: Pose2D, stamp: rospy.Time) -> List[TransformStamped]:
         """odom -> base, and map -> odom where ground truth corrects it."""

@@ -228,6 +228,10 @@ class SimNode:
         for robot in self.sim.robots:
             rospy.loginfo("robot %sat x %.2f y %.2f yaw %.2f", robot.name and robot.name + " ", robot.spawn.x,
                           robot.spawn.y, robot.spawn.yaw)
+        given = self.p.given_scan()
+        if given:
+            rospy.loginfo("scan_profile %s, but as given: %s", self.p.scan_profile,
+                          ", ".join(f"{name} {value:g}" for name, value in given.items()))
         if world.ignored:
             rospy.loginfo("not simulated from that file: %s", ", ".join(world.ignored))
         self.show_world()
