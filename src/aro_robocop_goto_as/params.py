@@ -106,7 +106,8 @@ class SimParams:
     reset_time: bool = False
     start_paused: bool = False
 
-    cmd_vel_timeout: float = _param(0.5, low=0.0)
+    cmd_vel_timeout: float = _param(0.5, low=-1.0)
+    velocity_limits: str = _param("teleop", choices=("teleop", "firmware"))
     max_linear_velocity: float = _param(0.0, low=0.0, high=1e6)
     max_angular_velocity: float = _param(0.0, low=0.0, high=1e6)
     max_linear_acceleration: float = _param(0.0, low=0.0, high=1e6)
@@ -121,10 +122,17 @@ class SimParams:
     scan_range_max: float = _param(0.0, low=0.0, high=1e6)
     scan_noise: float = _param(-1.0, low=-1.0, high=100.0)
 
+    covariances: str = _param("gazebo", choices=("gazebo", "real"))
     odom_rate: int = _param(30, low=1)
+    odom_wheel_radius_error: float = _param(0.0, low=-0.5, high=0.5)
+    odom_slip: float = _param(0.0, low=0.0, high=1.0)
+    encoder_tick: float = _param(0.0, low=0.0, high=1.0)
     joint_state_rate: int = _param(30, low=1)
     ground_truth_rate: int = _param(30, low=1)
     imu_rate: int = _param(200, low=1)
+    bumper_rate: int = _param(30, low=0)
+    battery_state_rate: int = _param(0, low=0)
+    magnetic_field_rate: int = _param(0, low=0)
     gyro_noise: float = _param(2e-4, low=0.0, high=100.0)
     accelerometer_noise: float = _param(1.7e-2, low=0.0, high=100.0)
 
@@ -158,9 +166,10 @@ class SimParams:
         found = []
         scan_rate, spec = self.scanner()
         rates = {name: getattr(self, name) for name in (
-            "clock_rate", "control_rate", "odom_rate", "joint_state_rate", "ground_truth_rate")}
+            "clock_rate", "control_rate", "odom_rate", "joint_state_rate", "ground_truth_rate", "bumper_rate",
+            "battery_state_rate")}
         for name, rate in {**rates, "scan_rate": scan_rate}.items():
-            if self.physics_rate % rate:
+            if rate and self.physics_rate % rate:
                 found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
         names = [f"{name}_frame" for name in ("world", "map", "odom", "base", "scan", "imu")]
         frames = [getattr(self, name) for name in names]
@@ -168,8 +177,11 @@ class SimParams:
             found += _bad_frame(name, frame)
             if frame and frames.count(frame) > 1:
                 found.append(f"{name}: expected six different frames, got {frame!r} {frames.count(frame)} times")
-        if self.imu_rate > self.physics_rate:
-            found.append(f"imu_rate: {self.imu_rate} Hz is above physics_rate {self.physics_rate} Hz")
+        for name in ("imu_rate", "magnetic_field_rate"):
+            if getattr(self, name) > self.physics_rate:
+                found.append(f"{name}: {getattr(self, name)} Hz is above physics_rate {self.physics_rate} Hz")
+        if -1.0 < self.cmd_vel_timeout < 0.0:
+            found.append(f"cmd_vel_timeout: expected at least 0, or -1 for the model's own, got {self.cmd_vel_timeout}")
         return found + self._scan_conflicts(spec)
 
     def _scan_conflicts(self, spec: LidarSpec) -> List[str]:

@@ -6,15 +6,16 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import drive
-from .geometry import Pose2D, Twist2D, compose, inverse
+from .geometry import Pose2D, Twist2D, compose, compose3, inverse
 from .kinematics import Kinematics
 from .occupancy import occupancy_of
+from .odometers import Odometers
 from .params import SimParams
 from .physics import Physics
 from .robot import BodyState, RobotModel, RobotState
 from .scanners import Scanners
 from .sensors import imu as imu_sensor
-from .sensors import odometry
+from .sensors import magnetometer
 from .sensors.imu import ImuSample
 from .sensors.lidar import Lidar
 from .sensors.odometry import Odometry
@@ -22,8 +23,10 @@ from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
-ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
-SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH)
+BUMPER, BATTERY, FIELD = "bumper", "battery", "magnetic_field"
+FAST = frozenset((IMU, FIELD))  # due on most steps, and seldom listened to
+SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH, BUMPER, BATTERY, FIELD)
+SLIP = 2 ** 32  # number of a noise, beyond those of all robots' sensors
 Wanted = Mapping[str, Sequence[int]]  # sensor -> the robots it is wanted of
 
 
@@ -40,7 +43,7 @@ class RobotSpec:
 class Observations:
     """What one step brought, all of it at one simulated time; None = not due on this step, or not wanted.
 
-    Sequences hold all robots in order; `scans` and `imus` only those that were wanted, by index.
+    Sequences hold all robots in order; mappings only those that were wanted, by index.
     """
 
     stamp_ns: int
@@ -48,6 +51,9 @@ class Observations:
     control: bool
     scans: Mapping[int, np.ndarray]  # ranges (samples,) [m] in base_scan
     imus: Mapping[int, ImuSample]
+    bumpers: Mapping[int, bool]  # whether it touches anything but the floor
+    fields: Mapping[int, np.ndarray]  # magnetic, (3,) [T] in imu_link
+    battery: bool = False
     odometry: Optional[Sequence[Odometry]] = None
     joints: Optional[Sequence[RobotState]] = None
     ground_truth: Optional[Sequence[RobotState]] = None
@@ -92,7 +98,7 @@ class Simulator:
     def _start(self) -> None:
         """All robots stand at their spawn poses, odometry at zero."""
         self._drives = [drive.STANDING for _ in self.robots]
-        self._odometry = [odometry.starting(state.wheel_angles) for state in self._states()]
+        self._odometers = Odometers(self.params, [robot.model for robot in self.robots], self._states())
         self._map_from_odom = [robot.spawn for robot in self.robots]
 
     def _states(self) -> List[RobotState]:
@@ -103,8 +109,9 @@ class Simulator:
         """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
         p = self.params
         rates = {SCAN: p.scanner().rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
-                 TRUTH: p.ground_truth_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
-        return [frozenset(name for name, rate in rates.items() if due(step, rate, p.physics_rate))
+                 TRUTH: p.ground_truth_rate, BUMPER: p.bumper_rate, BATTERY: p.battery_state_rate,
+                 FIELD: p.magnetic_field_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
+        return [frozenset(name for name, rate in rates.items() if rate and due(step, rate, p.physics_rate))
                 for step in range(1, p.physics_rate + 1)]
 
     @property
@@ -140,7 +147,8 @@ class Simulator:
         self.steps += 1
         if self.moving:
             self._physics.move(self.world_time)
-        if not due_now or (due_now == ONLY_IMU and not imus):
+        fields = wanted.get(FIELD, ()) if FIELD in due_now else ()
+        if not due_now or (due_now <= FAST and not imus and not fields):
             return None
         # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
         asked = {sensor for sensor in (SCAN, JOINTS, TRUTH) if sensor in due_now and wanted.get(sensor)}
@@ -149,8 +157,11 @@ class Simulator:
             self.stamp_ns, CLOCK in due_now, CONTROL in due_now,
             scans=self._scan(states, wanted[SCAN]) if states is not None and SCAN in asked else {},
             imus={robot: self._imu(robot, body) for robot, body in before.items()},
+            bumpers={robot: self.touching(robot) for robot in wanted.get(BUMPER, ())} if BUMPER in due_now else {},
+            fields={robot: self._field(robot) for robot in fields},
+            battery=BATTERY in due_now,
             odometry=self._update_odometry(states) if states is not None and ODOM in due_now else None,
-            joints=states if JOINTS in asked else None,
+            joints=self._joints(states) if states is not None and JOINTS in asked else None,
             ground_truth=states if TRUTH in asked else None)
 
     def _turn_wheels(self) -> None:
@@ -194,14 +205,23 @@ class Simulator:
         return self._distances(self.lidar, self._states(), [robot])[0]
 
     def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
-        dt = 1.0 / self.params.odom_rate
-        self._odometry = [
-            odometry.integrate(before, state.wheel_angles, dt, robot.model.wheel_radius, robot.model.wheel_separation)
-            for robot, before, state in zip(self.robots, self._odometry, states)]
+        if self._odometers.slipping:
+            self._odometers.slip(states, self._rng(SLIP).standard_normal((len(self.robots), 2)))
+        latest = self._odometers.update(states)
         if self.params.localization == "truth":
             self._map_from_odom = [compose(state.world_from_base, inverse(it.odom_from_base))
-                                   for state, it in zip(states, self._odometry)]
-        return self._odometry
+                                   for state, it in zip(states, latest)]
+        return latest
+
+    def _joints(self, states: Sequence[RobotState]) -> Sequence[RobotState]:
+        """Wheel angles as encoders show them."""
+        if not self.params.encoder_tick:
+            return states
+        return [state._replace(wheel_angles=self._odometers.read(state.wheel_angles)) for state in states]
+
+    def _field(self, robot: int) -> np.ndarray:
+        world_from_imu = compose3(self._physics.body(robot).world_from_base, self.robots[robot].model.base_from_imu)
+        return magnetometer.measure(world_from_imu.orientation)
 
     def _imu(self, robot: int, before: BodyState) -> ImuSample:
         rng = self._rng(1 + robot)
@@ -232,7 +252,7 @@ class Simulator:
         """Set a robot down elsewhere, at rest; odometry goes on, so map -> odom takes up the jump."""
         self._physics.place(robot, world_from_base)
         self._drives[robot] = drive.STANDING
-        self._map_from_odom[robot] = compose(world_from_base, inverse(self._odometry[robot].odom_from_base))
+        self._map_from_odom[robot] = compose(world_from_base, inverse(self._odometers.latest[robot].odom_from_base))
 
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
         """Robots to their spawn poses, odometry to zero, noise from its start, of `seed` if one is given.

@@ -91,6 +91,17 @@ def test_rviz_of_many_robots_runs_in_the_namespace_of_the_one_it_shows(arguments
     assert "many_robots.rviz -f map" in rviz[node]
 
 
+def test_profile_wins_over_the_config_and_arguments_over_both():
+    def timeout(*arguments):
+        params = Launch(*arguments).params
+        return params["/robocop_sim/cmd_vel_timeout"], params["/robocop_sim/scan_profile"]
+
+    assert timeout() == (0.5, "gazebo")
+    assert timeout("profile:=gazebo") == (0.0, "gazebo")
+    assert timeout("profile:=real") == (-1.0, "lds01")
+    assert timeout("profile:=real", "cmd_vel_timeout:=2", "scan_profile:=lds02") == (2.0, "lds02")
+
+
 def test_time_and_drive_are_passed_on_to_the_simulator():
     launch = Launch("robots:=2", "drive:=kinematic", "sync:=lockstep", "real_time_factor:=0")
     found = [launch.params[f"/robocop_sim/{name}"] for name in ("drive", "sync", "real_time_factor")]
