@@ -5,6 +5,7 @@ from typing import NamedTuple, Tuple
 
 from .errors import CommandError
 from .geometry import STANDSTILL, Twist2D
+from .params import ModelFigures, SimParams
 
 
 class DriveLimits(NamedTuple):
@@ -15,6 +16,17 @@ class DriveLimits(NamedTuple):
     max_dv: float  # [m/s^2]
     max_dw: float  # [rad/s^2]
     timeout: float  # [s]
+
+
+def limits_from(p: SimParams, own: ModelFigures) -> DriveLimits:
+    """What the parameters ask for; where they are 0, of the time-out -1, the model's own."""
+    v, w = ((own.firmware_linear_velocity, own.firmware_angular_velocity) if p.velocity_limits == "firmware"
+            else (own.max_linear_velocity, own.max_angular_velocity))
+    return DriveLimits(
+        p.max_linear_velocity or v, p.max_angular_velocity or w,
+        p.max_linear_acceleration or own.max_linear_acceleration,
+        p.max_angular_acceleration or own.max_angular_acceleration,
+        own.cmd_vel_timeout if p.cmd_vel_timeout < 0.0 else p.cmd_vel_timeout)
 
 
 class DriveState(NamedTuple):

@@ -6,7 +6,7 @@ blocked its encoders count on, as wheels that slip do.
 """
 
 import math
-from typing import List, Sequence, Set
+from typing import Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -16,16 +16,50 @@ from .slice import FEW, Slice
 from .tiles import Tiles
 from .world import World
 
-HEIGHTS = (0.02, 0.10, 0.18)  # [m] at which obstacles are met: a Burger's bottom plate, middle, and lidar
+LOWEST = 0.02  # [m] at which obstacles are met: a bottom plate
+SPREAD = 0.09  # [m] at the most from there to the next height, and so on up to the lidar
 NEARBY = 1.0  # [m] how far many walls are looked up
 SKIN = 1e-6  # [m] kept free, so that rounding never puts a disc inside a wall
+
+
+class _Walls:
+    """What is met at any of a robot's heights [m]: segments, indexed where they are many, and round obstacles."""
+
+    def __init__(self, world: World, heights: Tuple[float, ...], time: float) -> None:
+        self._cuts = [Slice(world, height) for height in heights]
+        self.segments = np.unique(np.concatenate([cut.segments for cut in self._cuts]), axis=0)
+        self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
+        self._moving = bool(world.moving())
+        self.circles = self._circles_at(time)
+
+    def move(self, time: float) -> float:
+        """Have what moves where it is at a time [s]; how far [m] it came at the most."""
+        before, self.circles = self.circles, self._circles_at(time)
+        return float(np.hypot(*(self.circles[:, :2] - before[:, :2]).T).max(initial=0.0))
+
+    def _circles_at(self, time: float) -> np.ndarray:
+        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order.
+
+        Where nothing moves, each is there once, not once a height: fewer are faster.
+        """
+        circles = np.concatenate([cut.at(time).circles for cut in self._cuts])
+        return circles if self._moving else np.unique(circles, axis=0)
+
+
+def _heights(model: RobotModel) -> Tuple[float, ...]:
+    """From bottom plate to lidar [m]; of a Burger three, its middle between them."""
+    top = model.scan_height
+    count = 1 + max(1, math.ceil((top - LOWEST) / SPREAD))
+    return tuple(np.linspace(LOWEST, top, count).tolist())
 
 
 class _Disc:
     """What is kept of one robot."""
 
-    def __init__(self, model: RobotModel, pose: Pose2D) -> None:
+    def __init__(self, model: RobotModel, radius: float, pose: Pose2D) -> None:
         self.model = model
+        self.radius = radius  # [m]
+        self.heights = _heights(model)
         self.wheels: Pair = (0.0, 0.0)  # angles [rad]
         self.set_down(pose)
 
@@ -47,36 +81,26 @@ class _Disc:
 class Kinematics:
     """The ideal drive; the same interface as Physics, robots addressed in the order they were added."""
 
-    def __init__(self, world: World, rate: int, radius: float) -> None:
+    def __init__(self, world: World, rate: int, radius: float = 0.0) -> None:
+        """Stepped at `rate` [Hz]; radius [m] of all robots, 0 for each model's own."""
         self._dt = 1.0 / rate
         self._radius = radius
         self._discs: List[_Disc] = []
+        self._walls: Dict[Tuple[float, ...], _Walls] = {}  # by the heights of the robots that meet them
         self.change_world(world, 0.0)
         self._apart = 0.0  # [m] that any two robots may certainly travel, both together, before they meet
 
     def change_world(self, world: World, time: float) -> None:
         """Another world from now on, as it is at a time [s]."""
-        self._cuts = [Slice(world, height) for height in HEIGHTS]
-        self._segments = np.unique(np.concatenate([cut.segments for cut in self._cuts]), axis=0)
-        self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
-        self._moving = bool(world.moving())
-        self._circles = self._circles_at(time)
+        self._world, self._time = world, time
+        self._walls = {heights: _Walls(world, heights, time) for heights in self._walls}
         for disc in self._discs:
             disc.room = 0.0
 
-    def _circles_at(self, time: float) -> np.ndarray:
-        """All round obstacles (k, 3) [m] as they are at a time [s], always in the same order.
-
-        Where nothing moves, each is there once, not once a height: fewer are faster.
-        """
-        circles = np.concatenate([cut.at(time).circles for cut in self._cuts])
-        return circles if self._moving else np.unique(circles, axis=0)
-
     def move(self, time: float) -> None:
         """Have obstacles that move where they are at a time [s]; robots in their way are pushed up to a wall."""
-        circles = self._circles_at(time)
-        travelled = float(np.hypot(*(circles[:, :2] - self._circles[:, :2]).T).max(initial=0.0))
-        self._circles = circles
+        self._time = time
+        travelled = max([walls.move(time) for walls in self._walls.values()], default=0.0)
         for it in self._discs:
             it.room -= travelled
             if it.room < 0.0:
@@ -85,9 +109,10 @@ class Kinematics:
     def _push(self, it: _Disc) -> None:
         """Straight away from the round obstacle that is deepest in a robot, if one is."""
         centre = np.array([it.pose.x, it.pose.y])
-        offsets = centre - self._circles[:, :2]
+        circles = self._walls[it.heights].circles
+        offsets = centre - circles[:, :2]
         away = np.hypot(offsets[:, 0], offsets[:, 1])
-        depths = self._circles[:, 2] + self._radius + SKIN - away
+        depths = circles[:, 2] + it.radius + SKIN - away
         deepest = int(depths.argmax())
         if depths[deepest] > 0.0 and away[deepest] > 0.0:
             push = offsets[deepest] * (depths[deepest] / away[deepest])
@@ -97,7 +122,10 @@ class Kinematics:
 
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float = 0.0) -> int:
         """Put a robot down; torque is of no account here. Returns its index."""
-        self._discs.append(_Disc(model, world_from_footprint))
+        it = _Disc(model, self._radius or model.figures.footprint_radius, world_from_footprint)
+        if it.heights not in self._walls:
+            self._walls[it.heights] = _Walls(self._world, it.heights, self._time)
+        self._discs.append(it)
         self._apart = 0.0
         return len(self._discs) - 1
 
@@ -108,8 +136,8 @@ class Kinematics:
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
         """All robots set down anew at their poses, wheels at angle zero; what moves is back where it began."""
-        self._circles = self._circles_at(0.0)
-        self._discs = [_Disc(disc.model, pose) for disc, pose in zip(self._discs, poses)]
+        self.move(0.0)
+        self._discs = [_Disc(disc.model, disc.radius, pose) for disc, pose in zip(self._discs, poses)]
         self._apart = 0.0
 
     def drive(self, robot: int, wheel_speeds: Pair) -> None:
@@ -146,7 +174,8 @@ class Kinematics:
         centres = np.array([(it.pose.x, it.pose.y) for it in self._discs])
         between = np.hypot(centres[:, 0:1] - centres[:, 0], centres[:, 1:2] - centres[:, 1])
         np.fill_diagonal(between, np.inf)
-        free = between - 2.0 * (self._radius + longest + SKIN)
+        radii = np.array([it.radius for it in self._discs])
+        free = between - (radii[:, None] + radii) - 2.0 * (longest + SKIN)
         self._apart = float(free.min())
         return set(np.flatnonzero((free < 0.0).any(axis=1)).tolist())
 
@@ -156,38 +185,41 @@ class Kinematics:
         centre = np.array([it.pose.x, it.pose.y])
         share = self._share_against_walls(it, centre, move, length) if it.room < 0.0 else 1.0
         if crowded:
-            others = self._others(i)
-            rings = np.column_stack([others, np.full(len(others), 2.0 * self._radius + SKIN)])
+            rings = self._others(i) + [0.0, 0.0, it.radius + SKIN]
             share = min(share, _short_of(_share_to_circles(centre, move, rings), length))
         return share
 
     def _share_against_walls(self, it: _Disc, centre: np.ndarray, move: np.ndarray, length: float) -> float:
         """The share that is free of walls; renews the robot's room."""
-        segments = self._near(centre, length)
-        gap = self._gap(centre, segments) - SKIN
+        segments = self._near(it, centre, length)
+        gap = self._gap(it, centre, segments) - SKIN
         it.room = gap - length  # what is left of it after this step
         if gap >= length:
             return 1.0
-        rounds = np.concatenate([self._circles + [0.0, 0.0, self._radius], _ends(segments, self._radius)])
-        free = min(_share_to_circles(centre, move, rounds), _share_to_sides(centre, move, segments, self._radius))
+        circles = self._walls[it.heights].circles
+        rounds = np.concatenate([circles + [0.0, 0.0, it.radius], _ends(segments, it.radius)])
+        free = min(_share_to_circles(centre, move, rounds), _share_to_sides(centre, move, segments, it.radius))
         return _short_of(free, length)
 
-    def _near(self, centre: np.ndarray, length: float = 0.0) -> np.ndarray:
+    def _near(self, it: _Disc, centre: np.ndarray, length: float = 0.0) -> np.ndarray:
         """All segments, or of many at least those within NEARBY of a disc that moves from there by a length [m]."""
-        if self._tiles is None:
-            return self._segments
-        return self._segments[self._tiles.near(float(centre[0]), float(centre[1]), self._radius + length + NEARBY)]
+        walls = self._walls[it.heights]
+        if walls.tiles is None:
+            return walls.segments
+        return walls.segments[walls.tiles.near(float(centre[0]), float(centre[1]), it.radius + length + NEARBY)]
 
-    def _gap(self, centre: np.ndarray, segments: np.ndarray) -> float:
+    def _gap(self, it: _Disc, centre: np.ndarray, segments: np.ndarray) -> float:
         """How far [m] a disc at a point (2,) is from the nearest wall, NEARBY at most; negative where it is in one."""
-        limit = np.inf if self._tiles is None else self._radius + NEARBY
-        walls = np.concatenate([_to_segments(centre, segments),
-                                np.hypot(*(self._circles[:, :2] - centre).T) - self._circles[:, 2], [limit]])
-        return float(walls.min()) - self._radius
+        walls = self._walls[it.heights]
+        limit = np.inf if walls.tiles is None else it.radius + NEARBY
+        away = np.concatenate([_to_segments(centre, segments),
+                               np.hypot(*(walls.circles[:, :2] - centre).T) - walls.circles[:, 2], [limit]])
+        return float(away.min()) - it.radius
 
     def _others(self, i: int) -> np.ndarray:
-        """Where the other robots are (n - 1, 2) [m]."""
-        return np.array([(it.pose.x, it.pose.y) for k, it in enumerate(self._discs) if k != i]).reshape(-1, 2)
+        """The other robots as circles (n - 1, 3) [m]."""
+        others = [(it.pose.x, it.pose.y, it.radius) for k, it in enumerate(self._discs) if k != i]
+        return np.array(others).reshape(-1, 3)
 
     def state(self, robot: int) -> RobotState:
         """One robot as of the last step."""
@@ -205,8 +237,9 @@ class Kinematics:
         """Whether something stopped the robot in the last step, or it stands in a wall or another robot."""
         it = self._discs[robot]
         centre = np.array([it.pose.x, it.pose.y])
-        near = np.hypot(*(self._others(robot) - centre).T) < 2.0 * self._radius
-        return it.blocked or self._gap(centre, self._near(centre)) < 0.0 or bool(near.any())
+        others = self._others(robot)
+        near = np.hypot(*(others[:, :2] - centre).T) < others[:, 2] + it.radius
+        return it.blocked or self._gap(it, centre, self._near(it, centre)) < 0.0 or bool(near.any())
 
     def close(self) -> None:
         """Nothing to give back."""

@@ -2,10 +2,11 @@
 
 import difflib
 import math
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields, replace
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar
 
 from .errors import ParameterError
+from .sensors.scan_profiles import PROFILES, LidarSpec, ScanProfile
 
 T = TypeVar("T")
 
@@ -94,7 +95,7 @@ class SimParams:
 
     drive: str = _param("wheels", choices=("wheels", "kinematic"))
     physics_rate: int = _param(240, low=1, high=10000)
-    footprint_radius: float = _positive(0.105)
+    footprint_radius: float = _param(0.0, low=0.0, high=100.0)
     solver_iterations: int = _param(20, low=1, high=10000)
     wheel_torque: float = _positive(1.0)
     real_time_factor: float = _param(1.0, low=0.0, high=1e6)
@@ -105,24 +106,33 @@ class SimParams:
     reset_time: bool = False
     start_paused: bool = False
 
-    cmd_vel_timeout: float = _param(0.5, low=0.0)
-    max_linear_velocity: float = _positive(0.22)
-    max_angular_velocity: float = _positive(2.84)
-    max_linear_acceleration: float = _positive(2.5)
-    max_angular_acceleration: float = _positive(3.2)
+    cmd_vel_timeout: float = _param(0.5, low=-1.0)
+    velocity_limits: str = _param("teleop", choices=("teleop", "firmware"))
+    max_linear_velocity: float = _param(0.0, low=0.0, high=1e6)
+    max_angular_velocity: float = _param(0.0, low=0.0, high=1e6)
+    max_linear_acceleration: float = _param(0.0, low=0.0, high=1e6)
+    max_angular_acceleration: float = _param(0.0, low=0.0, high=1e6)
 
-    scan_rate: int = _param(10, low=1)
-    scan_samples: int = _param(360, low=2, high=100000)
+    scan_profile: str = _param("gazebo", choices=tuple(PROFILES))
+    scan_rate: int = _param(0, low=0)
+    scan_samples: int = _param(0, low=0, high=100000)
     scan_angle_min: float = _param(0.0, low=-10.0, high=10.0)
-    scan_angle_max: float = _param(6.28319, low=-10.0, high=10.0)
-    scan_range_min: float = _positive(0.12)
-    scan_range_max: float = _positive(10.0)
-    scan_noise: float = _param(0.01, low=0.0, high=100.0)
+    scan_angle_max: float = _param(0.0, low=-10.0, high=10.0)
+    scan_range_min: float = _param(0.0, low=0.0, high=1e6)
+    scan_range_max: float = _param(0.0, low=0.0, high=1e6)
+    scan_noise: float = _param(-1.0, low=-1.0, high=100.0)
 
+    covariances: str = _param("gazebo", choices=("gazebo", "real"))
     odom_rate: int = _param(30, low=1)
+    odom_wheel_radius_error: float = _param(0.0, low=-0.5, high=0.5)
+    odom_slip: float = _param(0.0, low=0.0, high=1.0)
+    encoder_tick: float = _param(0.0, low=0.0, high=1.0)
     joint_state_rate: int = _param(30, low=1)
     ground_truth_rate: int = _param(30, low=1)
     imu_rate: int = _param(200, low=1)
+    bumper_rate: int = _param(30, low=0)
+    battery_state_rate: int = _param(0, low=0)
+    magnetic_field_rate: int = _param(0, low=0)
     gyro_noise: float = _param(2e-4, low=0.0, high=100.0)
     accelerometer_noise: float = _param(1.7e-2, low=0.0, high=100.0)
 
@@ -133,12 +143,33 @@ class SimParams:
     scan_frame: str = "base_scan"
     imu_frame: str = "imu_link"
 
+    def given_scan(self) -> Dict[str, Any]:
+        """The figures of the scanner that are given, and so win over those of its profile."""
+        none = {"scan_noise": -1.0}
+        names = [spec.name for spec in fields(self) if spec.name.startswith("scan_")]
+        found = {name: getattr(self, name) for name in names if name not in ("scan_profile", "scan_frame")}
+        given = {name: value for name, value in found.items() if value != none.get(name, 0)}
+        span = ("scan_angle_min", "scan_angle_max")  # one may be 0 as well
+        return {**given, **{name: found[name] for name in span if any(end in given for end in span)}}
+
+    def scanner(self) -> ScanProfile:
+        """The scanner of this profile, but for what is given."""
+        rate, spec = PROFILES[self.scan_profile]
+        given = {name[len("scan_"):]: value for name, value in self.given_scan().items()}
+        rate = given.pop("rate", rate)
+        if "noise" in given:
+            given["accuracy"] = ()
+        return ScanProfile(rate, replace(spec, **given))
+
     def conflicts(self) -> List[str]:
         """What can't be true at once, in words; empty when all is well."""
         found = []
-        for name in ("clock_rate", "control_rate", "scan_rate", "odom_rate", "joint_state_rate", "ground_truth_rate"):
-            rate = getattr(self, name)
-            if self.physics_rate % rate:
+        scan_rate, spec = self.scanner()
+        rates = {name: getattr(self, name) for name in (
+            "clock_rate", "control_rate", "odom_rate", "joint_state_rate", "ground_truth_rate", "bumper_rate",
+            "battery_state_rate")}
+        for name, rate in {**rates, "scan_rate": scan_rate}.items():
+            if rate and self.physics_rate % rate:
                 found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
         names = [f"{name}_frame" for name in ("world", "map", "odom", "base", "scan", "imu")]
         frames = [getattr(self, name) for name in names]
@@ -146,15 +177,44 @@ class SimParams:
             found += _bad_frame(name, frame)
             if frame and frames.count(frame) > 1:
                 found.append(f"{name}: expected six different frames, got {frame!r} {frames.count(frame)} times")
-        if self.imu_rate > self.physics_rate:
-            found.append(f"imu_rate: {self.imu_rate} Hz is above physics_rate {self.physics_rate} Hz")
-        if self.scan_angle_max <= self.scan_angle_min:
-            found.append(
-                f"scan_angle_max: expected more than scan_angle_min {self.scan_angle_min}, got {self.scan_angle_max}")
-        if self.scan_range_max <= self.scan_range_min:
-            found.append(
-                f"scan_range_max: expected more than scan_range_min {self.scan_range_min}, got {self.scan_range_max}")
+        for name in ("imu_rate", "magnetic_field_rate"):
+            if getattr(self, name) > self.physics_rate:
+                found.append(f"{name}: {getattr(self, name)} Hz is above physics_rate {self.physics_rate} Hz")
+        if -1.0 < self.cmd_vel_timeout < 0.0:
+            found.append(f"cmd_vel_timeout: expected at least 0, or -1 for the model's own, got {self.cmd_vel_timeout}")
+        return found + self._scan_conflicts(spec)
+
+    def _scan_conflicts(self, spec: LidarSpec) -> List[str]:
+        found = []
+        if spec.angle_max <= spec.angle_min:
+            found.append(f"scan_angle_max: expected more than scan_angle_min {spec.angle_min}, got {spec.angle_max}")
+        if spec.range_max <= spec.range_min:
+            found.append(f"scan_range_max: expected more than scan_range_min {spec.range_min}, got {spec.range_max}")
+        if spec.samples < 2:
+            found.append(f"scan_samples: expected at least 2, or 0 for the profile's own, got {spec.samples}")
+        if -1.0 < self.scan_noise < 0.0:
+            found.append(f"scan_noise: expected at least 0, or -1 for the profile's own, got {self.scan_noise}")
         return found
+
+
+@dataclass(frozen=True)
+class ModelFigures:
+    """What a model's drive allows, from config/models/NAME.yaml, which explains each; none may be missing."""
+
+    footprint_radius: float = _param(0.0, high=100.0)
+    max_linear_velocity: float = _param(0.0, high=1e6)
+    max_angular_velocity: float = _param(0.0, high=1e6)
+    firmware_linear_velocity: float = _param(0.0, high=1e6)
+    firmware_angular_velocity: float = _param(0.0, high=1e6)
+    max_linear_acceleration: float = _param(0.0, high=1e6)
+    max_angular_acceleration: float = _param(0.0, high=1e6)
+    cmd_vel_timeout: float = _param(0.0, high=1e6)
+
+    def conflicts(self) -> List[str]:
+        """Figures that are missing or not positive, in words; empty when all is well."""
+        values = {spec.name: getattr(self, spec.name) for spec in fields(self)}
+        return [f"{name}: expected a positive number, got {value or 'none'}"
+                for name, value in values.items() if value <= 0.0]
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ from lxml import etree
 
 from .errors import RobotModelError
 from .geometry import Pose2D, Pose3D, Twist2D, Vector3, compose3
+from .params import ModelFigures
+from .shapes import Box, Cylinder, Geometry, Obstacle, Sphere
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"
@@ -29,6 +31,13 @@ class RobotModel:
     footprint_from_base: Pose3D
     base_from_scan: Pose3D
     base_from_imu: Pose3D
+    collisions: Tuple[Obstacle, ...]  # what others meet and see of it, poses in base_footprint, wheels at angle zero
+    figures: ModelFigures
+
+    @property
+    def scan_height(self) -> float:
+        """Of its scanner above the floor [m]."""
+        return self.footprint_from_base.position[2] + self.base_from_scan.position[2]
 
 
 class RobotState(NamedTuple):
@@ -54,8 +63,9 @@ class BodyState:
         return 2.0 * math.asin(min(1.0, math.hypot(x, y)))
 
 
-def load_robot(path: str, base: str = "base_link", scan: str = "base_scan", imu: str = "imu_link") -> RobotModel:
-    """Read a URDF file; RobotModelError names the file and the link, joint or figure that is missing."""
+def load_robot(path: str, figures: ModelFigures, base: str = "base_link", scan: str = "base_scan",
+               imu: str = "imu_link") -> RobotModel:
+    """A URDF file and a drive's figures; RobotModelError names the file and the link, joint or figure missing."""
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True)
     try:
         with open(path, "rb") as stream:
@@ -76,6 +86,8 @@ def load_robot(path: str, base: str = "base_link", scan: str = "base_scan", imu:
         footprint_from_base=footprint_from_base,
         base_from_scan=reader.pose_of(scan, base),
         base_from_imu=reader.pose_of(imu, base),
+        collisions=tuple(reader.collisions()),
+        figures=figures,
     )
 
 
@@ -131,6 +143,26 @@ class _Reader:
             pose = compose3(_origin(joint), pose)
             link = _attribute(joint, "parent", "link")
         return pose
+
+    def collisions(self) -> List[Obstacle]:
+        """All collision shapes of links that have a mass, in base_footprint."""
+        found = []
+        for link in self.root.findall("link"):
+            for number, collision in enumerate(link.findall("collision") if link.find("inertial") is not None else ()):
+                pose = compose3(self.pose_of(link.get("name")), _origin(collision))
+                found.append(Obstacle(f"{link.get('name')}/{number}", pose, self.shape(link, collision)))
+        return found
+
+    def shape(self, link: "etree._Element", collision: "etree._Element") -> Geometry:
+        """Of a <collision>: a box, a cylinder or a sphere."""
+        for shape in collision.iterfind("geometry/*"):
+            if shape.tag == "box":
+                return Box(_vector(shape.get("size")))
+            if shape.tag == "cylinder":
+                return Cylinder(float(shape.get("radius")), float(shape.get("length")))
+            if shape.tag == "sphere":
+                return Sphere(float(shape.get("radius")))
+        raise self.fail(f"link {link.get('name')!r}: expected a box, a cylinder or a sphere as its collision geometry")
 
     def wheel_radius(self, joint: "etree._Element") -> float:
         """From the wheel's collision sphere: what really rolls on the floor."""

@@ -6,26 +6,27 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from . import drive
-from .drive import DriveLimits
-from .geometry import Pose2D, Twist2D, compose, inverse
+from .geometry import Pose2D, Twist2D, compose, compose3, inverse
 from .kinematics import Kinematics
 from .occupancy import occupancy_of
+from .odometers import Odometers
 from .params import SimParams
 from .physics import Physics
 from .robot import BodyState, RobotModel, RobotState
+from .scanners import Scanners
 from .sensors import imu as imu_sensor
-from .sensors import odometry
+from .sensors import magnetometer
 from .sensors.imu import ImuSample
-from .sensors.lidar import Lidar, LidarSpec
+from .sensors.lidar import Lidar
 from .sensors.odometry import Odometry
 from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
-from .slice import Slice
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
-ONLY_IMU = frozenset((IMU,))  # due on most steps, and seldom listened to
-SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH)
-LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another robot's scan sees of a Burger
+BUMPER, BATTERY, FIELD = "bumper", "battery", "magnetic_field"
+FAST = frozenset((IMU, FIELD))  # due on most steps, and seldom listened to
+SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH, BUMPER, BATTERY, FIELD)
+SLIP = 2 ** 32  # number of a noise, beyond those of all robots' sensors
 Wanted = Mapping[str, Sequence[int]]  # sensor -> the robots it is wanted of
 
 
@@ -42,14 +43,17 @@ class RobotSpec:
 class Observations:
     """What one step brought, all of it at one simulated time; None = not due on this step, or not wanted.
 
-    Sequences hold all robots in order; `scans` and `imus` only those that were wanted, by index.
+    Sequences hold all robots in order; mappings only those that were wanted, by index.
     """
 
     stamp_ns: int
     clock: bool
     control: bool
-    scans: Mapping[int, np.ndarray]  # ranges (scan_samples,) [m] in base_scan
+    scans: Mapping[int, np.ndarray]  # ranges (samples,) [m] in base_scan
     imus: Mapping[int, ImuSample]
+    bumpers: Mapping[int, bool]  # whether it touches anything but the floor
+    fields: Mapping[int, np.ndarray]  # magnetic, (3,) [T] in imu_link
+    battery: bool = False
     odometry: Optional[Sequence[Odometry]] = None
     joints: Optional[Sequence[RobotState]] = None
     ground_truth: Optional[Sequence[RobotState]] = None
@@ -62,25 +66,21 @@ class Simulator:
         self.params = params
         self.world = world = self._as_asked(world)
         self.robots = tuple(robots)
-        self.model = robots[0].model
         self.seed = params.seed
         self.steps = 0
         self._noise_origin = 0
         self._noise = np.random.Generator(np.random.Philox(0))
         self._noise_state = self._noise.bit_generator.state
         self.dt = 1.0 / params.physics_rate
-        self.lidar = Lidar(LidarSpec(params.scan_angle_min, params.scan_angle_max, params.scan_samples,
-                                     params.scan_range_min, params.scan_range_max, params.scan_noise))
-        self._limits = DriveLimits(params.max_linear_velocity, params.max_angular_velocity,
-                                   params.max_linear_acceleration, params.max_angular_acceleration,
-                                   params.cmd_vel_timeout)
+        self.lidar = Lidar(params.scanner().spec)
+        self._limits = [drive.limits_from(params, robot.model.figures) for robot in robots]
         self._physics: Union[Physics, Kinematics] = (
             Physics(world, params.physics_rate, params.solver_iterations, params.gui) if params.drive == "wheels"
             else Kinematics(world, params.physics_rate, params.footprint_radius))
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
-        self._cut()
-        self._base_from_scan = self.model.base_from_scan.on_plane()
+        self._scanners = Scanners([robot.model for robot in robots], world)
+        self.moving = bool(world.moving())
         self._schedule = self._make_schedule()
         self._start()
 
@@ -88,22 +88,17 @@ class Simulator:
         """A world with what moves in it, or without."""
         return world if self.params.moving or not world.moving() else world.standing()
 
-    def _cut(self) -> None:
-        """Look at the world: its cut at the scanners' height, and whether anything moves."""
-        height = self.model.footprint_from_base.position[2] + self.model.base_from_scan.position[2]
-        self._walls = Slice(self.world, height)
-        self.moving = bool(self.world.moving())
-
     def change_world(self, world: World) -> None:
         """Another world from the next step on, such as world_edits makes of this one; a reset keeps it."""
         self.world = self._as_asked(world)
-        self._cut()
+        self.moving = bool(self.world.moving())
+        self._scanners.change_world(self.world)
         self._physics.change_world(self.world, self.world_time)
 
     def _start(self) -> None:
         """All robots stand at their spawn poses, odometry at zero."""
         self._drives = [drive.STANDING for _ in self.robots]
-        self._odometry = [odometry.starting(state.wheel_angles) for state in self._states()]
+        self._odometers = Odometers(self.params, [robot.model for robot in self.robots], self._states())
         self._map_from_odom = [robot.spawn for robot in self.robots]
 
     def _states(self) -> List[RobotState]:
@@ -113,9 +108,10 @@ class Simulator:
     def _make_schedule(self) -> List[FrozenSet[str]]:
         """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
         p = self.params
-        rates = {SCAN: p.scan_rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
-                 TRUTH: p.ground_truth_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
-        return [frozenset(name for name, rate in rates.items() if due(step, rate, p.physics_rate))
+        rates = {SCAN: p.scanner().rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
+                 TRUTH: p.ground_truth_rate, BUMPER: p.bumper_rate, BATTERY: p.battery_state_rate,
+                 FIELD: p.magnetic_field_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
+        return [frozenset(name for name, rate in rates.items() if rate and due(step, rate, p.physics_rate))
                 for step in range(1, p.physics_rate + 1)]
 
     @property
@@ -139,7 +135,7 @@ class Simulator:
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
         """Take a velocity command; CommandError on NaN or infinity leaves the one before in force."""
-        self._drives[robot] = drive.accept(self._drives[robot], twist, self.time, self._limits)
+        self._drives[robot] = drive.accept(self._drives[robot], twist, self.time, self._limits[robot])
 
     def step(self, wanted: Wanted) -> Optional[Observations]:
         """Advance by one physics step, then measure what is due and wanted; None when nothing is due."""
@@ -151,7 +147,8 @@ class Simulator:
         self.steps += 1
         if self.moving:
             self._physics.move(self.world_time)
-        if not due_now or (due_now == ONLY_IMU and not imus):
+        fields = wanted.get(FIELD, ()) if FIELD in due_now else ()
+        if not due_now or (due_now <= FAST and not imus and not fields):
             return None
         # Odometry is integrated whether it is wanted or not; the state is read only where something needs it.
         asked = {sensor for sensor in (SCAN, JOINTS, TRUTH) if sensor in due_now and wanted.get(sensor)}
@@ -160,19 +157,23 @@ class Simulator:
             self.stamp_ns, CLOCK in due_now, CONTROL in due_now,
             scans=self._scan(states, wanted[SCAN]) if states is not None and SCAN in asked else {},
             imus={robot: self._imu(robot, body) for robot, body in before.items()},
+            bumpers={robot: self.touching(robot) for robot in wanted.get(BUMPER, ())} if BUMPER in due_now else {},
+            fields={robot: self._field(robot) for robot in fields},
+            battery=BATTERY in due_now,
             odometry=self._update_odometry(states) if states is not None and ODOM in due_now else None,
-            joints=states if JOINTS in asked else None,
+            joints=self._joints(states) if states is not None and JOINTS in asked else None,
             ground_truth=states if TRUTH in asked else None)
 
     def _turn_wheels(self) -> None:
         """Each robot's wheels as its command, its limits and the time-out have them."""
         now = self.time
         for robot, before in enumerate(self._drives):
-            after = drive.advance(before, now, self.dt, self._limits)
+            after = drive.advance(before, now, self.dt, self._limits[robot])
             if after is not before:
                 self._drives[robot] = after
-                self._physics.drive(robot, drive.wheel_speeds(after.velocity, self.model.wheel_radius,
-                                                              self.model.wheel_separation))
+                model = self.robots[robot].model
+                self._physics.drive(robot, drive.wheel_speeds(after.velocity, model.wheel_radius,
+                                                              model.wheel_separation))
 
     def _rng(self, sensor: int) -> np.random.Generator:
         """Noise of one sensor on this step: a function of seed, sensor and steps since the reset, whoever listens."""
@@ -183,49 +184,48 @@ class Simulator:
         return self._noise
 
     def _scan(self, states: Sequence[RobotState], robots: Sequence[int]) -> Dict[int, np.ndarray]:
-        distances = self._distances(states, robots)
+        rng = self._rng(0)
+        lidar = self.lidar.next_turn(rng)
+        distances = self._distances(lidar, states, robots)
         # Drawn for all robots, so that one robot's noise does not depend on whether another is listened to.
-        noise = self._rng(0).standard_normal((len(self.robots), self.params.scan_samples))
-        return dict(zip(robots, self.lidar.measure(distances, noise[list(robots)])))
+        noise = rng.standard_normal((len(self.robots), lidar.spec.samples))
+        return dict(zip(robots, lidar.measure(distances, noise[list(robots)])))
 
-    def _distances(self, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
-        """In the plane that TF speaks of: scanners level, at their height on robots that stand upright."""
-        scans = [compose(state.world_from_base, self._base_from_scan) for state in states]
-        world_from_scans = np.array([(pose.x, pose.y, pose.yaw) for pose in scans])
-        return self.lidar.distances(world_from_scans[list(robots)], self._walls.at(self.world_time),
-                                    self._others(world_from_scans, robots))
-
-    def _others(self, world_from_scans: np.ndarray, robots: Sequence[int]) -> Optional[np.ndarray]:
-        """Circles (r, n - 1, 3) that stand for the other robots' scanners, for each robot asked for."""
-        n = len(self.robots)
-        if n == 1:
-            return None
-        circles = np.column_stack([world_from_scans[:, :2], np.full(n, LIDAR_RADIUS)])
-        return np.stack([np.delete(circles, robot, axis=0) for robot in robots])
+    def _distances(self, lidar: Lidar, states: Sequence[RobotState], robots: Sequence[int]) -> np.ndarray:
+        return self._scanners.distances(lidar, [state.world_from_base for state in states], robots, self.world_time)
 
     def occupancy(self) -> Occupancy:
-        """The world as a grid map in its own frame: the one it was made of, else its cut at the scanners' height."""
+        """The world as a grid map in its own frame: the one it was made of, else cut at the first robot's scanner."""
         if self.world.occupancy is not None:
             return self.world.occupancy
-        return occupancy_of(self._walls, self.world.spawn, self.params.map_resolution)
+        return occupancy_of(self._scanners.walls(0), self.world.spawn, self.params.map_resolution)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
-        """What a scanner would measure now without noise or range_min (scan_samples,) [m]; no return = +inf."""
-        return self._distances(self._states(), [robot])[0]
+        """What a scanner would measure now without noise or range_min (samples,) [m]; no return = +inf."""
+        return self._distances(self.lidar, self._states(), [robot])[0]
 
     def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
-        dt, model = 1.0 / self.params.odom_rate, self.model
-        self._odometry = [
-            odometry.integrate(before, state.wheel_angles, dt, model.wheel_radius, model.wheel_separation)
-            for before, state in zip(self._odometry, states)]
+        if self._odometers.slipping:
+            self._odometers.slip(states, self._rng(SLIP).standard_normal((len(self.robots), 2)))
+        latest = self._odometers.update(states)
         if self.params.localization == "truth":
             self._map_from_odom = [compose(state.world_from_base, inverse(it.odom_from_base))
-                                   for state, it in zip(states, self._odometry)]
-        return self._odometry
+                                   for state, it in zip(states, latest)]
+        return latest
+
+    def _joints(self, states: Sequence[RobotState]) -> Sequence[RobotState]:
+        """Wheel angles as encoders show them."""
+        if not self.params.encoder_tick:
+            return states
+        return [state._replace(wheel_angles=self._odometers.read(state.wheel_angles)) for state in states]
+
+    def _field(self, robot: int) -> np.ndarray:
+        world_from_imu = compose3(self._physics.body(robot).world_from_base, self.robots[robot].model.base_from_imu)
+        return magnetometer.measure(world_from_imu.orientation)
 
     def _imu(self, robot: int, before: BodyState) -> ImuSample:
         rng = self._rng(1 + robot)
-        return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.model.base_from_imu,
+        return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.robots[robot].model.base_from_imu,
                                   self.params.gyro_noise, self.params.accelerometer_noise, rng)
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
@@ -252,7 +252,7 @@ class Simulator:
         """Set a robot down elsewhere, at rest; odometry goes on, so map -> odom takes up the jump."""
         self._physics.place(robot, world_from_base)
         self._drives[robot] = drive.STANDING
-        self._map_from_odom[robot] = compose(world_from_base, inverse(self._odometry[robot].odom_from_base))
+        self._map_from_odom[robot] = compose(world_from_base, inverse(self._odometers.latest[robot].odom_from_base))
 
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
         """Robots to their spawn poses, odometry to zero, noise from its start, of `seed` if one is given.

@@ -2,7 +2,7 @@
 
 import heapq
 import math
-from typing import List, Set, Tuple
+from typing import Callable, List, Set, Tuple
 
 import numpy as np
 
@@ -23,12 +23,14 @@ LOOK = Fan(0.0, math.pi / 36.0, 72)
 Cell = Tuple[int, int]  # of the grid, (0, 0) at its origin
 
 
-def robots_from(p: SimParams, world: World, model: RobotModel) -> List[RobotSpec]:
-    """The robots that the parameters ask for.
+def robots_from(p: SimParams, world: World, load: Callable[[str], RobotModel]) -> List[RobotSpec]:
+    """The robots that the parameters ask for, of models that `load` gets by their names.
 
     `robots` empty: one, without a name, at `spawn`. A number: robot_1 to robot_N, on free places around `spawn`.
-    Else a list 'NAME X Y [YAW]; NAME X Y [YAW]; ...' [m, rad]. ParameterError says what can't be honoured.
+    Else a list 'NAME[:MODEL] X Y [YAW]; NAME[:MODEL] X Y [YAW]; ...' [m, rad], of `model` where it names none.
+    ParameterError says what can't be honoured.
     """
+    model = load(p.model)
     text = p.robots.strip()
     spawn = parse_spawn(p.spawn, world.spawn)
     if not text:
@@ -39,7 +41,7 @@ def robots_from(p: SimParams, world: World, model: RobotModel) -> List[RobotSpec
             raise ParameterError("robots: expected at least 1")
         names = [f"robot_{i}" for i in range(1, count + 1)]
         return [RobotSpec(name, model, pose) for name, pose in zip(names, free_places(world, spawn, count))]
-    return [RobotSpec(name, model, pose) for name, pose in _parse_list(text)]
+    return [RobotSpec(name, load(kind) if kind else model, pose) for name, kind, pose in _parse_list(text)]
 
 
 def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
@@ -56,16 +58,18 @@ def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
     return Pose2D(*numbers)
 
 
-def _parse_list(text: str) -> List[Tuple[str, Pose2D]]:
-    found: List[Tuple[str, Pose2D]] = []
+def _parse_list(text: str) -> List[Tuple[str, str, Pose2D]]:
+    """Name, model's name (empty: none given) and place of each robot."""
+    found: List[Tuple[str, str, Pose2D]] = []
     for entry in (part.strip() for part in text.split(";")):
-        name, _, rest = entry.partition(" ")
-        if not (name.isidentifier() and name.isascii()) or not rest.strip():
-            raise ParameterError(f"robots: expected 'NAME X Y [YAW]; ...' with names of letters, digits and _, "
-                                 f"got {entry!r}")
-        if name in [other for other, _ in found]:
+        head, _, rest = entry.partition(" ")
+        name, colon, kind = head.partition(":")
+        if not (name.isidentifier() and name.isascii()) or bool(colon) != bool(kind) or not rest.strip():
+            raise ParameterError(f"robots: expected 'NAME X Y [YAW]; ...' or 'NAME:MODEL X Y [YAW]; ...' with names of "
+                                 f"letters, digits and _, got {entry!r}")
+        if name in [other for other, _, _ in found]:
             raise ParameterError(f"robots: the name {name!r} is given twice")
-        found.append((name, parse_spawn(rest, Pose2D(), f"robots: {name}")))
+        found.append((name, kind, parse_spawn(rest, Pose2D(), f"robots: {name}")))
     return found
 
 

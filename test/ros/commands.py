@@ -12,8 +12,8 @@ PERIOD = 0.05  # [s, wall]
 class Commands:
     """Publishes cmd_vel: once, or as a context manager again and again as a teleoperation does."""
 
-    def __init__(self):
-        self._topic = rospy.Publisher("cmd_vel", Twist, queue_size=10)
+    def __init__(self, topic="cmd_vel"):
+        self._topic = rospy.Publisher(topic, Twist, queue_size=10)
         wait_for_subscriber(self._topic, SIMULATOR)
 
     def once(self, v, w=0.0):

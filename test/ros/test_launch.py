@@ -1,5 +1,6 @@
 """Which nodes the launch files start for one robot and for many, with which names and frames; nothing is started."""
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 import roslaunch.config
@@ -52,6 +53,23 @@ def test_each_of_many_robots_has_its_nodes_in_its_namespace_and_its_frames(robot
         f"/{name}/robocop_rviz_goto_ac_node/goal_frame": f"{name}/odom" for name in names}
 
 
+def test_each_robot_has_the_description_of_its_own_model():
+    def robots_described(*arguments):
+        found = Launch(*arguments, "rviz:=false").named("robot_description")
+        return {name: ElementTree.fromstring(text).get("name") for name, text in found.items()}
+
+    assert robots_described() == {"/robot_description": "turtlebot3_burger"}
+    assert robots_described("model:=waffle") == {"/robot_description": "turtlebot3_waffle"}
+    assert robots_described("robots:=red 0 0; blue:waffle_pi 1 0", "model:=turtlebot2") == {
+        "/red/robot_description": "turtlebot2", "/blue/robot_description": "turtlebot3_waffle_pi"}
+
+
+def test_a_robots_model_is_no_part_of_its_name():
+    launch = Launch("robots:=red:waffle 0 0; blue 1 0")
+    assert set(launch.nodes) == {"/robocop_sim", "/red/rviz"} | of_robots("red", "blue")
+    assert launch.params["/robocop_sim/robots"] == "red:waffle 0 0; blue 1 0"
+
+
 def test_simulator_alone_publishes_the_state_of_each_robot():
     launch = Launch("robots:=2", file="robocop_sim.launch")
     assert set(launch.nodes) == {"/robocop_sim", "/robot_1/robot_state_publisher", "/robot_2/robot_state_publisher"}
@@ -71,6 +89,17 @@ def test_rviz_of_many_robots_runs_in_the_namespace_of_the_one_it_shows(arguments
     rviz = {name: it.args for name, it in Launch(*arguments).nodes.items() if name.endswith("rviz")}
     assert set(rviz) == {node}
     assert "many_robots.rviz -f map" in rviz[node]
+
+
+def test_profile_wins_over_the_config_and_arguments_over_both():
+    def timeout(*arguments):
+        params = Launch(*arguments).params
+        return params["/robocop_sim/cmd_vel_timeout"], params["/robocop_sim/scan_profile"]
+
+    assert timeout() == (0.5, "gazebo")
+    assert timeout("profile:=gazebo") == (0.0, "gazebo")
+    assert timeout("profile:=real") == (-1.0, "lds01")
+    assert timeout("profile:=real", "cmd_vel_timeout:=2", "scan_profile:=lds02") == (2.0, "lds02")
 
 
 def test_time_and_drive_are_passed_on_to_the_simulator():

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import settings
 
 from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.models import load_model
 from aro_robocop_goto_as.params import SimParams
-from aro_robocop_goto_as.robot import RobotModel, load_robot
+from aro_robocop_goto_as.robot import RobotModel
 from aro_robocop_goto_as.simulator import RobotSpec, Simulator
 from aro_robocop_goto_as.world import Box, Cylinder, World, find_world, load_world
 
@@ -23,7 +24,11 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 
 @pytest.fixture(scope="session")
 def burger() -> RobotModel:
-    return load_robot(os.path.join(ROOT, "urdf", "burger.urdf"))
+    return model_named("burger")
+
+
+def model_named(name: str) -> RobotModel:
+    return load_model(name, ROOT)
 
 
 def world_named(name: str) -> World:
@@ -31,13 +36,14 @@ def world_named(name: str) -> World:
 
 
 @pytest.fixture
-def simulator(burger: RobotModel) -> Iterator[Callable[..., Simulator]]:
+def simulator() -> Iterator[Callable[..., Simulator]]:
     """Makes simulators, and closes them when the test is over."""
     made: List[Simulator] = []
 
     def make(world: str = "empty", *spawns: Pose2D, **params: object) -> Simulator:
-        robots = [RobotSpec(f"robot_{i}", burger, spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
-        made.append(Simulator(SimParams(**params), world_named(world), robots))  # type: ignore[arg-type]
+        p = SimParams(**params)  # type: ignore[arg-type]
+        robots = [RobotSpec(f"robot_{i}", model_named(p.model), spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
+        made.append(Simulator(p, world_named(world), robots))
         return made[-1]
 
     yield make

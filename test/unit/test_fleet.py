@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.simulator import LIDAR_RADIUS, Simulator
+from aro_robocop_goto_as.simulator import Simulator
 
 Make = Callable[..., Simulator]
+LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another Burger's scan sees of a Burger
 DRIVES = [{"drive": "wheels"}, {"drive": "kinematic", "physics_rate": 60}]
 
 

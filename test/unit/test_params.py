@@ -44,7 +44,9 @@ def test_every_key_of_a_config_file_is_explained(name: str, cls: Any) -> None:
     ({"scan_rate": 10.0}, "scan_rate: expected int, got float 10.0"),
     ({"gui": 1}, "gui: expected bool, got int 1"),
     ({"seed": True}, "seed: expected int, got bool True"),
-    ({"cmd_vel_timeout": -1.0}, "cmd_vel_timeout: expected at least 0, got -1.0"),
+    ({"cmd_vel_timeout": -2.0}, "cmd_vel_timeout: expected at least -1, got -2.0"),
+    ({"cmd_vel_timeout": -0.5}, "cmd_vel_timeout: expected at least 0, or -1 for the model's own, got -0.5"),
+    ({"magnetic_field_rate": 300}, "magnetic_field_rate: 300 Hz is above physics_rate 240 Hz"),
     ({"scan_noise": math.nan}, "scan_noise: expected a finite number, got nan"),
     ({"localization": "gps"}, "localization: expected one of static, truth, got 'gps'"),
     ({"scan_rate": 7}, "scan_rate: 7 Hz does not divide physics_rate 240 Hz"),
@@ -55,6 +57,11 @@ def test_every_key_of_a_config_file_is_explained(name: str, cls: Any) -> None:
     ({"odom_frame": "/odom"}, "odom_frame: expected a frame's name without blank or leading slash, got '/odom'"),
     ({"map_frame": ""}, "map_frame: expected a frame's name without blank or leading slash, got ''"),
     ({"map_frame": "odom"}, "map_frame: expected six different frames, got 'odom' 2 times"),
+    ({"scan_profile": "lds03"}, "scan_profile: expected one of gazebo, ideal, lds01, lds02, got 'lds03'"),
+    ({"scan_profile": "lds01", "scan_range_min": 4}, "scan_range_max: expected more than scan_range_min 4.0, got 3.5"),
+    ({"scan_profile": "lds01", "physics_rate": 12}, "scan_rate: 5 Hz does not divide physics_rate 12 Hz"),
+    ({"scan_samples": 1}, "scan_samples: expected at least 2, or 0 for the profile's own, got 1"),
+    ({"scan_noise": -0.5}, "scan_noise: expected at least 0, or -1 for the profile's own, got -0.5"),
     ({"scan_angle_max": -1}, "scan_angle_max: expected more than scan_angle_min 0.0, got -1.0"),
 ])
 def test_a_wrong_parameter_is_refused_with_source_key_value_and_expectation(raw: Dict[str, Any], expected: str) -> None:
@@ -66,7 +73,7 @@ def test_a_wrong_parameter_is_refused_with_source_key_value_and_expectation(raw:
 
 def test_all_wrong_parameters_are_named_at_once() -> None:
     with pytest.raises(ParameterError, match="(?s)scan_rate.*seed"):
-        from_dict(SimParams, {"scan_rate": 0, "seed": -1}, "sim.yaml")
+        from_dict(SimParams, {"scan_rate": -1, "seed": -1}, "sim.yaml")
 
 
 def test_a_whole_number_serves_where_a_real_one_is_asked_for() -> None:

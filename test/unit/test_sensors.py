@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from aro_robocop_goto_as.geometry import STANDARD_GRAVITY, Pose2D, Pose3D
 from aro_robocop_goto_as.robot import BodyState
 from aro_robocop_goto_as.sensors import imu
-from aro_robocop_goto_as.sensors.lidar import Lidar, LidarSpec
+from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.odometry import integrate, starting
+from aro_robocop_goto_as.sensors.scan_profiles import LidarSpec
 from aro_robocop_goto_as.slice import Slice
 from aro_robocop_goto_as.world import Cylinder, Obstacle, World
 

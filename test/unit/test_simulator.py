@@ -98,8 +98,9 @@ def test_everything_of_one_step_carries_its_time_and_rates_hold_over_a_second(si
     sim = simulator("stage_1")
     seen = [it for it in (sim.step(sim.everything()) for _ in range(240)) if it is not None]
     counts = {name: sum(getattr(it, name) not in (None, {}) for it in seen)
-              for name in ("scans", "odometry", "joints", "imus", "ground_truth")}
-    assert counts == {"scans": 10, "odometry": 30, "joints": 30, "imus": 200, "ground_truth": 30}
+              for name in ("scans", "odometry", "joints", "imus", "ground_truth", "bumpers", "fields")}
+    assert counts == {"scans": 10, "odometry": 30, "joints": 30, "imus": 200, "ground_truth": 30, "bumpers": 30,
+                      "fields": 0}
     assert sum(it.clock for it in seen) == 60
     assert seen[-1].stamp_ns == 1000000000
     assert all(it.stamp_ns % 100000000 == 0 for it in seen if it.scans)

@@ -15,13 +15,14 @@ import rospkg
 from .. import drive
 from ..geometry import Pose2D, Twist2D, compose
 from ..kinematics import Kinematics
+from ..models import load_model
 from ..nodes import convert
 from ..params import SimParams, from_dict
 from ..physics import Physics
-from ..robot import RobotModel, load_robot
-from ..sensors.lidar import Lidar, LidarSpec
+from ..robot import RobotModel
+from ..scanners import rounds_at
+from ..sensors.lidar import Lidar
 from ..simtime import due
-from ..simulator import LIDAR_RADIUS
 from ..slice import Slice
 from ..spawns import robots_from
 from ..world import World, find_world, load_world
@@ -39,16 +40,16 @@ class Bare:
         p = from_dict(SimParams, case.params(0.0), case.name)
         share = rospkg.RosPack().get_path(PACKAGE)
         world = load_world(find_world(p.world, os.path.join(share, "worlds")))
-        model = load_robot(os.path.join(share, "urdf", p.model + ".urdf"))
+        model = load_model(p.model, share)
         self.engine = (Physics(world, p.physics_rate, p.solver_iterations) if p.drive == "wheels"
                        else Kinematics(world, p.physics_rate, p.footprint_radius))
-        for robot in robots_from(p, world, model):
+        for robot in robots_from(p, world, lambda _: model):
             self.engine.add_robot(robot.model, robot.spawn, p.wheel_torque)
         self.robots = range(case.robots)
         for robot in self.robots:
             self.engine.drive(robot, drive.wheel_speeds(Twist2D(LINEAR, ANGULAR), model.wheel_radius,
                                                         model.wheel_separation))
-        spec = LidarSpec(p.scan_angle_min, p.scan_angle_max, p.scan_samples, p.scan_range_min, p.scan_range_max, 0.0)
+        spec = p.scanner().spec
         self._prepare_scans(world, model, Lidar(spec))
         stamp = convert.to_time(1)
         self.scan = _bytes(convert.to_scan(self.distances()[0].tolist(), spec, stamp, p.scan_frame))
@@ -56,11 +57,11 @@ class Bare:
 
     def _prepare_scans(self, world: World, model: RobotModel, lidar: Lidar) -> None:
         self._lidar = lidar
-        self._walls = Slice(world, model.footprint_from_base.position[2] + model.base_from_scan.position[2])
+        self._walls = Slice(world, model.scan_height)
         self._base_from_scan = model.base_from_scan.on_plane()
         # The others as they stand at the start: to gather them for each scan is not the rays' own work.
         poses = self._scanners()
-        circles = np.column_stack([poses[:, :2], np.full(len(poses), LIDAR_RADIUS)])
+        circles = np.column_stack([poses[:, :2], np.full(len(poses), rounds_at(model, model.scan_height)[0, 2])])
         others = [np.delete(circles, robot, axis=0) for robot in range(len(poses))]
         self._others = np.stack(others) if len(poses) > 1 else None
 

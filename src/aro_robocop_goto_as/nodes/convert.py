@@ -3,18 +3,19 @@
 import math
 from typing import List, Tuple
 
+import numpy as np
 import rospy
 from genpy import Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry as OdometryMsg
-from sensor_msgs.msg import Imu, JointState, LaserScan
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
 from std_msgs.msg import Header
 
 from ..geometry import Pose2D, Pose3D, Twist2D, yaw_of
 from ..params import SimParams
 from ..robot import WHEEL_JOINTS, Pair
 from ..sensors.imu import ImuSample
-from ..sensors.lidar import LidarSpec
+from ..sensors.scan_profiles import LidarSpec
 from ..simtime import NANOSECONDS
 
 # Variances of x, y, z, roll, pitch, yaw; what the drive can't move is marked unknown by a huge one. The figures are
@@ -22,6 +23,8 @@ from ..simtime import NANOSECONDS
 ODOM_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
 TRUTH_VARIANCES = (1e-12,) * 6
 ORIENTATION_VARIANCE = 1e-6  # the simulated IMU's orientation is exact but for float rounding
+REAL_IMU_VARIANCES = (0.0025, 0.02, 0.04)  # orientation, rates, accelerations, as a TurtleBot3's firmware sends them
+FULL_VOLTAGE, DESIGN_CAPACITY = 12.6, 1.8  # [V], [Ah] of a TurtleBot3's battery, three LiPo cells
 
 
 def to_time(stamp_ns: int) -> Time:
@@ -99,9 +102,25 @@ def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
 
 
 def to_imu(sample: ImuSample, stamp: Time, frame: str, params: SimParams) -> Imu:
-    """An IMU sample with the covariances of the noise that was put in."""
+    """An IMU sample with the covariances of the noise that was put in, or with a real TurtleBot3's."""
+    variances = REAL_IMU_VARIANCES if params.covariances == "real" else (
+        ORIENTATION_VARIANCE, params.gyro_noise ** 2, params.accelerometer_noise ** 2)
+    orientation, rates, accelerations = (diagonal((variance,) * 3) for variance in variances)
     return Imu(
-        Header(0, stamp, frame),
-        Quaternion(*sample.orientation), diagonal((ORIENTATION_VARIANCE,) * 3),
-        Vector3(*sample.angular_velocity), diagonal((params.gyro_noise ** 2,) * 3),
-        Vector3(*sample.linear_acceleration), diagonal((params.accelerometer_noise ** 2,) * 3))
+        Header(0, stamp, frame), Quaternion(*sample.orientation), orientation,
+        Vector3(*sample.angular_velocity), rates, Vector3(*sample.linear_acceleration), accelerations)
+
+
+def to_magnetic_field(field: np.ndarray, stamp: Time, frame: str) -> MagneticField:
+    """A field (3,) [T]; its covariance is not known, so all zeros."""
+    return MagneticField(Header(0, stamp, frame), Vector3(*field.tolist()), diagonal((0.0,) * 3))
+
+
+def to_battery(stamp: Time, frame: str) -> BatteryState:
+    """A TurtleBot3's battery, always full, as nothing drains it; what is not measured is NaN, as the message asks."""
+    return BatteryState(
+        header=Header(0, stamp, frame), voltage=FULL_VOLTAGE, temperature=math.nan, current=math.nan, charge=math.nan,
+        capacity=math.nan, design_capacity=DESIGN_CAPACITY, percentage=1.0, present=True,
+        power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+        power_supply_health=BatteryState.POWER_SUPPLY_HEALTH_GOOD,
+        power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO)

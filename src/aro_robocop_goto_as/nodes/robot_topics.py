@@ -5,14 +5,15 @@ from typing import Callable, List, Optional, Set
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, Twist
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import Imu, JointState, LaserScan
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
+from std_msgs.msg import Bool
 
 from aro_robocop_goto_as.msg import TickAnswer
 
 from .. import simulator
 from ..geometry import Pose2D, Twist2D
 from ..params import SimParams
-from ..sensors.lidar import LidarSpec
+from ..sensors.scan_profiles import LidarSpec
 from ..simulator import Observations
 from . import convert
 from .packed import PackedOdometry
@@ -22,7 +23,7 @@ OnCommand = Callable[[int, str, Twist2D], None]  # robot, sender, velocity
 OnAnswer = Callable[[int, str, TickAnswer], None]
 OnPlace = Callable[[int, PoseWithCovarianceStamped], None]
 
-ODOM_COVARIANCE = convert.diagonal(convert.ODOM_VARIANCES)
+ODOM_COVARIANCE = {"gazebo": convert.diagonal(convert.ODOM_VARIANCES), "real": convert.diagonal((0.0,) * 6)}
 NAMELESS = "unknown"  # to rospy, a publisher that has not told its name yet: its connection is still being made
 TRUTH_COVARIANCE = convert.diagonal(convert.TRUTH_VARIANCES)
 
@@ -45,9 +46,19 @@ class RobotTopics:
         self.joints = publisher(self.topic("joint_states"), JointState)
         self.imu = publisher(self.topic("imu"), Imu)
         self.truth = publisher(self.topic("ground_truth_odom"), Odometry)
+        self.sensors = {simulator.SCAN: self.scan, simulator.ODOM: self.odom, simulator.JOINTS: self.joints,
+                        simulator.IMU: self.imu}
+        if p.ground_truth:
+            self.sensors[simulator.TRUTH] = self.truth
+        if p.bumper_rate:
+            self.sensors[simulator.BUMPER] = publisher(self.topic("bumper"), Bool)
+        if p.battery_state_rate:
+            self.sensors[simulator.BATTERY] = publisher(self.topic("battery_state"), BatteryState)
+        if p.magnetic_field_rate:
+            self.sensors[simulator.FIELD] = publisher(self.topic("magnetic_field"), MagneticField)
         self.odom_frame, self.base_frame = self.frame(p.odom_frame), self.frame(p.base_frame)
         self.scan_frame, self.imu_frame = self.frame(p.scan_frame), self.frame(p.imu_frame)
-        self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, ODOM_COVARIANCE)
+        self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, ODOM_COVARIANCE[p.covariances])
         self._truth_message = PackedOdometry(p.world_frame, self.base_frame, TRUTH_COVARIANCE)
         self._inputs: List[rospy.Subscriber] = []
         self._answers: Optional[rospy.Subscriber] = None
@@ -85,11 +96,7 @@ class RobotTopics:
 
     def wanted(self) -> Set[str]:
         """Sensors that somebody listens to."""
-        sensors = {simulator.SCAN: self.scan, simulator.ODOM: self.odom, simulator.JOINTS: self.joints,
-                   simulator.IMU: self.imu}
-        if self.p.ground_truth:
-            sensors[simulator.TRUTH] = self.truth
-        return {name for name, topic in sensors.items() if topic.get_num_connections()}
+        return {name for name, topic in self.sensors.items() if topic.get_num_connections()}
 
     def publish(self, seen: Observations, stamp: rospy.Time, wanted: Set[str]) -> None:
         """Send what one step brought of this robot."""
@@ -105,8 +112,16 @@ class RobotTopics:
         if seen.odometry is not None and simulator.ODOM in wanted:
             self.odom.publish(self._odom_message.update(
                 seen.odometry[i].odom_from_base, seen.odometry[i].twist, stamp))
+        if i in seen.bumpers:
+            self.sensors[simulator.BUMPER].publish(seen.bumpers[i])
+        if i in seen.fields:
+            self.sensors[simulator.FIELD].publish(convert.to_magnetic_field(seen.fields[i], stamp, self.imu_frame))
+        if seen.battery and simulator.BATTERY in wanted:
+            self.sensors[simulator.BATTERY].publish(convert.to_battery(stamp, self.base_frame))
         if i in seen.scans:
-            self.scan.publish(convert.to_scan(seen.scans[i].tolist(), self.spec, stamp, self.scan_frame))
+            ranges = seen.scans[i].tolist()
+            spec = self.spec if len(ranges) == self.spec.samples else self.spec.with_samples(len(ranges))
+            self.scan.publish(convert.to_scan(ranges, spec, stamp, self.scan_frame))
 
     def transforms(self, seen: Observations, map_from_odom: Pose2D, stamp: rospy.Time) -> List[TransformStamped]:
         """odom -> base, and map -> odom where ground truth corrects it."""

@@ -18,9 +18,10 @@ from aro_robocop_goto_as.msg import TickAnswer
 from ..errors import CommandError, FrameError, ParameterError, RobocopError, WorldError
 from ..geometry import Pose2D, Twist2D, compose
 from ..lockstep import Lockstep
+from ..models import load_model
 from ..params import SimParams
 from ..random_world import random_world
-from ..robot import load_robot
+from ..robot import RobotModel
 from ..shapes import World
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
@@ -64,8 +65,7 @@ def build_simulator(p: SimParams) -> Simulator:
     world = load_world(path)
     if world.moving() and not p.moving:
         rospy.loginfo("what world %s can move stands still, unless moving:=true", world.name)
-    model = load_robot(os.path.join(share, "urdf", p.model + ".urdf"))
-    return Simulator(p, world, robots_from(p, world, model))
+    return Simulator(p, world, robots_from(p, world, lambda name: load_model(name, share)))
 
 
 class SimNode:
@@ -228,6 +228,10 @@ class SimNode:
         for robot in self.sim.robots:
             rospy.loginfo("robot %sat x %.2f y %.2f yaw %.2f", robot.name and robot.name + " ", robot.spawn.x,
                           robot.spawn.y, robot.spawn.yaw)
+        given = self.p.given_scan()
+        if given:
+            rospy.loginfo("scan_profile %s, but as given: %s", self.p.scan_profile,
+                          ", ".join(f"{name} {value:g}" for name, value in given.items()))
         if world.ignored:
             rospy.loginfo("not simulated from that file: %s", ", ".join(world.ignored))
         self.show_world()
@@ -245,8 +249,12 @@ class SimNode:
             self.maps.publish(self.sim.occupancy(), convert.to_time(self.sim.stamp_ns), self.p.map_frame)
         shapes = world_markers(world, self.p.world_frame, self.sim.world_time)
         if self.robots[0].name:
-            shapes += robot_markers({robot.name: robot.base_frame for robot in self.robots}, self.p.footprint_radius)
+            shapes += robot_markers([(robot.name, topics.base_frame, self._radius(robot.model))
+                                     for robot, topics in zip(self.sim.robots, self.robots)])
         self.shapes.publish([CLEAR, *shapes])
+
+    def _radius(self, model: RobotModel) -> float:
+        return self.p.footprint_radius or model.figures.footprint_radius
 
     def _end_span(self) -> None:
         """A ~step request has run its course."""

@@ -1,6 +1,6 @@
 """World and many robots -> RViz markers: every obstacle in its true place, size and shape; each robot with its name."""
 
-from typing import List, Mapping
+from typing import List, Sequence, Tuple
 
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
@@ -47,13 +47,13 @@ def world_markers(world: World, frame: str, time: float, moving: bool = False) -
             if obstacle.motion is not None or not moving]
 
 
-def robot_markers(frames: Mapping[str, str], radius: float) -> List[Marker]:
-    """A body of a radius [m], an arrow ahead and a name for each robot, in its base frame: frames by name.
+def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
+    """A body, an arrow ahead and a name for each robot, given as its name, base frame and radius [m].
 
     RViz's RobotModel shows one robot, and asks for one display more for each further one.
     """
     found: List[Marker] = []
-    for number, (name, frame) in enumerate(frames.items()):
+    for number, (name, frame, radius) in enumerate(robots):
         body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODY)
         body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
         nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)

@@ -1,29 +1,12 @@
 """Poses + the world's cut at the scanner's height -> the ranges of a planar laser scanner."""
 
-from dataclasses import dataclass
-from typing import Optional
+from typing import Dict, Optional
 
 import numpy as np
 
 from ..raycast import Fan
 from ..slice import Slice
-
-
-@dataclass(frozen=True)
-class LidarSpec:
-    """Beams spread evenly from angle_min to angle_max [rad], both ends included; ranges and noise sigma [m]."""
-
-    angle_min: float
-    angle_max: float
-    samples: int
-    range_min: float
-    range_max: float
-    noise: float
-
-    @property
-    def increment(self) -> float:
-        """Angle between neighbouring beams [rad], as Gazebo counts it: the span over samples - 1."""
-        return (self.angle_max - self.angle_min) / (self.samples - 1)
+from .scan_profiles import LidarSpec
 
 
 class Lidar:
@@ -32,6 +15,17 @@ class Lidar:
     def __init__(self, spec: LidarSpec) -> None:
         self.spec = spec
         self._fan = Fan(spec.angle_min, spec.increment, spec.samples)
+        self._turns: Dict[int, Lidar] = {}  # this scanner with other numbers of beams
+
+    def next_turn(self, rng: np.random.Generator) -> "Lidar":
+        """This scanner with as many beams as one turn brings: a motor's speed may vary, that of measuring does not."""
+        if not self.spec.varying:
+            return self
+        low, high = self.spec.samples - self.spec.varying, self.spec.samples + self.spec.varying
+        samples = max(2, int(rng.integers(low, high, endpoint=True)))
+        if samples not in self._turns:
+            self._turns[samples] = Lidar(self.spec.with_samples(samples))
+        return self._turns[samples]
 
     def distances(self, world_from_scans: np.ndarray, walls: Slice, others: Optional[np.ndarray] = None) -> np.ndarray:
         """Exact distances (r, samples) [m] from poses (r, 3); +inf where nothing is within range_max.
@@ -41,8 +35,24 @@ class Lidar:
         return self._fan.cast(world_from_scans, walls, others, self.spec.range_max)
 
     def measure(self, distances: np.ndarray, noise: np.ndarray) -> np.ndarray:
-        """Ranges [m] by REP-117: noise (standard normal, scaled here) added, too near = -inf, no return = +inf."""
-        ranges = distances + self.spec.noise * noise
-        ranges[ranges < self.spec.range_min] = -np.inf
-        ranges[ranges > self.spec.range_max] = np.inf
+        """Ranges [m] of the same shape, from exact distances and standard normal noise, scaled here.
+
+        By REP-117 too near = -inf, no return = +inf; where the spec says so both are 0.0, as the LDS's drivers have it.
+        """
+        spec = self.spec
+        ranges = distances + (errors(distances, noise, spec) if spec.accuracy else spec.noise * noise)
+        near, far = ranges < spec.range_min, ranges > spec.range_max
+        if spec.step:
+            ranges = np.round(ranges / spec.step) * spec.step
+        ranges[near] = 0.0 if spec.zero_is_none else -np.inf
+        ranges[far] = 0.0 if spec.zero_is_none else np.inf
         return ranges
+
+
+def errors(distances: np.ndarray, noise: np.ndarray, spec: LidarSpec) -> np.ndarray:
+    """Errors [m] by a data sheet's accuracy, taken for two sigma, and never beyond it."""
+    bounds = np.array([entry.up_to for entry in spec.accuracy])
+    entry = np.minimum(np.searchsorted(bounds, distances), len(bounds) - 1)
+    metres, shares = (np.array([part[i] for part in spec.accuracy]) for i in (1, 2))
+    limits = metres[entry] + shares[entry] * np.minimum(distances, spec.range_max)
+    return limits * np.clip(noise / 2.0, -1.0, 1.0)

@@ -1,0 +1,94 @@
+"""Scanners with the quirks of the real ones."""
+
+import math
+from dataclasses import replace
+from typing import Callable
+
+import numpy as np
+import pytest
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.sensors.lidar import Lidar
+from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.simulator import Simulator
+
+Make = Callable[..., Simulator]
+
+
+def _measured(profile: str, distances: "list[float]", noise: float = 0.0) -> "list[float]":
+    spec = replace(PROFILES[profile].spec, samples=len(distances))
+    return list(Lidar(spec).measure(np.array(distances), np.full(len(distances), noise)))
+
+
+def _scans(sim: Simulator, count: int) -> "list[np.ndarray]":
+    found: list[np.ndarray] = []
+    while len(found) < count:
+        seen = sim.step({"scan": [0]})
+        found += [seen.scans[0]] if seen is not None and seen.scans else []
+    return found
+
+
+def test_the_default_is_the_labs_gazebo_sensor() -> None:
+    rate, spec = SimParams().scanner()
+    assert (rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
+    assert (spec.range_min, spec.range_max, spec.noise) == (0.12, 10.0, 0.01)
+    assert _measured("gazebo", [0.1, 1.0, math.inf]) == [-math.inf, 1.0, math.inf]
+
+
+def test_an_lds01_turns_five_times_a_second_and_its_beams_are_a_degree_apart() -> None:
+    rate, spec = SimParams(scan_profile="lds01").scanner()
+    assert (rate, spec.samples, spec.range_min, spec.range_max) == (5, 360, 0.12, 3.5)
+    assert spec.angle_max == pytest.approx(2.0 * math.pi - spec.increment)
+    assert spec.increment == pytest.approx(math.radians(1.0))
+
+
+def test_an_lds01_tells_of_no_return_as_zero_and_of_the_rest_in_whole_millimetres() -> None:
+    assert _measured("lds01", [0.119, 0.12, 1.23449, 3.5, 3.51, math.inf]) == pytest.approx(
+        [0.0, 0.12, 1.234, 3.5, 0.0, 0.0], abs=1e-12)
+
+
+def test_ideal_scans_are_exact(simulator: Make) -> None:
+    sim = simulator("stage_1", scan_profile="ideal")
+    (scan,) = _scans(sim, 1)
+    assert (scan == sim.exact_distances()).all()
+
+
+@pytest.mark.parametrize("distance, limit", [(0.2, 0.010), (0.3, 0.010), (1.0, 0.03), (6.0, 0.18), (7.0, 0.35)])
+def test_an_lds02_is_off_by_its_accuracy_at_the_most(distance: float, limit: float) -> None:
+    for noise, share in ((5.0, 1.0), (1.0, 0.5), (0.0, 0.0), (-2.5, -1.0)):
+        assert _measured("lds02", [distance, 3.0], noise)[0] == pytest.approx(distance + share * limit)
+
+
+def test_an_lds02_tells_of_no_return_as_zero() -> None:
+    assert _measured("lds02", [0.1, math.inf, 9.0]) == [0.0, 0.0, 0.0]
+
+
+def test_an_lds02_has_another_number_of_beams_in_each_turn_and_the_same_in_each_run(simulator: Make) -> None:
+    def run() -> "list[np.ndarray]":
+        return _scans(simulator("stage_1", scan_profile="lds02"), 20)
+
+    scans = run()
+    assert len({len(scan) for scan in scans}) > 5
+    assert all(225 <= len(scan) <= 235 for scan in scans)
+    assert all((one == other).all() for one, other in zip(scans, run()))
+
+
+def test_beams_of_any_number_are_spread_over_the_same_turn(simulator: Make) -> None:
+    spec = PROFILES["lds02"].spec
+    for samples in (225, 230, 235):
+        turned = spec.with_samples(samples)
+        assert turned.increment * samples == pytest.approx(2.0 * math.pi)
+    sim = simulator("stage_1", Pose2D(0.5, 0.0), scan_profile="lds02", scan_noise=0.0)
+    for scan in _scans(sim, 5):
+        assert scan[0] == pytest.approx(1.85 - 0.5 + 0.032, abs=1e-3)
+        assert scan[round(len(scan) / 2)] == pytest.approx(1.85 + 0.5 - 0.032, abs=2e-3)
+
+
+def test_a_figure_that_is_given_wins_over_the_profile_and_can_be_told() -> None:
+    p = SimParams(scan_profile="lds02", scan_rate=5, scan_noise=0.02, scan_angle_max=3.0)
+    assert p.given_scan() == {"scan_rate": 5, "scan_noise": 0.02, "scan_angle_min": 0.0, "scan_angle_max": 3.0}
+    rate, spec = p.scanner()
+    assert (rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)
+    assert (spec.samples, spec.range_max) == (230, 8.0)
+    assert SimParams().given_scan() == {}
