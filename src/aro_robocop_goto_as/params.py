@@ -6,6 +6,7 @@ from dataclasses import Field, dataclass, field, fields, replace
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar
 
 from .errors import ParameterError
+from .sensors.camera import CameraSpec
 from .sensors.scan_profiles import PROFILES, LidarSpec, ScanProfile
 
 T = TypeVar("T")
@@ -133,6 +134,12 @@ class SimParams:
     bumper_rate: int = _param(30, low=0)
     battery_state_rate: int = _param(0, low=0)
     magnetic_field_rate: int = _param(0, low=0)
+    camera_rate: int = _param(10, low=0)
+    camera_width: int = _param(160, low=1, high=4096)
+    camera_height: int = _param(120, low=1, high=4096)
+    camera_angle: float = _param(1.02974, low=0.01, high=3.0)
+    camera_range_min: float = _positive(0.05)
+    camera_range_max: float = _positive(10.0)
     gyro_noise: float = _param(2e-4, low=0.0, high=100.0)
     accelerometer_noise: float = _param(1.7e-2, low=0.0, high=100.0)
 
@@ -161,13 +168,18 @@ class SimParams:
             given["accuracy"] = ()
         return ScanProfile(rate, replace(spec, **given))
 
+    def camera(self) -> CameraSpec:
+        """The camera of those models that have one."""
+        return CameraSpec(self.camera_width, self.camera_height, self.camera_angle, self.camera_range_min,
+                          self.camera_range_max)
+
     def conflicts(self) -> List[str]:
         """What can't be true at once, in words; empty when all is well."""
         found = []
         scan_rate, spec = self.scanner()
         rates = {name: getattr(self, name) for name in (
             "clock_rate", "control_rate", "odom_rate", "joint_state_rate", "ground_truth_rate", "bumper_rate",
-            "battery_state_rate")}
+            "battery_state_rate", "camera_rate")}
         for name, rate in {**rates, "scan_rate": scan_rate}.items():
             if rate and self.physics_rate % rate:
                 found.append(f"{name}: {rate} Hz does not divide physics_rate {self.physics_rate} Hz")
@@ -180,6 +192,9 @@ class SimParams:
         for name in ("imu_rate", "magnetic_field_rate"):
             if getattr(self, name) > self.physics_rate:
                 found.append(f"{name}: {getattr(self, name)} Hz is above physics_rate {self.physics_rate} Hz")
+        if self.camera_range_max <= self.camera_range_min:
+            found.append(f"camera_range_max: expected more than camera_range_min {self.camera_range_min}, "
+                         f"got {self.camera_range_max}")
         if -1.0 < self.cmd_vel_timeout < 0.0:
             found.append(f"cmd_vel_timeout: expected at least 0, or -1 for the model's own, got {self.cmd_vel_timeout}")
         return found + self._scan_conflicts(spec)

@@ -1,15 +1,15 @@
-"""World + wheel speeds -> robots on the move, by Bullet; bullet_shapes.py and this are all that imports pybullet."""
+"""World + wheel speeds -> robots on the move, by Bullet.
+
+Besides this only bullet_shapes.py and renderer.py import pybullet.
+"""
 
 import math
-import os
-import tempfile
 from typing import Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
 
-from .bullet_shapes import shapes_of
-from .errors import RobotModelError
+from .bullet_shapes import load_urdf, shapes_of
 from .geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Twist2D, Vector3, compose3, lifted, yaw_of
 from .robot import CASTER_PREFIX, WHEEL_JOINTS, BodyState, Pair, RobotModel, RobotState
 from .shapes import Obstacle, Plane, World
@@ -102,14 +102,7 @@ class Physics:
     def add_robot(self, model: RobotModel, world_from_footprint: Pose2D, wheel_torque: float) -> int:
         """Put a robot on the floor, wheels held by motors of `wheel_torque` [Nm]; returns its index."""
         client = self._client
-        with tempfile.TemporaryDirectory(prefix="robocop_") as folder:
-            path = os.path.join(folder, model.name + ".urdf")
-            with open(path, "w") as stream:
-                stream.write(model.physics_urdf)
-            try:
-                body = pybullet.loadURDF(path, flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client)
-            except pybullet.error as error:
-                raise RobotModelError(f"{model.name}: Bullet refused the robot: {error}") from error
+        body = load_urdf(model, client)
         joints = {}
         for index in range(pybullet.getNumJoints(body, physicsClientId=client)):
             info = pybullet.getJointInfo(body, index, physicsClientId=client)

@@ -4,7 +4,7 @@ import copy
 import math
 import os
 from dataclasses import dataclass
-from typing import Dict, List, NamedTuple, Tuple
+from typing import Dict, List, NamedTuple, Optional, Tuple
 
 from lxml import etree
 
@@ -15,6 +15,7 @@ from .shapes import Box, Cylinder, Geometry, Obstacle, Sphere
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"
+CAMERA_FRAME = "camera_rgb_optical_frame"  # as the TurtleBot3's camera in Gazebo names it
 
 Pair = Tuple[float, float]  # of the left and the right wheel
 
@@ -31,6 +32,7 @@ class RobotModel:
     footprint_from_base: Pose3D
     base_from_scan: Pose3D
     base_from_imu: Pose3D
+    base_from_camera: Optional[Pose3D]  # its optical frame; None: it has no camera
     collisions: Tuple[Obstacle, ...]  # what others meet and see of it, poses in base_footprint, wheels at angle zero
     figures: ModelFigures
 
@@ -86,6 +88,7 @@ def load_robot(path: str, figures: ModelFigures, base: str = "base_link", scan: 
         footprint_from_base=footprint_from_base,
         base_from_scan=reader.pose_of(scan, base),
         base_from_imu=reader.pose_of(imu, base),
+        base_from_camera=reader.pose_of(CAMERA_FRAME, base) if CAMERA_FRAME in reader.by_child else None,
         collisions=tuple(reader.collisions()),
         figures=figures,
     )

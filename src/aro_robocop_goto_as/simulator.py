@@ -12,10 +12,12 @@ from .occupancy import occupancy_of
 from .odometers import Odometers
 from .params import SimParams
 from .physics import Physics
+from .renderer import Renderer
 from .robot import BodyState, RobotModel, RobotState
 from .scanners import Scanners
 from .sensors import imu as imu_sensor
 from .sensors import magnetometer
+from .sensors.camera import CameraImage
 from .sensors.imu import ImuSample
 from .sensors.lidar import Lidar
 from .sensors.odometry import Odometry
@@ -23,9 +25,9 @@ from .shapes import Occupancy, World
 from .simtime import due, stamp_ns
 
 SCAN, ODOM, JOINTS, IMU, TRUTH, CLOCK, CONTROL = "scan", "odom", "joints", "imu", "ground_truth", "clock", "control"
-BUMPER, BATTERY, FIELD = "bumper", "battery", "magnetic_field"
+BUMPER, BATTERY, FIELD, CAMERA = "bumper", "battery", "magnetic_field", "camera"
 FAST = frozenset((IMU, FIELD))  # due on most steps, and seldom listened to
-SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH, BUMPER, BATTERY, FIELD)
+SENSORS = (SCAN, ODOM, JOINTS, IMU, TRUTH, BUMPER, BATTERY, FIELD, CAMERA)
 SLIP = 2 ** 32  # number of a noise, beyond those of all robots' sensors
 Wanted = Mapping[str, Sequence[int]]  # sensor -> the robots it is wanted of
 
@@ -53,6 +55,7 @@ class Observations:
     imus: Mapping[int, ImuSample]
     bumpers: Mapping[int, bool]  # whether it touches anything but the floor
     fields: Mapping[int, np.ndarray]  # magnetic, (3,) [T] in imu_link
+    images: Mapping[int, CameraImage]
     battery: bool = False
     odometry: Optional[Sequence[Odometry]] = None
     joints: Optional[Sequence[RobotState]] = None
@@ -80,6 +83,7 @@ class Simulator:
         for robot in self.robots:
             self._physics.add_robot(robot.model, robot.spawn, params.wheel_torque)
         self._scanners = Scanners([robot.model for robot in robots], world)
+        self._renderer: Optional[Renderer] = None  # only where an image has been asked for
         self.moving = bool(world.moving())
         self._schedule = self._make_schedule()
         self._start()
@@ -93,6 +97,7 @@ class Simulator:
         self.world = self._as_asked(world)
         self.moving = bool(self.world.moving())
         self._scanners.change_world(self.world)
+        self._forget_renderer()
         self._physics.change_world(self.world, self.world_time)
 
     def _start(self) -> None:
@@ -110,7 +115,7 @@ class Simulator:
         p = self.params
         rates = {SCAN: p.scanner().rate, ODOM: p.odom_rate, JOINTS: p.joint_state_rate, IMU: p.imu_rate,
                  TRUTH: p.ground_truth_rate, BUMPER: p.bumper_rate, BATTERY: p.battery_state_rate,
-                 FIELD: p.magnetic_field_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
+                 FIELD: p.magnetic_field_rate, CAMERA: p.camera_rate, CLOCK: p.clock_rate, CONTROL: p.control_rate}
         return [frozenset(name for name, rate in rates.items() if rate and due(step, rate, p.physics_rate))
                 for step in range(1, p.physics_rate + 1)]
 
@@ -159,6 +164,7 @@ class Simulator:
             imus={robot: self._imu(robot, body) for robot, body in before.items()},
             bumpers={robot: self.touching(robot) for robot in wanted.get(BUMPER, ())} if BUMPER in due_now else {},
             fields={robot: self._field(robot) for robot in fields},
+            images=self._images(wanted[CAMERA]) if CAMERA in due_now and wanted.get(CAMERA) else {},
             battery=BATTERY in due_now,
             odometry=self._update_odometry(states) if states is not None and ODOM in due_now else None,
             joints=self._joints(states) if states is not None and JOINTS in asked else None,
@@ -228,6 +234,25 @@ class Simulator:
         return imu_sensor.measure(before, self._physics.body(robot), self.dt, self.robots[robot].model.base_from_imu,
                                   self.params.gyro_noise, self.params.accelerometer_noise, rng)
 
+    def _images(self, robots: Sequence[int]) -> Dict[int, CameraImage]:
+        """Of those robots that have a camera; the first one makes what they are rendered with."""
+        models = [robot.model for robot in self.robots]
+        if self._renderer is None:
+            self._renderer = Renderer(self.world, models)
+        bases = [self._physics.body(robot).world_from_base for robot in range(len(models))]
+        found = {}
+        for robot in robots:
+            base_from_camera = models[robot].base_from_camera
+            if base_from_camera is not None:
+                found[robot] = self._renderer.render(self.params.camera(), compose3(bases[robot], base_from_camera),
+                                                     robot, bases, self.world_time)
+        return found
+
+    def _forget_renderer(self) -> None:
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None
+
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Where the odometry's origin is in the map."""
         return self._map_from_odom[robot]
@@ -267,4 +292,5 @@ class Simulator:
 
     def close(self) -> None:
         """Give the physics back."""
+        self._forget_renderer()
         self._physics.close()

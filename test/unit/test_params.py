@@ -57,6 +57,7 @@ def test_every_key_of_a_config_file_is_explained(name: str, cls: Any) -> None:
     ({"odom_frame": "/odom"}, "odom_frame: expected a frame's name without blank or leading slash, got '/odom'"),
     ({"map_frame": ""}, "map_frame: expected a frame's name without blank or leading slash, got ''"),
     ({"map_frame": "odom"}, "map_frame: expected six different frames, got 'odom' 2 times"),
+    ({"camera_range_min": 20}, "camera_range_max: expected more than camera_range_min 20.0, got 10.0"),
     ({"scan_profile": "lds03"}, "scan_profile: expected one of gazebo, ideal, lds01, lds02, got 'lds03'"),
     ({"scan_profile": "lds01", "scan_range_min": 4}, "scan_range_max: expected more than scan_range_min 4.0, got 3.5"),
     ({"scan_profile": "lds01", "physics_rate": 12}, "scan_rate: 5 Hz does not divide physics_rate 12 Hz"),

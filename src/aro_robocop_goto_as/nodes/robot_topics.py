@@ -1,6 +1,6 @@
 """The topics of one robot: commands in, observations out, each with the stamp of its step."""
 
-from typing import Callable, List, Optional, Set
+from typing import Any, Callable, Dict, List, Optional, Set
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, Twist
@@ -13,9 +13,11 @@ from aro_robocop_goto_as.msg import TickAnswer
 from .. import simulator
 from ..geometry import Pose2D, Twist2D
 from ..params import SimParams
+from ..robot import CAMERA_FRAME
 from ..sensors.scan_profiles import LidarSpec
 from ..simulator import Observations
 from . import convert
+from .camera_topics import CameraTopics
 from .packed import PackedOdometry
 from .publishing import publisher
 
@@ -36,7 +38,7 @@ def sender(message: rospy.AnyMsg) -> str:
 class RobotTopics:
     """Publishers and subscribers in a robot's namespace; its own frames carry its name as REP-105 frames can."""
 
-    def __init__(self, index: int, name: str, p: SimParams, spec: LidarSpec) -> None:
+    def __init__(self, index: int, name: str, p: SimParams, spec: LidarSpec, has_camera: bool) -> None:
         self.index = index
         self.name = name
         self.p = p
@@ -46,8 +48,9 @@ class RobotTopics:
         self.joints = publisher(self.topic("joint_states"), JointState)
         self.imu = publisher(self.topic("imu"), Imu)
         self.truth = publisher(self.topic("ground_truth_odom"), Odometry)
-        self.sensors = {simulator.SCAN: self.scan, simulator.ODOM: self.odom, simulator.JOINTS: self.joints,
-                        simulator.IMU: self.imu}
+        self.sensors: Dict[str, Any] = {  # sensor -> its topic, or topics, that tell how many are connected
+            simulator.SCAN: self.scan, simulator.ODOM: self.odom, simulator.JOINTS: self.joints,
+            simulator.IMU: self.imu}
         if p.ground_truth:
             self.sensors[simulator.TRUTH] = self.truth
         if p.bumper_rate:
@@ -58,6 +61,10 @@ class RobotTopics:
             self.sensors[simulator.FIELD] = publisher(self.topic("magnetic_field"), MagneticField)
         self.odom_frame, self.base_frame = self.frame(p.odom_frame), self.frame(p.base_frame)
         self.scan_frame, self.imu_frame = self.frame(p.scan_frame), self.frame(p.imu_frame)
+        self.camera: Optional[CameraTopics] = None
+        if has_camera and p.camera_rate:
+            self.camera = CameraTopics(self.topic(""), p.camera(), self.frame(CAMERA_FRAME))
+            self.sensors[simulator.CAMERA] = self.camera
         self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, ODOM_COVARIANCE[p.covariances])
         self._truth_message = PackedOdometry(p.world_frame, self.base_frame, TRUTH_COVARIANCE)
         self._inputs: List[rospy.Subscriber] = []
@@ -118,6 +125,8 @@ class RobotTopics:
             self.sensors[simulator.FIELD].publish(convert.to_magnetic_field(seen.fields[i], stamp, self.imu_frame))
         if seen.battery and simulator.BATTERY in wanted:
             self.sensors[simulator.BATTERY].publish(convert.to_battery(stamp, self.base_frame))
+        if i in seen.images and self.camera is not None:
+            self.camera.publish(seen.images[i], stamp)
         if i in seen.scans:
             ranges = seen.scans[i].tolist()
             spec = self.spec if len(ranges) == self.spec.samples else self.spec.with_samples(len(ranges))

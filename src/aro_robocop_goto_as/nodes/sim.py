@@ -89,7 +89,8 @@ class SimNode:
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.shapes = publisher("~world", MarkerArray, latch=True)
         self.maps = MapTopics() if p.publish_map or sim.world.occupancy is not None else None
-        self.robots = [RobotTopics(index, robot.name, p, sim.lidar.spec) for index, robot in enumerate(sim.robots)]
+        self.robots = [RobotTopics(index, robot.name, p, sim.lidar.spec, robot.model.base_from_camera is not None)
+                       for index, robot in enumerate(sim.robots)]
         self.listeners: List[Set[str]] = [set() for _ in self.robots]
         self.status = StatusReport(self)
         for robot in self.robots:
