@@ -107,6 +107,8 @@ def test_a_robot_sees_the_others_and_not_itself(simulator: Make) -> None:
     assert np.isinf(alone.depth[57]).all()
     assert image.depth[57].min() == pytest.approx(1.0 - 0.045 - 0.032 - 0.069, abs=0.05)
     assert np.isinf(image.depth[57, [0, -1]]).all()
+    between_plates = _image(simulator("empty", model="turtlebot2"))
+    assert between_plates.depth.min() > 0.6, "not the floor, which is 0.7 m away at the image's lower edge"
 
 
 @pytest.mark.parametrize("params", [{}, KINEMATIC])
