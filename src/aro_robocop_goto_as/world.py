@@ -12,6 +12,9 @@ __all__ = ["Box", "Cylinder", "Geometry", "Mesh", "Obstacle", "Plane", "Sphere",
 _MAPS = (".yaml", ".yml")
 _ENDINGS = (".sdf", ".world", *_MAPS)
 
+LAB_WORLDS = ("house", "aro_maze_1", "aro_maze_2", "aro_maze_8")  # names that the original lab's launch file took
+NOT_HERE = ", which the original lab had and this package has not: give the path of its file"
+
 
 def find_world(name_or_path: str, directory: str) -> str:
     """The path of a world: DIRECTORY/NAME.sdf for a bare name, else the path itself.
@@ -24,8 +27,9 @@ def find_world(name_or_path: str, directory: str) -> str:
         return path
     entries = os.listdir(directory) if os.path.isdir(directory) else []
     known = sorted(entry[: -len(".sdf")] for entry in entries if entry.endswith(".sdf"))
+    hint = NOT_HERE if name_or_path in LAB_WORLDS else ""
     raise WorldError(
-        f"there is no world '{name_or_path}' (no file {os.path.abspath(path)}); "
+        f"there is no world '{name_or_path}'{hint} (no file {os.path.abspath(path)}); "
         f"worlds in {directory}: {', '.join(known) or 'none'}"
     )
 

@@ -62,8 +62,10 @@ def test_the_labs_launch_file_comes_first_then_the_only_one_then_the_one_that_is
 
 def test_arguments_go_to_the_launch_file_that_knows_them_and_the_others_to_the_simulator(tmp_path: Path) -> None:
     package = find_package(str(_tree(tmp_path, PAIR)))
-    assert sort_arguments(package, ["speed:=0.1", "seed:=7", "spawn:=1 2"]) == ({"speed": "0.1"},
-                                                                              "seed:=7 'spawn:=1 2'")
+    given, known = ["speed:=0.1", "seed:=7", "spawn:=1 2"], ["seed", "spawn"]
+    assert sort_arguments(package, given, known) == ({"speed": "0.1"}, "seed:=7 'spawn:=1 2'")
+    with pytest.raises(HostingError, match="wrold:=x: neither .* they take: speed, seed, spawn"):
+        sort_arguments(package, ["wrold:=x"], known)
 
 
 @pytest.mark.parametrize("text, starts", [

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 from xml.sax.saxutils import quoteattr
 
-from ..errors import RobocopError
+from ..errors import HostingError, RobocopError
 from .compat import compat_environment
-from .package import Package, find_package
+from .package import Package, arguments_of, find_package
 from .workspace import Environment, build
 
 
@@ -47,8 +47,8 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str]) -> Pa
     return path
 
 
-def sort_arguments(package: Package, given: List[str]) -> Tuple[Dict[str, str], str]:
-    """NAME:=VALUE for the package's own launch file, and what is left for the simulator's."""
+def sort_arguments(package: Package, given: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
+    """NAME:=VALUE for the package's own launch file, and those for the simulator's, which takes `simulator`."""
     taken = package.launch_arguments()
     own: Dict[str, str] = {}
     others = []
@@ -56,8 +56,11 @@ def sort_arguments(package: Package, given: List[str]) -> Tuple[Dict[str, str], 
         name, _, value = word.partition(":=")
         if name in taken:
             own[name] = value
-        else:
+        elif name in simulator:
             others.append(word)
+        else:
+            raise HostingError(f"{word}: neither {package.name}'s launch file nor the simulator takes an argument of "
+                               f"that name; they take: {', '.join([*taken, *simulator])}")
     if "rviz" in taken:
         own.setdefault("rviz", os.environ.get("ROBOCOP_RVIZ", "true"))
     return own, shlex.join(others)
@@ -75,7 +78,7 @@ def main() -> None:
         package = find_package(args.path, args.launch)
         print(f"robocop sim: building {package.name} from {package.path}", flush=True)
         folder, environment = host(package, share, state)
-        own, others = sort_arguments(package, args.arguments)
+        own, others = sort_arguments(package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch"))
         path = launch_file(package, folder, own)
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)

@@ -33,13 +33,16 @@ class Package:
 
     def launch_arguments(self) -> List[str]:
         """Names of the arguments that its launch file takes."""
-        if self.launch_file is None:
-            return []
-        try:
-            root = ElementTree.parse(self.launch_file).getroot()
-        except ElementTree.ParseError as error:
-            raise HostingError(f"{self.launch_file}: not a launch file: {error}") from error
-        return [entry.get("name", "") for entry in root.iter("arg") if entry.get("value") is None]
+        return [] if self.launch_file is None else arguments_of(self.launch_file)
+
+
+def arguments_of(launch_file: Path) -> List[str]:
+    """Names of the arguments that a launch file takes."""
+    try:
+        root = ElementTree.parse(launch_file).getroot()
+    except ElementTree.ParseError as error:
+        raise HostingError(f"{launch_file}: not a launch file: {error}") from error
+    return [entry.get("name", "") for entry in root.iter("arg") if entry.get("value") is None]
 
 
 def find_package(path: str, launch: str = "") -> Package:

@@ -12,6 +12,8 @@ def start_timer(period: float, callback: Callable[[], None]) -> rospy.Timer:
     def guarded(_event: rospy.timer.TimerEvent) -> None:
         try:
             callback()
+        except rospy.ROSException as error:  # a topic closed under a publish: shutting down
+            rospy.logdebug("timer callback: %s", error)
         except Exception:  # the timer's "main": rospy would end the thread without a word
             if not rospy.is_shutdown():
                 rospy.logerr_throttle(10.0, "timer callback failed, the timer goes on:\n%s", traceback.format_exc())
