@@ -10,6 +10,7 @@ from .record import STATUS_NAMES, TERMINAL, Goal, Record, Sample, end_of, errors
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 560.0, 180.0, 46.0, 26.0, 14.0
 TRACK = 360.0  # height of the trajectory's plot
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777"
+JUMP = 0.2  # [m] in a tick: no robot drives so fast
 MOST_POINTS = 600  # of a curve: more are not seen
 
 Point = Tuple[float, float]
@@ -98,6 +99,16 @@ def _legend(entries: Sequence[Tuple[str, str]]) -> str:
     )
 
 
+def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
+    """The way in parts, parted where the robot was set down elsewhere in the world."""
+    legs: List[List[Sample]] = [[]]
+    for sample in samples:
+        if legs[-1] and math.hypot(sample.world_x - legs[-1][-1].world_x, sample.world_y - legs[-1][-1].world_y) > JUMP:
+            legs.append([])
+        legs[-1].append(sample)
+    return legs
+
+
 def track(record: Record, limits: Limits, at: Sequence[float]) -> str:
     """The way over the world, seen from above, in odom."""
     way = [(sample.x, sample.y) for sample in record.samples]
@@ -126,11 +137,13 @@ def track(record: Record, limits: Limits, at: Sequence[float]) -> str:
         if near is not None:
             x, y = place(near.x, near.y)
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" class="spot"/>')
-    parts.append(_polyline(BLUE, [place(x, y) for x, y in _thinned(way)]))
+    for number, leg in enumerate(_legs(record.samples)):
+        colour = BLUE if number == 0 else GREY  # set down elsewhere, so beside other obstacles
+        parts.append(_polyline(colour, [place(x, y) for x, y in _thinned([(s.x, s.y) for s in leg])]))
     x, y = place(*way[0]) if way else (0.0, 0.0)
     parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{BLUE}"/></g>')
     return _frame(
-        "trajectory in odom; circles of 0.1 m are goals, grey is obstacles, the dot is the start", "".join(parts), TRACK
+        "trajectory from the dot on; green: goals, grey: obstacles and the way from a new start", "".join(parts), TRACK
     )
 
 
@@ -182,7 +195,7 @@ def distances(record: Record, limits: Limits, at: Sequence[float]) -> str:
         ],
         [(0.3, "0.3"), (0.1, "0.1")],
         at,
-        10.0,
+        4.0,
     )
 
 

@@ -85,7 +85,8 @@ def _html(grade: Grade, plan: Plan, records: Records) -> str:
     parts += [_row(line) for line in grade.lines]
     parts.append("</table>")
     for part, by_name in records.items():
-        for name in by_name:
+        order = ["start", *(scenario.name for scenario in plan.scenarios), "no_server", "click", "replace", "frame"]
+        for name in sorted(by_name, key=order.index):
             parts += _scenario(grade, plan, records, part, name)
     return "\n".join(parts)
 
@@ -115,8 +116,8 @@ def _scenario(grade: Grade, plan: Plan, records: Records, part: str, name: str) 
             continue
         shown.add(plot)
         others = [it.sentence for it in mine if it.outcome is Outcome.PASSED and PLOT_OF[it.name] == plot]
-        words = line.words() if line.failure is not None else "passed: " + " ".join(others)
-        title = f"{escape(line.sentence)}<br>" if line.failure is not None else ""
+        words = "passed: " + " ".join(others) if line.outcome is Outcome.PASSED else line.words()
+        title = f"{escape(line.sentence)}<br>" if line.outcome is not Outcome.PASSED else ""
         parts.append(
             f"<div class='beside'>{PLOTS[plot](record, plan.limits, at)}<p class='{line.outcome.value.split()[0]}'>"
             f"{title}{escape(_clean(words))}</p></div>"

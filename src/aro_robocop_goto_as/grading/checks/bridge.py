@@ -33,9 +33,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
             f"a goal at x {click.x:g} y {click.y:g}",
             "no goal",
             click.time,
-            "nothing was sent: is the client called robocop_goto_as, and /move_base_simple/goal subscribed to?"
-            if record.up
-            else "the client did not connect to robocop_goto_as: is its name right?",
+            _why_nothing(record),
         )
     goal = goals[-1]
     if _off(goal, click.x, click.y) > NEAR:
@@ -48,6 +46,15 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     if len(goals) > 1:
         return Failed("one goal", f"{len(goals)} goals", goals[1].time, "the click is sent more than once")
     return Passed()
+
+
+def _why_nothing(record: Record) -> str:
+    """Which connection lacks, if one does."""
+    if not record.marks.get("listeners", 1.0):
+        return "nothing listens to /move_base_simple/goal"
+    if not record.marks.get("clients", 1.0):
+        return "the client did not connect to robocop_goto_as: is its name right?"
+    return "nothing was sent: is send_goal() called?"
 
 
 @check("clicks")

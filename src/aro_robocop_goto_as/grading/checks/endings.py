@@ -1,6 +1,5 @@
 """How goals end: with which state, with which result, where, and how often."""
 
-import math
 from typing import Optional
 
 from ..plan import Limits
@@ -32,17 +31,20 @@ def ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[
     ends = end_of(record, goal)
     name = STATUS_NAMES[wanted]
     if not ends:
-        touching = any(sample.touching for sample in samples_between(record, goal.time, math.inf))
         last = record.samples[-1].time if record.samples else goal.time
         cause = record.problem or "the goal got no terminal state and no result"
-        if touching:
-            cause = f"the robot ran into an obstacle; {cause}"
-        return Failed(name, "no result", last, cause)
+        return Failed(name, "no result", last, _hit(record, goal, last) + cause)
     end = ends[0]
     if end.status == wanted:
         return None
     return Failed(name, f"{STATUS_NAMES[end.status]}{': ' + end.message if end.message else ''}", end.time,
-                  _why(record, end.status, wanted))
+                  _hit(record, goal, end.time) + _why(record, end.status, wanted))
+
+
+def _hit(record: Record, goal: Goal, end: float) -> str:
+    """Whether the robot met an obstacle on its way: its wheels go on turning there, and odometry with them."""
+    touching = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
+    return f"the robot ran into an obstacle at {touching[0].time:.1f} s; " if touching else ""
 
 
 def _why(record: Record, status: int, wanted: int) -> str:

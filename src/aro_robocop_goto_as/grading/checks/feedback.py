@@ -10,6 +10,7 @@ from .verdict import Failed, NotReached, Passed, Verdict, check
 AGE = 0.35  # [s] a node's data may be as old: one odometry period, one tick of its loop, one of ours
 NEAR = 0.15  # [m] nearer to the goal its direction means nothing
 MOST_WRONG = 0.1  # share of messages that may be off: single ones at a turn's end are
+EXACT = 0.003  # [m], [rad] nearer than this a constant is no chance, but what a wrong formula gives
 SHORTEST = 1.0  # [s] of a goal that says anything about a rate
 
 Pair = Tuple[Feedback, List[Sample], Goal]
@@ -208,8 +209,6 @@ def _likely(
     """The hypothesis that explains what was seen best, if any does."""
     if not all(map(math.isfinite, seen)):
         return "it is not a number at times"
-    if len(set(seen)) == 1 and len(seen) > 5 and seen[0] != 0.0:
-        return f"it is always {seen[0]:.2f}: it is not calculated anew in each iteration"
     best, least = otherwise, 0.25
     for words, predict in hypotheses:
         off = []
@@ -220,4 +219,6 @@ def _likely(
         scale = 1.0 if max(abs(value) for value in seen) < 7.0 else 10.0  # degrees and squares move in larger steps
         if middle / scale < least:
             best, least = words, middle / scale
+    if len(set(seen)) == 1 and len(seen) > 5 and seen[0] != 0.0 and least > EXACT:
+        return f"it is always {seen[0]:.2f}: it is not calculated anew in each iteration"
     return best

@@ -129,6 +129,8 @@ class BridgeRun:
         self._finish_goals()
         self._go_on(0.5)
         run.marks["clicked"] = self.stage.now
+        run.marks["listeners"] = float(self.clicks.get_num_connections())
+        run.marks["clients"] = float(self.server.goal_sub.get_num_connections())
         self._click("odom", 1.2, -0.4)
         self._wait_for_goal()
         run.marks["watching"] = self.stage.now
