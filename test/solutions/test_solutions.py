@@ -9,7 +9,7 @@ import subprocess
 
 import attacks
 import pytest
-from graded import PLAN, RIGHT, STATE, graded, recorded
+from graded import PLAN, RIGHT, SHARE, STATE, graded, recorded
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import GradingError
@@ -46,6 +46,12 @@ def test_a_wrong_solution_fails_the_check_meant_for_it_with_the_right_words(wron
 def command(*arguments):
     """`robocop grade` or `robocop new` in this workspace."""
     return subprocess.run(["rosrun", "aro_robocop_goto_as", *arguments], capture_output=True, text=True, timeout=250)
+
+
+def test_the_reference_gets_full_marks_and_the_extra_point(tmp_path):
+    done = command("robocop_grade.py", str(SHARE), "--report", str(tmp_path))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "9 of 8 points" in done.stdout
 
 
 def test_the_skeleton_builds_and_is_told_what_lacks_and_the_report_is_one_file(tmp_path):

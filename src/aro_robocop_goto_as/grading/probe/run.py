@@ -21,7 +21,8 @@ from .nodes import Node
 from .stage import Event, Stage
 
 ACTION = "/robocop_goto_as"  # the handout's
-SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal and stream
+SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal
+SILENCE_AGAIN = 0.2  # [s, wall] once that was in vain: a loop whose period is no whole number of ticks, or a dead one
 TRAILING = 0.15  # [s, wall] for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback, but need not
 SETTLE = 0.15  # [s, wall] for what a node does at once, without time moving on
@@ -43,6 +44,7 @@ class Run:
         self.known: Dict[str, int] = {}  # goal -> status
         self.heard: Set[str] = set()  # streams, since the last tick
         self.said_death = False
+        self.fell_silent = False  # since the goal was sent
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
         self.subscribers: Dict[str, rospy.Subscriber] = {}
@@ -198,9 +200,10 @@ class Run:
         def done() -> bool:
             return self.awaiting in self.ended or not self.lockstep.missing() or self._dead()
 
-        deadline = time.monotonic() + SILENCE
+        deadline = time.monotonic() + (SILENCE_AGAIN if self.fell_silent else SILENCE)
         while not self.drain(done, TRAILING if self.heard else 0.05):
             if self.heard or time.monotonic() >= deadline:
+                self.fell_silent = self.fell_silent or not self.heard
                 self.lockstep.give_up()
                 break
         if self.awaiting not in self.ended and len(self.heard) < len(STREAMS):
@@ -209,6 +212,7 @@ class Run:
     def pursue(self, goal: str) -> None:
         """From now on ticks wait for what comes of this goal; it has just been sent, and time stands."""
         self.awaiting = goal
+        self.fell_silent = False
         self.heard.clear()
         self.lockstep = Lockstep(self.stage.tick_number)
         self.drain(lambda: goal in self.known or goal in self.ended, SILENCE)
