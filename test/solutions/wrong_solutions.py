@@ -137,7 +137,7 @@ WRONG = (
         (CONDITION, "if angle_error > 0.1 or angle_error < -0.1:"),
         (TURN, "self.drive(0.0, 0.5)"),
     ),
-    _server("right_side_forgotten", "turns_to_goal", "drives while it turns", (CONDITION, "if angle_error > 0.1:")),
+    _server("right_side_forgotten", "turns_to_goal", "never turned", (CONDITION, "if angle_error > 0.1:")),
     _server("drives_backward", "drives_straight", "backward", ("self.drive(0.2, 0.0)", "self.drive(-0.2, 0.0)")),
     _server("drives_bends", "drives_straight", "goes on turning", ("self.drive(0.2, 0.0)", "self.drive(0.2, 0.5)")),
     _server("never_drives", "drives_straight", "stayed 0", ("self.drive(0.2, 0.0)", "self.drive(0.0, 0.0)")),

@@ -110,9 +110,8 @@ def _never_moved(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
             "angular.z towards the goal",
             "no command to turn",
             goal.time,
-            f"never turned: angle_error is {angle:.2f} but angular.z stayed 0"
-            if commands
-            else "nothing was ever published on /cmd_vel",
+            f"never turned: angle_error is {angle:.2f} but "
+            + ("angular.z stayed 0" if commands else "nothing was published on /cmd_vel"),
         )
     return None
 
