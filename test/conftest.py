@@ -4,3 +4,10 @@ import signal
 
 # A shell without job control starts background jobs with SIGINT ignored, and ignored signals are inherited.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_addoption(parser):
+    """./robocop test --all"""
+    parser.addoption(
+        "--all", action="store_true", help="also what takes long: every solution that the judge is tried on"
+    )

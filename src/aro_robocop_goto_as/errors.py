@@ -47,3 +47,9 @@ class HostingError(RobocopError):
     """Somebody's package can't be found, built or started."""
 
     code = "HOSTING"
+
+
+class GradingError(RobocopError):
+    """A submission can't be graded, or the plan of the grading is malformed."""
+
+    code = "GRADING"

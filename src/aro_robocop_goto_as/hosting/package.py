@@ -90,7 +90,8 @@ def _name(manifest: Path) -> str:
 
 
 def _launch_file(folder: Path, wanted: str) -> Optional[Path]:
-    found = sorted(folder.rglob("*.launch"))
+    found = sorted(path for path in folder.rglob("*.launch")
+                   if not any(part.startswith(".") for part in path.relative_to(folder).parts))
     matching = [path for path in found if path.name == (wanted or LAUNCH_FILE)]
     if wanted and not matching:
         known = ", ".join(path.name for path in found) or "none"

@@ -1,0 +1,91 @@
+"""robocop grade: a submission -> a line per check, points, a report; exit status 0 when all is right."""
+
+import argparse
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import Dict
+
+from ..errors import RobocopError
+from . import judge, record, report, runner
+from .judge import Grade, Outcome
+from .plan import Plan, load
+from .sandbox import Cage, cage
+from .submission import Submission, take
+
+SIGNS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
+
+
+def grade(
+    submission: Submission, plan: Plan, plan_path: Path, folder: Path, state: Path, around: "Cage | None"
+) -> Grade:
+    """Run and judge all parts of a submission, and write the report with the bags of what failed into `folder`."""
+    records: Dict[str, Dict[str, record.Record]] = {}
+    problems: Dict[str, str] = {}
+    with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
+        for script in submission.scripts:
+            out = Path(work, script.part)
+            recorded = runner.run(submission, script, plan_path, out, state, around, on_progress=_progress(script.part))
+            records[script.part], problems[script.part] = recorded.records, recorded.problem
+        result = judge.judge(submission.name, plan, records, problems)
+        folder.mkdir(parents=True, exist_ok=True)
+        report.write(result, plan, records, folder)
+        _keep_bags(result, Path(work), folder)
+    return result
+
+
+def _progress(part: str) -> "runner.Progress":
+    def show(scenario: str) -> None:
+        if sys.stderr.isatty():
+            print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _keep_bags(result: Grade, work: Path, folder: Path) -> None:
+    for line in result.lines:
+        bag = work / line.part / f"{line.part}-{line.scenario}.bag"
+        if line.failure is not None and bag.is_file():
+            shutil.copyfile(bag, folder / bag.name)
+
+
+def show(result: Grade) -> str:
+    """The grade for a terminal."""
+    lines = []
+    for line in result.lines:
+        lines.append(
+            f"{SIGNS[line.outcome]:11}  {line.points:4g} / {line.of:<4g}  {line.sentence}"
+            + (" (extra)" if line.extra else "")
+        )
+        if line.outcome is not Outcome.PASSED:
+            lines.append(f"{'':11}  {line.words()}")
+    lines += [f"problem: {problem}" for problem in result.problems]
+    return "\n".join([*lines, f"{result.name}: {result.points:g} of {result.of:g} points"])
+
+
+def main() -> None:
+    """Exit status 0: every check passed; 1: not, or there is nothing to grade."""
+    parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__)
+    parser.add_argument("path", help="a package, a robocop_goto_as.py, or a robocop_rviz_goto_ac.py")
+    parser.add_argument("--report", metavar="DIR", help="where the report goes (default: .robocop/reports/NAME)")
+    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--unsafe", action="store_true", help="run the code without bubblewrap around it")
+    args = parser.parse_args()
+    state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
+    plan_path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
+    try:
+        plan = load(plan_path)
+        submission = take(args.path, share, state)
+        around = cage(args.unsafe, [state / "venv", state / "compat"])
+        folder = Path(args.report) if args.report else state / "reports" / submission.name
+        result = grade(submission, plan, plan_path, folder, state, around)
+    except RobocopError as error:
+        print(f"robocop grade: {error}", file=sys.stderr)
+        sys.exit(1)
+    if sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+    print(show(result))
+    print(f"report: {folder / 'report.html'}")
+    sys.exit(0 if result.all_right else 1)

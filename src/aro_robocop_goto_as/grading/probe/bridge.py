@@ -1,0 +1,182 @@
+"""The bridge's scenarios: clicks as RViz makes them, and a server of ours that does what it is told."""
+
+from typing import Any, Callable, Dict
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import PoseStamped
+
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionResult
+
+from ...geometry import Pose2D, Twist2D, compose, inverse
+from .. import record as rec
+from ..plan import Plan
+from ..record import Record
+from .nodes import Node
+from .run import ACTION, Run
+from .stage import Stage
+
+START_PATIENCE = 20.0  # [s, wall] for the node to show itself
+CONNECT_PATIENCE = 10.0  # [s, wall] for its client to find the server
+REACT = 3.0  # [s] for a click to become a goal
+CLICKS = "/move_base_simple/goal"
+FRAMES = ("base_footprint", "map")
+
+
+class BridgeRun:
+    """One submission's bridge."""
+
+    def __init__(self, plan: Plan, launch: Callable[[Run], Node], stage: Stage) -> None:
+        self.plan = plan
+        self.launch = launch
+        self.stage = stage
+        self.run = Run(stage, "bridge")
+        self.run.handlers.update({"goal": self._on_goal, "cancel": self._on_cancel})
+        self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
+        self.handles: Dict[str, Any] = {}
+        self.server: Any = None
+
+    # -- the server that it talks to --
+
+    def _serve(self) -> None:
+        self.server = actionlib.ActionServer(
+            ACTION,
+            GoToPositionAction,
+            lambda handle: self.stage.inbox.put(("goal", handle)),
+            lambda _handle: None,
+            auto_start=False,
+        )
+        self.server.start()
+
+    def _on_goal(self, handle: Any) -> None:
+        position, name = handle.get_goal().position, handle.get_goal_id().id
+        handle.set_accepted()
+        self.handles[name] = handle
+        self.run.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
+        if any(cancel.id == name for cancel in self.run.parts["cancels"]):  # its cancel was faster
+            self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+        handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
+
+    def _on_cancel(self, message: GoalID) -> None:
+        """End what a cancel is for.
+
+        One for all goals spares those of this very tick: a client that cancels all and then sends a goal uses two
+        connections, and which one arrives first is not its doing.
+        """
+        self.run.add("cancels", rec.Cancel(self.stage.now, message.id))
+        for goal in self.run.parts["goals"]:
+            handle = self.handles.get(goal.id)
+            everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
+            earlier = bool(message.stamp) and handle is not None and handle.get_goal_id().stamp <= message.stamp
+            if handle is not None and (message.id == goal.id or everything or earlier):
+                self.run.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
+                handle.set_canceled(GoToPositionResult(False, "cancelled"))
+                del self.handles[goal.id]
+
+    def _finish_goals(self) -> None:
+        for handle in self.handles.values():
+            handle.set_succeeded(GoToPositionResult(True, "there"))
+        self.handles.clear()
+
+    # -- clicks --
+
+    def _click(self, frame: str, x: float, y: float) -> None:
+        robot, to_map = self.stage.odom_from_base(), inverse(self.stage.sim.map_from_odom())
+        odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
+        self.run.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
+        message = PoseStamped()
+        message.header.frame_id, message.header.stamp = frame, self.stage.stamp
+        message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
+        self.clicks.publish(message)
+
+    def _wait_for_goal(self, seconds: float = REACT) -> None:
+        """Until one more goal has come, or for so long."""
+        count = len(self.run.parts["goals"])
+        for _ in range(int(seconds * 10)):
+            self.run.tick()
+            if len(self.run.parts["goals"]) > count:
+                return
+
+    def _go_on(self, seconds: float) -> None:
+        for _ in range(int(seconds * 10)):
+            self.run.tick()
+
+    # -- scenarios, in their order --
+
+    def no_server(self, bag: str) -> Record:
+        """The bridge comes up, and a click comes, while there is no server."""
+        run = self.run
+        run.begin(0, bag=bag)
+        run.node = self.launch(run)
+        run.wait_for(self._shows_itself, START_PATIENCE)
+        self._go_on(1.0)
+        if self.clicks.get_num_connections():
+            self._click("odom", 0.5, 0.1)
+        self._go_on(3.0)
+        return run.finish("no_server", up=not run.said_death)
+
+    def _shows_itself(self) -> bool:
+        return bool(self.clicks.get_num_connections() or self.run.subscribers["cancel"].get_num_connections())
+
+    def click(self, bag: str) -> Record:
+        """The server is there; a click, then time goes on while the goal is being pursued."""
+        run = self.run
+        run.begin(0, bag=bag)
+        self._serve()
+        up = run.wait_for(self._connected, CONNECT_PATIENCE)
+        self._go_on(2.0)  # a click that was kept may come now
+        self._finish_goals()
+        self._go_on(0.5)
+        run.marks["clicked"] = self.stage.now
+        run.marks["listeners"] = float(self.clicks.get_num_connections())
+        run.marks["clients"] = float(self.server.goal_sub.get_num_connections())
+        self._click("odom", 1.2, -0.4)
+        self._wait_for_goal()
+        run.marks["watching"] = self.stage.now
+        self._go_on(self.plan.limits.status_span)
+        return run.finish("click", up=up and not run.said_death)
+
+    def _connected(self) -> bool:
+        inner = self.server
+        return (
+            self.clicks.get_num_connections() > 0
+            and inner.status_pub.get_num_connections() > 0
+            and inner.result_pub.get_num_connections() > 0
+            and inner.goal_sub.get_num_connections() > 0
+        )
+
+    def replace(self, bag: str) -> Record:
+        """A second click while the first one's goal is being pursued."""
+        run = self.run
+        first = list(run.parts["goals"])
+        run.begin(0, bag=bag)
+        for goal in first[-1:]:
+            run.add("goals", goal)
+        run.marks["clicked"] = self.stage.now
+        self._click("odom", -0.6, 0.9)
+        self._wait_for_goal()
+        self._go_on(2.0)
+        return run.finish("replace", up=not run.said_death)
+
+    def frame(self, bag: str) -> Record:
+        """Clicks in other frames, after the robot has driven, where map is not odom."""
+        run = self.run
+        self._finish_goals()
+        run.begin(1, bag=bag)
+        run.settle(0.5)
+        for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
+            self.stage.command(twist)
+            self._go_on(seconds)
+        for frame in FRAMES:
+            self._click(frame, 1.0, 0.2)
+            self._wait_for_goal()
+            self._go_on(0.5)
+            self._finish_goals()
+            self._go_on(0.5)
+        return run.finish("frame", up=not run.said_death)
+
+    def close(self) -> None:
+        """End the node."""
+        if self.run.node is not None:
+            self.run.node.end()

@@ -1,0 +1,184 @@
+"""The server's scenarios: goals sent to it as any client does, on the bare topics."""
+
+import time
+from typing import Callable, Tuple
+
+import rosgraph
+import rospy
+from actionlib_msgs.msg import GoalID
+
+from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
+
+from ...geometry import Pose2D, compose
+from ...goto import Goal, errors_to, watch
+from ...params import GotoParams
+from .. import record as rec
+from ..plan import Plan, Scenario, Step
+from ..record import Record
+from .nodes import Node
+from .run import ACTION, Run
+from .stage import Stage, outlines
+
+START_PATIENCE = 20.0  # [s, wall] for the node to bring its action server up ...
+SHOWN_PATIENCE = 5.0  # [s, wall] ... and from its first sign of life on, its log's connection
+WARM_UP = 0.5  # [s] of each scenario: fresh odometry and scans reach the node
+AFTER = 1.2  # [s] after each ending, to see whether the robot stands
+PROGRESS = GotoParams()  # its stuck_distance and stuck_angle
+Launch = Callable[[Run], Node]
+
+
+class ServerRun:
+    """One submission's server, restarted where a scenario left it in a bad way."""
+
+    def __init__(self, plan: Plan, launch: Launch, stage: Stage) -> None:
+        self.plan = plan
+        self.limits = plan.limits
+        self.launch = launch
+        self.stage = stage
+        self.run = Run(stage, "server")
+        self.goal_topic = rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10)
+        self.cancel_topic = rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10)
+        self.deadline = 0.0
+
+    def start(self, bag: str = "") -> Record:
+        """The node's start: whether its action server comes up."""
+        self.run.begin(0, bag=bag)
+        up = self._bring_up()
+        servers, types = self._servers()
+        self.run.settle(0.3)
+        return self.run.finish("start", up=up, servers=servers, types=types)
+
+    def _bring_up(self) -> bool:
+        run = self.run
+        run.said_death, run.known = False, {}
+        run.node = self.launch(run)
+        log = run.subscribers["log"]
+        run.wait_for(lambda: log.get_num_connections() > 0, START_PATIENCE)
+        up = run.wait_for(self._connected, SHOWN_PATIENCE)
+        run.settle(0.2)
+        return up and not run.said_death
+
+    def _connected(self) -> bool:
+        """Whether all five topics are connected, so that nothing is missed."""
+        return (self.goal_topic.get_num_connections() > 0 and self.cancel_topic.get_num_connections() > 0
+                and all(self.run.subscribers[name].get_num_connections() for name in ("result", "feedback", "status")))
+
+    def _servers(self) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
+        """Names and types of the action servers there are, as the master knows them."""
+        master = rosgraph.Master(rospy.get_name())
+        types = dict(master.getTopicTypes())
+        publishers, _, _ = master.getSystemState()
+        results = {topic[:-len("/result")] for topic, nodes in publishers if topic.endswith("/result") and nodes}
+        found = sorted(name for name in results if types.get(f"{name}/result", "").endswith("ActionResult"))
+        return tuple(found), tuple(types[f"{name}/result"][:-len("Result")] for name in found)
+
+    # -- one scenario --
+
+    def scenario(self, index: int, scenario: Scenario, bag: str) -> Record:
+        """Drive its script to the end, or to where it can't go on."""
+        run = self.run
+        run.begin(index, scenario.odd_scan, bag)
+        self.deadline = time.monotonic() + self.limits.wall_time
+        problem = ""
+        if run.node is None or run.node.death() is not None:
+            self._end_node()
+            if not self._bring_up():
+                problem = "the node did not come up again"
+        if not problem:
+            run.settle(WARM_UP)
+            for number, step in enumerate(scenario.steps, 1):
+                problem = self._step(index, f"{scenario.name}-{number}", step)
+                if problem:
+                    break
+        if problem:
+            run.settle(AFTER)
+        record = run.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
+        if problem or self._unclean(record):
+            self._end_node()
+        return record
+
+    def _unclean(self, record: Record) -> bool:
+        """Whether the next scenario needs a fresh node to be judged by itself."""
+        text = "\n".join(line.text for line in record.lines)
+        ended = all(len(rec.end_of(record, goal)) == 1 for goal in record.goals)
+        return bool(record.deaths) or not ended or "Traceback" in text or "[ERROR]" in text
+
+    def _end_node(self) -> None:
+        if self.run.node is not None:
+            self.run.node.end()
+            self.run.node = None
+            self.run.drain(lambda: self.goal_topic.get_num_connections() == 0, 1.0)
+
+    def _step(self, index: int, name: str, step: Step) -> str:
+        """One line of a script; what went wrong, or nothing."""
+        run = self.run
+        if step.place:
+            self.stage.place(index, Pose2D(*step.place))
+            run.settle(WARM_UP)
+            return ""
+        if step.goal:
+            goal = self._send(name, step)
+            run.pursue(goal.id)
+        elif step.cancel:
+            goal = run.parts["goals"][-1]
+            run.add("cancels", rec.Cancel(self.stage.now, goal.id))
+            self.cancel_topic.publish(GoalID(id=goal.id))
+            run.drain(lambda: goal.id in run.ended, 0.05)
+        if step.run:
+            return self._go_on(goal, step.run)
+        problem = self._until_end(goal)
+        if not problem or step.ends == "PREEMPTED":
+            run.settle(AFTER)
+        return problem
+
+    def _send(self, name: str, step: Step) -> rec.Goal:
+        x, y = step.goal
+        if step.of == "robot":
+            there = compose(self.stage.odom_from_base(), Pose2D(x, y))
+            x, y = there.x, there.y
+        goal = rec.Goal(name, x, y, self.stage.now, step.ends or "PREEMPTED")
+        self.run.add("goals", goal)
+        message = GoToPositionActionGoal(goal=GoToPositionGoal())
+        message.header.stamp = message.goal_id.stamp = self.stage.stamp
+        message.goal_id.id = name
+        message.goal.position.x, message.goal.position.y = x, y
+        self.stage.keep(f"{ACTION}/goal", message)
+        self.goal_topic.publish(message)
+        return goal
+
+    def _go_on(self, goal: rec.Goal, seconds: float) -> str:
+        for _ in range(int(round(seconds * 10))):
+            if goal.id in self.run.ended:
+                return "the goal ended before its time"
+            problem = self._tick()
+            if problem:
+                return problem
+        return ""
+
+    def _until_end(self, goal: rec.Goal) -> str:
+        """Tick until the goal has ended; why it was given up on, or nothing."""
+        started, progress = self.stage.now, None
+        while goal.id not in self.run.ended:
+            problem = self._tick()
+            if problem:
+                return problem
+            now = self.stage.now
+            errors = errors_to(Goal(goal.x, goal.y), self.stage.odom_from_base())
+            progress = watch(progress, errors, now, PROGRESS)
+            if now - progress.since > self.limits.stall:
+                return f"the robot got no nearer for {self.limits.stall:g} s, and the goal did not end"
+            if now - started > self.limits.goal_time:
+                return f"the goal did not end within {self.limits.goal_time:g} s"
+        return ""
+
+    def _tick(self) -> str:
+        self.run.tick()
+        if self.run.node is None or self.run.node.death() is not None:
+            return "the node died"
+        if time.monotonic() > self.deadline:
+            return f"time-out: not done within {self.limits.wall_time:g} s of wall time"
+        return ""
+
+    def close(self) -> None:
+        """End the node."""
+        self._end_node()

@@ -1,0 +1,182 @@
+"""A path -> what of the lab is there, built, with the commands that start it."""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Sequence
+from xml.etree import ElementTree
+
+import yaml
+
+from ..errors import GradingError
+from ..hosting.compat import compat_environment
+from ..hosting.package import NODES, Package, find_package
+from ..hosting.workspace import Environment, build, sourced
+from .skeleton import make
+
+LAB = "aro_robocop_goto_as"
+PARTS = dict(zip((script for script, _ in NODES), ("server", "bridge")))
+IS_SERVER, IS_BRIDGE = re.compile(r"\b\w*ActionServer\b"), re.compile(r"move_base_simple|\bSimpleActionClient\b")
+LAUNCH_PATIENCE = 30.0  # [s, wall]
+
+
+@dataclass(frozen=True)
+class Script:
+    """One of the lab's two nodes."""
+
+    part: str  # server or bridge
+    path: Path
+    node: str  # its name
+    arguments: List[str] = field(default_factory=list)
+
+    def command(self) -> List[str]:
+        """What starts it; this interpreter, whatever its first line says, as students' Pythons differ."""
+        return [sys.executable, str(self.path), *self.arguments, f"__name:={self.node}"]
+
+
+@dataclass(frozen=True)
+class Submission:
+    """What is to be graded."""
+
+    name: str
+    path: Path
+    reads: Sequence[Path]  # all that it needs to read, besides the system and what everybody's code needs
+    environment: Environment
+    scripts: List[Script]
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+
+def take(path: str, share: Path, state: Path) -> Submission:
+    """The submission at `path`, built. GradingError or HostingError says why there is none."""
+    top = Path(path).expanduser().resolve()
+    if top.is_file():
+        return _files([top], share, state)
+    if not top.is_dir():
+        raise GradingError(f"{path}: expected a package, a server's or a bridge's file; there is nothing")
+    loose = [top / script for script in PARTS if (top / script).is_file()]
+    if loose and not list(top.rglob("package.xml")):
+        return _files(loose, share, state)
+    return _package(find_package(str(top)), share, state)
+
+
+def _files(paths: List[Path], share: Path, state: Path) -> Submission:
+    """Loose files, run where they are, with the skeleton's package around them."""
+    for path in paths:
+        if not _part_of(path):
+            raise GradingError(
+                f"{path}: neither a server nor a bridge: no ActionServer in it, and neither a client nor "
+                "/move_base_simple/goal"
+            )
+    scripts = [Script(_part_of(path), path, dict(NODES)[_script(_part_of(path))]) for path in paths]
+    name = paths[0].stem if len(paths) == 1 else paths[0].parent.name
+    return Submission(
+        name,
+        paths[0] if len(paths) == 1 else paths[0].parent,
+        [*paths, state / "grade" / "lab"],
+        lab_environment(share, state),
+        scripts,
+    )
+
+
+def _script(part: str) -> str:
+    return next(script for script, it in PARTS.items() if it == part)
+
+
+def _part_of(path: Path) -> str:
+    """server, bridge, or nothing for a file that is neither."""
+    if path.name in PARTS:
+        return PARTS[path.name]
+    text = path.read_text(errors="replace")
+    return "server" if IS_SERVER.search(text) else "bridge" if IS_BRIDGE.search(text) else ""
+
+
+def lab_environment(share: Path, state: Path) -> Environment:
+    """The environment with the lab's action in it, and nothing else of anybody's; built once."""
+    folder = state / "grade" / "lab"
+    stamp = folder / "built-from"
+    wanted = " ".join(
+        f"{path.name}:{zlib.crc32(path.read_bytes()):x}"
+        for name in ("skeleton", "compat")
+        for path in sorted((share / name).rglob("*"))
+        if path.is_file()
+    )
+    underlay = compat_environment(share, state)
+    if stamp.is_file() and stamp.read_text() == wanted:
+        return sourced(folder / "devel" / "setup.bash", underlay)
+    stamp.unlink(missing_ok=True)
+    with tempfile.TemporaryDirectory() as made:
+        make(share, Path(made, LAB))
+        environment = build({LAB: Path(made, LAB)}, folder, underlay)
+    stamp.write_text(wanted)
+    return environment
+
+
+def _package(package: Package, share: Path, state: Path) -> Submission:
+    folder = state / "grade" / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
+    underlay = compat_environment(share, state) if package.name == LAB else lab_environment(share, state)
+    environment = build({package.name: package.path}, folder, underlay)
+    copy = folder / "src" / package.name
+    launched = _launched(copy)
+    scripts: List[Script] = []
+    for path in sorted(copy.rglob("*.py")):
+        part = _part_of(path) if path.name in {*PARTS, *launched} else ""
+        if part and part not in [script.part for script in scripts]:
+            entry = launched.get(path.name, {})
+            scripts.append(
+                Script(
+                    part,
+                    path,
+                    entry.get("name", dict(NODES)[_script(part)]),
+                    entry.get("args", "").split() if "$(" not in entry.get("args", "") else [],
+                )
+            )
+    if not scripts:
+        raise GradingError(f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}")
+    return Submission(
+        package.path.name,
+        package.path,
+        [folder, state / "grade" / "lab"] if package.name != LAB else [folder],
+        environment,
+        scripts,
+        _parameters(package, copy, environment),
+    )
+
+
+def _launched(copy: Path) -> Dict[str, Dict[str, str]]:
+    """Script -> attributes of its <node> in the package's launch files."""
+    found: Dict[str, Dict[str, str]] = {}
+    for path in sorted(copy.rglob("*.launch")):
+        try:
+            nodes = ElementTree.parse(path).getroot().iter("node")
+        except ElementTree.ParseError as error:
+            raise GradingError(f"{path.name}: {error}") from error
+        for node in nodes:
+            found.setdefault(node.get("type", ""), dict(node.attrib))
+    return found
+
+
+def _parameters(package: Package, copy: Path, environment: Environment) -> Mapping[str, Any]:
+    """What its launch file sets on the parameter server."""
+    if package.launch_file is None:
+        return {}
+    path = copy / package.launch_file.relative_to(package.path)
+    done = subprocess.run(
+        ["roslaunch", "--dump-params", str(path)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=LAUNCH_PATIENCE,
+    )
+    if done.returncode != 0:
+        raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(done.stderr)}")
+    return {name: value for name, value in (yaml.safe_load(done.stdout) or {}).items() if name != "/use_sim_time"}
+
+
+def _first_line(text: str) -> str:
+    """What roslaunch says first, without its colours."""
+    return next((re.sub("\x1b[^m]*m", "", line) for line in text.splitlines() if line.strip()), "no reason given")

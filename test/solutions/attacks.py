@@ -1,0 +1,93 @@
+"""What a submission may try against the grader: code for the node, which prints SUCCESS where it gets through."""
+
+FORK_BOMB = """
+import os
+def bomb():
+    while True:
+        try:
+            os.fork()
+        except OSError:
+            pass
+if os.fork() == 0:
+    bomb()
+"""
+FULL_DISK = """
+import os
+for place in (os.path.expanduser('~'), '/tmp', '/dev/shm', '/var/tmp', '/'):
+    try:
+        for number in range(64):
+            with open(f'{place}/big{number}', 'wb') as f:
+                for _ in range(16):
+                    f.write(bytes(2 ** 20))
+        print('SUCCESS', place, 'took a gigabyte', flush=True)
+    except OSError as error:
+        print('refused', place, error, flush=True)
+"""
+READ = """
+import glob, os
+for path in ('/root/.bashrc', '/etc/shadow', PLAN, *glob.glob(os.path.dirname(FOLDER) + '/*/solution.py'),
+             FOLDER + '/out/server-start.json', FOLDER + '/out/server-job.json'):
+    try:
+        if path != FOLDER + '/solution.py':
+            print('SUCCESS', path, len(open(path).read()), flush=True)
+    except OSError as error:
+        print('refused', path, error, flush=True)
+"""
+OUTSIDE = """
+import socket
+for address in (('127.0.0.1', PORT), ('1.1.1.1', 80), ('192.168.0.1', 80)):
+    try:
+        socket.create_connection(address, timeout=1.0)
+        print('SUCCESS', address, flush=True)
+    except OSError as error:
+        print('refused', address, error, flush=True)
+"""
+KILL_ALL = """
+import os, signal
+for pid in [*range(2, 400), PID]:
+    if pid != os.getpid():
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except OSError:
+            pass
+"""
+FORGE = """
+import os
+for name in ('server-left.json', 'server-start.json', 'report.json', '../report.json'):
+    try:
+        os.makedirs(FOLDER + '/out', exist_ok=True)
+        with open(FOLDER + '/out/' + name, 'w') as f:
+            f.write('{}')
+        print('wrote', name, flush=True)
+    except OSError as error:
+        print('refused', name, error, flush=True)
+"""
+ENDLESS = """
+import threading
+def spin():
+    while True:
+        pass
+for _ in range(4):
+    threading.Thread(target=spin, daemon=True).start()
+while True:
+    pass
+"""
+GIGABYTE_OF_LOG = """
+import sys, threading
+def shout():
+    for _ in range(1024):
+        sys.stdout.write('x' * 2 ** 20 + chr(10))
+threading.Thread(target=shout, daemon=True).start()
+"""
+KILL_MASTER = """
+import os, threading, time, xmlrpc.client
+def strike():
+    time.sleep(2.0)
+    for uri in (os.environ['ROS_MASTER_URI'],
+                rospy.get_master().lookupNode('/robocop_sim')[2]):
+        try:
+            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', 'attack')
+        except Exception as error:
+            print(error, flush=True)
+threading.Thread(target=strike, daemon=True).start()
+"""

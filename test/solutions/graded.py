@@ -1,0 +1,56 @@
+"""Solutions kept as text, graded as a student's file would be."""
+
+import os
+import sys
+from pathlib import Path
+from typing import Dict, Sequence
+
+from wrong_solutions import WRONG
+
+from aro_robocop_goto_as.grading import judge, runner
+from aro_robocop_goto_as.grading.judge import Grade
+from aro_robocop_goto_as.grading.plan import load
+from aro_robocop_goto_as.grading.sandbox import cage
+from aro_robocop_goto_as.grading.submission import take
+
+HERE = Path(__file__).resolve().parent
+STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
+PLAN = SHARE / "config" / "grading.yaml"
+RIGHT: Dict[str, Path] = {path.name[:-len(".py.in")]: path
+                          for path in sorted([*HERE.glob("base_*.py.in"), *(HERE / "right").glob("*.py.in")])}
+
+
+def recorded(text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET) -> runner.Recorded:
+    """A solution driven through the scenarios of its part, or some of them, in the cage."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "solution.py").write_text(text)
+    submission = take(str(folder / "solution.py"), SHARE, STATE)
+    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE,
+                      cage(False, [STATE / "venv", STATE / "compat"]), only, budget=budget)
+
+
+def graded(name: str, text: str, folder: Path) -> Grade:
+    """A solution's grade."""
+    it = recorded(text, folder)
+    part = "bridge" if "no_server" in it.records else "server"
+    return judge.judge(name, load(PLAN), {part: it.records}, {part: it.problem})
+
+
+def main() -> None:
+    """Print wrong solutions against checks as a table for docs/grading.md; arguments: names, all of them without."""
+    import tempfile
+    print("| mistake | found by the check meant for it | with the right words | failed besides | points |\n"
+          "| --- | --- | --- | --- | --- |")
+    for wrong in WRONG:
+        if len(sys.argv) == 1 or wrong.name in sys.argv[1:]:
+            with tempfile.TemporaryDirectory() as folder:
+                grade = graded(wrong.name, wrong.text(), Path(folder))
+            line = next(line for line in grade.lines if line.name == wrong.check)
+            found, said = line.failure is not None, wrong.words in line.words()
+            others = ", ".join(name for name in grade.failed() if name != wrong.check)
+            print(f"| {wrong.name} | {wrong.check if found else 'NO'} | {'yes' if said else 'NO'} | {others} "
+                  f"| {grade.points:g} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

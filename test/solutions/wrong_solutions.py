@@ -1,0 +1,352 @@
+"""Wrong solutions: the base with one mistake each, the checks that may be the first to say so, and words of the cause.
+
+`check` is the one that is meant for the mistake; it has to fail, with `words` in its explanation.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Tuple
+
+HERE = Path(__file__).resolve().parent
+SERVER, BRIDGE = "base_server.py.in", "base_bridge.py.in"
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """One mistake."""
+
+    name: str
+    check: str
+    words: str
+    changes: Tuple[Tuple[str, str], ...]
+    base: str = SERVER
+
+    def text(self) -> str:
+        """The solution with the mistake in it."""
+        text = (HERE / self.base).read_text()
+        for old, new in self.changes:
+            assert text.count(old) >= 1, f"{self.name}: {old!r} is not in {self.base}"
+            text = text.replace(old, new)
+        return text
+
+
+def _server(name: str, check: str, words: str, *changes: Tuple[str, str]) -> Wrong:
+    return Wrong(name, check, words, changes)
+
+
+def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str]) -> Wrong:
+    return Wrong(name, check, words, changes, BRIDGE)
+
+
+CONDITION = "if abs(angle_error) > 0.1:"
+TURN = "self.drive(0.0, max(-0.8, min(0.8, 2.0 * angle_error)))"
+ERROR = "angle_error = wrap(math.atan2(dy, dx) - yaw)"
+YAW = "yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))"
+OBSTACLE = "elif self.min_dist_ahead < 0.3:"
+PUBLISH = "            self.server.publish_feedback(feedback)\n"
+PREEMPTION = """            if self.server.is_preempt_requested():
+                self.stop()
+                self.server.set_preempted(GoToPositionResult(False, 'preempted'))
+                return
+"""
+VALID = "ahead[(ahead > msg.range_min) & (ahead < msg.range_max)]"
+
+WRONG = (
+    _server(
+        "misspelt_name",
+        "action_server",
+        "robovop_goto_as; the handout says robocop_goto_as",
+        ("'robocop_goto_as', GoTo", "'robovop_goto_as', GoTo"),
+    ),
+    _server("never_started", "action_server", "not started", ("        self.server.start()\n", "")),
+    _server(
+        "other_type",
+        "action_server",
+        "type",
+        ("import GoToPositionAction,", "import GoToPositionAction as _,"),
+        ("import rospy\n", "import rospy\nfrom actionlib.msg import TestAction as GoToPositionAction\n"),
+    ),
+    _server("crashes_at_start", "action_server", "ends at its start", ("self.count = 0", "self.count = undefined")),
+    _server("not_wrapped", "feedback_angle", "not wrapped", (ERROR, "angle_error = math.atan2(dy, dx) - yaw")),
+    _server(
+        "degrees", "feedback_angle", "degrees", (ERROR, "angle_error = math.degrees(wrap(math.atan2(dy, dx) - yaw))")
+    ),
+    _server("angle_sign", "feedback_angle", "sign", (ERROR, "angle_error = wrap(yaw - math.atan2(dy, dx))")),
+    _server("no_heading", "feedback_angle", "heading is left out", (ERROR, "angle_error = math.atan2(dy, dx)")),
+    _server(
+        "heading_added",
+        "feedback_angle",
+        "added instead of subtracted",
+        (ERROR, "angle_error = wrap(math.atan2(dy, dx) + yaw)"),
+    ),
+    _server(
+        "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
+    ),
+    _server("atan", "feedback_angle", "atan instead of atan2", (ERROR, "angle_error = wrap(math.atan(dy / dx) - yaw)")),
+    _server("quaternion_z", "feedback_angle", "orientation.z", (YAW, "yaw = q.z")),
+    _server("unsigned_angle", "feedback_angle", "sign", (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))")),
+    _server("ground_truth", "feedback_position", "/ground_truth_odom", ("'/odom'", "'/ground_truth_odom'")),
+    _server(
+        "distance_from_origin",
+        "feedback_position",
+        "position is left out",
+        ("dx = goal.position.x - x", "dx = goal.position.x"),
+        ("dy = goal.position.y - y", "dy = goal.position.y"),
+    ),
+    _server("squared_distance", "feedback_position", "squared", ("math.hypot(dx, dy)", "dx * dx + dy * dy")),
+    _server("only_x", "feedback_position", "only x", ("math.hypot(dx, dy)", "abs(dx)")),
+    _server("no_feedback", "feedback_rate", "no feedback", (PUBLISH, "")),
+    _server(
+        "feedback_once_a_second",
+        "feedback_rate",
+        "each iteration",
+        (PUBLISH, "            self.count += 1\n            if self.count % 10 == 0:\n    " + PUBLISH),
+    ),
+    _server("slow_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(3)")),
+    _server(
+        "unpaced_loop", "feedback_rate", "not paced", ("            rate.sleep()\n", "            rospy.sleep(0)\n")
+    ),
+    _server(
+        "constant_feedback",
+        "feedback_position",
+        "not calculated anew",
+        ("feedback.position_error = position_error", "feedback.position_error = 1.0"),
+    ),
+    _server(
+        "empty_feedback",
+        "feedback_position",
+        "never filled",
+        ("            feedback.position_error = position_error\n            feedback.angle_error = angle_error\n", ""),
+    ),
+    _server(
+        "swapped_feedback",
+        "feedback_position",
+        "swapped",
+        ("feedback.position_error = position_error", "feedback.position_error = angle_error"),
+        ("feedback.angle_error = angle_error", "feedback.angle_error = position_error"),
+    ),
+    _server(
+        "drives_while_turning", "turns_to_goal", "drives while it turns", (TURN, TURN.replace("(0.0, max", "(0.1, max"))
+    ),
+    _server("turns_away", "turns_to_goal", "turns away", (TURN, TURN.replace("2.0 *", "-2.0 *"))),
+    _server("never_turns", "turns_to_goal", "never turned", (TURN, "pass")),
+    _server(
+        "turns_one_way_only",
+        "turns_to_goal",
+        "turns away",
+        (CONDITION, "if angle_error > 0.1 or angle_error < -0.1:"),
+        (TURN, "self.drive(0.0, 0.5)"),
+    ),
+    _server("right_side_forgotten", "turns_to_goal", "never turned", (CONDITION, "if angle_error > 0.1:")),
+    _server("drives_backward", "drives_straight", "backward", ("self.drive(0.2, 0.0)", "self.drive(-0.2, 0.0)")),
+    _server("drives_bends", "drives_straight", "goes on turning", ("self.drive(0.2, 0.0)", "self.drive(0.2, 0.5)")),
+    _server("never_drives", "drives_straight", "stayed 0", ("self.drive(0.2, 0.0)", "self.drive(0.0, 0.0)")),
+    _server(
+        "reached_at_half_a_metre", "reaches_goal", "threshold", ("if position_error < 0.1:", "if position_error < 0.5:")
+    ),
+    _server(
+        "never_reaches",
+        "reaches_goal",
+        "no nearer",
+        ("if position_error < 0.1:", "if position_error < 0.0:"),
+        ("self.drive(0.2, 0.0)", "self.drive(0.2 if position_error > 0.1 else 0.0, 0.0)"),
+        (CONDITION, "if abs(angle_error) > 0.1 and position_error > 0.1:"),
+    ),
+    _server(
+        "aborts_on_success",
+        "reaches_goal",
+        "set_aborted is called",
+        ("self.server.set_succeeded(result)", "self.server.set_aborted(result)"),
+    ),
+    _server("success_flag_forgotten", "success_result", "does not fit", ("result.success = success", "pass")),
+    _server(
+        "result_not_sent",
+        "failure_result",
+        "no result",
+        ("set_succeeded(result)", "set_succeeded()"),
+        ("set_aborted(result)", "set_aborted()"),
+    ),
+    _server(
+        "moves_first",
+        "already_there",
+        "look at it before moving",
+        (
+            "        rate = rospy.Rate(10)\n",
+            "        rate = rospy.Rate(10)\n        self.drive(0.2, 0.0)\n        rospy.sleep(1.0)\n",
+        ),
+    ),
+    _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
+    _server("obstacle_too_early", "stops_at_obstacle", "not 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
+    _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),
+    _server(
+        "success_on_abort",
+        "stops_at_obstacle",
+        "set_succeeded is called",
+        ("self.server.set_aborted(result)", "self.server.set_succeeded(result)"),
+    ),
+    _server(
+        "waits_at_obstacle",
+        "stops_at_obstacle",
+        "no nearer",
+        (
+            OBSTACLE + "\n                success = False\n                break",
+            OBSTACLE + "\n                self.stop()",
+        ),
+    ),
+    _server(
+        "all_around",
+        "only_ahead_counts",
+        "set_aborted",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges"),
+    ),
+    _server(
+        "behind_for_ahead",
+        "only_ahead_counts",
+        "set_aborted",
+        ("np.concatenate([ranges[:30], ranges[-30:]])", "ranges[150:210]"),
+    ),
+    _server("zero_is_near", "odd_scans", "0 or NaN is taken", (VALID, "ahead[ahead < msg.range_max]")),
+    _server("nan_hides", "odd_scans", "hides the wall", (VALID, "np.where(ahead == 0.0, np.inf, ahead)")),
+    _server("no_preemption", "cancel", "is_preempt_requested", (PREEMPTION, "")),
+    _server(
+        "aborts_on_cancel",
+        "cancel",
+        "needs set_preempted",
+        (
+            "self.server.set_preempted(GoToPositionResult(False, 'preempted'))",
+            "self.server.set_aborted(GoToPositionResult(False, 'preempted'))",
+        ),
+    ),
+    _server(
+        "newer_goal_ignored",
+        "newer_goal",
+        "newer goal is not noticed",
+        (
+            "if self.server.is_preempt_requested():",
+            "if self.server.is_preempt_requested() and not self.server.is_new_goal_available():",
+        ),
+    ),
+    _server(
+        "handouts_double_state",
+        "one_ending",
+        "two terminal states",
+        ("                return\n            x, y", "                break\n            x, y"),
+    ),
+    _server(
+        "no_terminal_state",
+        "one_ending",
+        "returned without",
+        ("            self.server.set_aborted(result)\n", "            pass\n"),
+    ),
+    _server(
+        "never_stops",
+        "stands_at_end",
+        "kept driving",
+        ("    def stop(self):\n        self.drive(0.0, 0.0)", "    def stop(self):\n        pass"),
+    ),
+    _server(
+        "goes_on_after_cancel",
+        "stands_at_end",
+        "kept driving",
+        (
+            "                self.stop()\n                self.server.set_preempted",
+            "                self.server.set_preempted",
+        ),
+    ),
+    _server(
+        "crash_on_second_goal",
+        "next_goal",
+        "callback",
+        (
+            "        success = False\n        while",
+            "        self.count += 1\n        assert self.count < 2\n        success = False\n        while",
+        ),
+    ),
+    _server(
+        "done_never_cleared",
+        "next_goal",
+        "second goal",
+        ("        success = False\n        while", "        success = self.count > 0\n        while"),
+        ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
+        ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
+    ),
+    _server(
+        "exception_in_scan",
+        "no_exception",
+        "IndexError",
+        ("ranges = np.array(msg.ranges)", "ranges = np.array(msg.ranges)\n        ranges[360]"),
+    ),
+    _server(
+        "exits_after_goal",
+        "stays_alive",
+        "died",
+        (
+            "        result = GoToPositionResult()\n",
+            "        result = GoToPositionResult()\n"
+            "        rospy.Timer(rospy.Duration(0.3), lambda e: __import__('os')._exit(3))\n",
+        ),
+    ),
+    _server(
+        "blocks_for_ever",
+        "reaches_goal",
+        "no nearer",
+        (
+            "        rate = rospy.Rate(10)\n",
+            "        rate = rospy.Rate(10)\n        import threading\n        threading.Event().wait()\n",
+        ),
+    ),
+    _bridge(
+        "bridge_misspelt",
+        "forwards_goal",
+        "name right",
+        ("SimpleActionClient('robocop_goto_as'", "SimpleActionClient('robocop_goto'"),
+    ),
+    _bridge(
+        "bridge_other_topic", "forwards_goal", "nothing listens", ("'/move_base_simple/goal'", "'/move_base/goal'")
+    ),
+    _bridge("bridge_empty_goal", "forwards_goal", "goal.position", ("goal.position = pose.pose.position", "pass")),
+    _bridge("bridge_never_sends", "forwards_goal", "nothing was sent", ("self.client.send_goal(goal)", "pass")),
+    _bridge(
+        "bridge_no_timer",
+        "reports_status",
+        "rospy.Timer",
+        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", ""),
+    ),
+    _bridge(
+        "bridge_reports_once",
+        "reports_status",
+        "again and again",
+        ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
+    ),
+    _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
+    _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
+    _bridge(
+        "bridge_cancels_newer",
+        "cancels_older",
+        "cancel",
+        ("        if self.sent:\n            self.client.cancel_goal()\n", ""),
+        (
+            "        self.sent = True\n",
+            "        if self.sent:\n            self.client.cancel_goal()\n        self.sent = True\n",
+        ),
+    ),
+    _bridge(
+        "bridge_gives_up",
+        "waits_for_server",
+        "giving up",
+        ("self.client.wait_for_server()", "self.up = self.client.wait_for_server(rospy.Duration(1))"),
+        ("        self.client.send_goal(goal)\n", "        if self.up:\n            self.client.send_goal(goal)\n"),
+    ),
+    _bridge(
+        "bridge_exits_without_server",
+        "waits_for_server",
+        "AssertionError",
+        ("self.client.wait_for_server()", "assert self.client.wait_for_server(rospy.Duration(1))"),
+    ),
+    _bridge(
+        "bridge_raw_frame",
+        "goal_frame",
+        "as if they were in odom",
+        ("pose = self.buffer.transform(msg, 'odom', rospy.Duration(1.0))", "pose = msg"),
+    ),
+)

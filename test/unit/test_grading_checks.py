@@ -1,0 +1,216 @@
+"""Each check on records made by hand: right ones pass, each mistake is told apart with its cause."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, List, Tuple
+
+import pytest
+from support import ROOT
+
+from aro_robocop_goto_as.errors import GradingError, ParameterError
+from aro_robocop_goto_as.grading import record as rec
+from aro_robocop_goto_as.grading.checks import CHECKS, Failed, NotReached, Passed
+from aro_robocop_goto_as.grading.judge import Outcome, judge
+from aro_robocop_goto_as.grading.plan import Limits, Plan, load, summary, world_of
+from aro_robocop_goto_as.grading.record import Record
+
+PLAN = Path(ROOT, "config", "grading.yaml")
+LIMITS = Limits()
+GOAL = rec.Goal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
+
+
+def _drive() -> Record:
+    """A robot that turns by 45 degrees in 2 s, then drives to the goal in 8 s, with feedback at every tick."""
+    samples: List[rec.Sample] = []
+    commands, feedback = [], []
+    far = math.hypot(1.0, 1.0) - 0.09
+    for tick in range(131):
+        t = tick / 10.0
+        turn, way = min(1.0, t / 2.0), max(0.0, min(1.0, (t - 2.0) / 8.0))
+        yaw, along = turn * math.pi / 4.0, way * far
+        x, y = along * math.cos(math.pi / 4.0), along * math.sin(math.pi / 4.0)
+        moving = 2.0 <= t < 10.0
+        samples.append(
+            rec.Sample(
+                t,
+                x,
+                y,
+                yaw,
+                x + 40.0,
+                y - 15.0,
+                yaw + 0.7,
+                far / 8.0 if moving else 0.0,
+                math.pi / 8.0 if t < 2.0 else 0.0,
+                math.inf,
+                False,
+            )
+        )
+        if t <= 10.0:
+            commands.append(rec.Command(t, 0.16 if moving else 0.0, 0.39 if t < 2.0 else 0.0))
+            error = rec.errors_at(samples[-1], GOAL)
+            feedback.append(rec.Feedback(t, "g", error[0], error[1]))
+    return Record(
+        "left",
+        "server",
+        samples=tuple(samples),
+        goals=(GOAL,),
+        commands=tuple(commands),
+        feedback=tuple(feedback),
+        statuses=(rec.Status(0.0, "g", rec.ACTIVE), rec.Status(10.0, "g", rec.SUCCEEDED)),
+        results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, "there"),),
+    )
+
+
+RIGHT = _drive()
+
+
+def _changed(**fields: Any) -> Record:
+    return replace(RIGHT, **fields)
+
+
+def _fed_back(position: Any = None, angle: Any = None) -> Record:
+    """The same drive with other numbers in its feedback."""
+    return _changed(
+        feedback=tuple(
+            replace(
+                it,
+                position_error=position(it.position_error) if position else it.position_error,
+                angle_error=angle(it.angle_error) if angle else it.angle_error,
+            )
+            for it in RIGHT.feedback
+        )
+    )
+
+
+def _commanded(change: Any) -> Record:
+    return _changed(commands=tuple(change(it) for it in RIGHT.commands))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "feedback_rate",
+        "feedback_position",
+        "feedback_angle",
+        "turns_to_goal",
+        "drives_straight",
+        "reaches_goal",
+        "success_result",
+        "stands_at_end",
+        "one_ending",
+        "no_exception",
+        "stays_alive",
+    ],
+)
+def test_a_right_drive_passes(name: str) -> None:
+    assert CHECKS[name](RIGHT, LIMITS) == Passed()
+
+
+WRONG: List[Tuple[str, Record, str]] = [
+    ("feedback_rate", _changed(feedback=()), "no feedback was sent at all"),
+    ("feedback_rate", _changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
+    ("feedback_rate", _changed(feedback=RIGHT.feedback * 5), "not paced"),
+    ("feedback_position", _fed_back(position=lambda _: 0.7), "always 0.70"),
+    ("feedback_position", _fed_back(position=lambda _: 0.0), "never filled"),
+    ("feedback_position", _fed_back(position=lambda d: d * d), "squared"),
+    ("feedback_position", _fed_back(position=lambda _: math.nan), "not a number"),
+    ("feedback_angle", _fed_back(angle=lambda a: a - 2.0 * math.pi), "not wrapped: -5.5 rad"),
+    ("feedback_angle", _fed_back(angle=math.degrees), "degrees"),
+    ("feedback_angle", _fed_back(angle=lambda a: -a), "sign is wrong"),
+    ("turns_to_goal", _commanded(lambda c: replace(c, v=0.1)), "drives while it turns"),
+    ("turns_to_goal", _commanded(lambda c: replace(c, w=-c.w)), "turns away"),
+    ("turns_to_goal", _commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 but angular.z stayed 0"),
+    ("turns_to_goal", _changed(commands=()), "nothing was published on /cmd_vel"),
+    ("drives_straight", _commanded(lambda c: replace(c, v=-c.v)), "backward"),
+    ("drives_straight", _commanded(lambda c: replace(c, v=0.0)), "does not drive"),
+    ("drives_straight", _commanded(lambda c: replace(c, w=0.5)), "goes on turning"),
+    ("reaches_goal", _changed(results=()), "no terminal state"),
+    ("reaches_goal", _changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
+    ("reaches_goal", _changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
+    ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "not sent with"),
+    ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, ""),)), "empty"),
+    ("stands_at_end", _changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept driving"),
+    ("one_ending", _changed(results=RIGHT.results * 2), "two terminal states"),
+    (
+        "no_exception",
+        _changed(lines=(rec.Line(3.0, "Traceback (most recent call last):"), rec.Line(3.0, "KeyError: 'x'"))),
+        "KeyError: 'x'",
+    ),
+    ("stays_alive", _changed(deaths=(rec.Death(4.0, 1),)), "died"),
+]
+
+
+@pytest.mark.parametrize("name, record, words", WRONG, ids=lambda it: it if isinstance(it, str) else "")
+def test_a_mistake_fails_with_its_cause(name: str, record: Record, words: str) -> None:
+    verdict = CHECKS[name](record, LIMITS)
+    assert isinstance(verdict, Failed), verdict
+    assert words in verdict.cause
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in CHECKS if name not in ("no_exception", "stays_alive", "bridge_alive", "waits_for_server")]
+)
+def test_nothing_recorded_is_never_a_pass(name: str) -> None:
+    assert not isinstance(CHECKS[name](Record("start", "server", up=False), LIMITS), Passed)
+
+
+def test_the_misspelt_name_is_told() -> None:
+    record = Record("start", "server", up=False, servers=("/robovop_goto_as",), types=("x/GoToPositionAction",))
+    verdict = CHECKS["action_server"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "action server is called robovop_goto_as; the handout says robocop_goto_as"
+
+
+def test_a_record_is_read_as_it_was_written(tmp_path: Path) -> None:
+    rec.write(RIGHT, tmp_path / "r.json")
+    assert rec.read(tmp_path / "r.json") == RIGHT
+
+
+def test_the_plan_has_five_points_for_the_server_and_three_for_the_bridge_and_a_function_for_each_check() -> None:
+    plan = load(PLAN)
+    assert summary(plan) == {"server": 5.0, "bridge": 3.0}
+    assert {check.name for check in plan.checks} == set(CHECKS)
+    known = {scenario.name for scenario in plan.scenarios} | {"start", "no_server", "click", "replace", "frame"}
+    assert {name for check in plan.checks for name in check.scenarios} <= known
+    assert len(world_of(plan).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in plan.scenarios)
+
+
+@pytest.mark.parametrize(
+    "old, new, error",
+    [
+        ("  feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
+        ("points: 0.5, scenarios: [start]", "punkte: 0.5, scenarios: [start]", "unknown: punkte"),
+        ("goal: [0.7, 0.7]", "goal: [0.7]", "expected 2 numbers"),
+        ("ends: ABORTED", "ends: FAILED", "expected SUCCEEDED, ABORTED or PREEMPTED"),
+        ("limits:", "limits: [", "line"),
+    ],
+)
+def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
+    text = PLAN.read_text()
+    assert old in text
+    (tmp_path / "plan.yaml").write_text(text.replace(old, new))
+    with pytest.raises((GradingError, ParameterError), match=error):
+        load(tmp_path / "plan.yaml")
+
+
+def _grade(plan: Plan, **records: Record) -> Any:
+    return judge("x", plan, {"server": records}, {"server": "time-out: it was at left"})
+
+
+def test_a_scenario_that_was_cut_short_fails_its_checks_with_the_reason() -> None:
+    lines = {line.name: line for line in _grade(load(PLAN), start=replace(RIGHT, name="start")).lines}
+    assert lines["action_server"].outcome is Outcome.PASSED
+    assert lines["reaches_goal"].outcome is Outcome.FAILED
+    assert "time-out: it was at left" in lines["reaches_goal"].words()
+
+
+def test_only_what_is_there_is_graded() -> None:
+    grade = judge("x", load(PLAN), {"server": {"start": replace(RIGHT, name="start")}}, {})
+    assert grade.of == 5.0 and {line.part for line in grade.lines} == {"server"}
+    assert not grade.all_right
+
+
+def test_not_reached_is_said_and_gives_no_points() -> None:
+    verdict = CHECKS["cancel"](RIGHT, LIMITS)
+    assert verdict == NotReached("the goal ended before it could be cancelled")
