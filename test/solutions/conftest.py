@@ -1,0 +1,6 @@
+"""What takes long, or more rights than some machines give, is asked for by --all."""
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Leave the attacks out of an ordinary run."""
+    return True if collection_path.name == "test_attacks.py" and not config.getoption("--all") else None
