@@ -22,6 +22,7 @@ from .verdict import Failed, NotReached, Passed, Verdict, check
 WINDOW = 0.45  # [s] for which a situation has to last before a command is judged by it
 NEAR = 0.2  # [m] nearer to the goal its direction changes fast
 MOST_WRONG = 0.1  # share of commands that may be off, from one situation to the next
+LONG_IDLE = 10  # commands of neither turning nor driving near the heading: whatever the threshold, that is no way to go
 ENOUGH = 4  # commands, fewer say nothing
 
 Judged = Tuple[Command, Sample, float]  # command, truth at its time, angle error
@@ -122,11 +123,13 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
     judged = False
     for goal in record.goals:
         aligned = _situations(record, goal, 0.0, limits.straight_within)
-        driving = [it for it in _situations(record, goal, 0.0, limits.turn_beyond) if abs(it[0].v) > limits.driving]
-        if max(len(aligned), len(driving)) < ENOUGH:
+        nearly = _situations(record, goal, 0.0, limits.turn_beyond)
+        driving = [it for it in nearly if abs(it[0].v) > limits.driving]
+        idle = [it for it in nearly if abs(it[0].v) <= 1e-3 and abs(it[0].w) <= 1e-3]
+        if max(len(aligned), len(driving), len(idle) - LONG_IDLE) < ENOUGH:
             continue
         judged = True
-        problem = _not_forward(aligned, driving) or _bends(driving, limits)
+        problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _bends(driving, limits)
         if problem is not None:
             return problem
     return Passed() if judged else NotReached("the robot never headed for the goal")
