@@ -13,6 +13,7 @@ from ..record import (
     Goal,
     Record,
     end_of,
+    errors_at,
     samples_between,
 )
 from .verdict import Failed, NotReached, Passed, Verdict, check
@@ -67,6 +68,21 @@ def last_error(record: Record) -> str:
     lines = [line.text.strip() for line in record.lines]
     words = [line for line in lines if "Error" in line.split(":")[0] or "Exception:" in line]
     return (words or [line for line in lines if line] or ["see its output"])[-1].splitlines()[-1][:200]
+
+
+def too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """Success away from the goal."""
+    result = end_of(record, goal)[0]
+    at_end = samples_between(record, result.time - 0.2, result.time)
+    nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
+    if nearest <= limits.reached:
+        return None
+    return Failed(
+        "success within 0.1 m",
+        f"success {nearest:.2f} m away",
+        result.time,
+        "the threshold of position_error is not 0.1 m, or it is compared with something else",
+    )
 
 
 @check("states")
@@ -195,7 +211,7 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     heard = {status.id for status in record.statuses} | {result.id for result in record.results}
     if goal.id not in heard:
         return Failed("the second goal is accepted", "nothing", goal.time, "the server no longer takes goals")
-    problem = ending(record, goal, SUCCEEDED, limits)
+    problem = ending(record, goal, SUCCEEDED, limits) or too_far(record, goal, limits)
     if problem is None:
         return Passed()
     return Failed(problem.expected, problem.seen, problem.time,

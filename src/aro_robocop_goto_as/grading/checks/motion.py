@@ -16,7 +16,7 @@ from ..record import (
     samples_between,
     wrapped,
 )
-from .endings import ending
+from .endings import ending, too_far
 from .verdict import Failed, NotReached, Passed, Verdict, check
 
 WINDOW = 0.45  # [s] for which a situation has to last before a command is judged by it
@@ -178,31 +178,17 @@ def _bends(driving: List[Judged], limits: Limits) -> Optional[Failed]:
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal ends with success when the robot is nearer than 0.1 m, and not before."""
     for goal in record.goals:
-        problem = ending(record, goal, SUCCEEDED, limits) or _too_far(record, goal, limits)
+        problem = ending(record, goal, SUCCEEDED, limits) or too_far(record, goal, limits)
         if problem is not None:
             return problem
     return Passed() if record.goals else NotReached("no goal was sent")
-
-
-def _too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    result = end_of(record, goal)[0]
-    at_end = samples_between(record, result.time - 0.2, result.time)
-    nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
-    if nearest <= limits.reached:
-        return None
-    return Failed(
-        "success within 0.1 m",
-        f"success {nearest:.2f} m away",
-        result.time,
-        "the threshold of position_error is not 0.1 m, or it is compared with something else",
-    )
 
 
 @check("track")
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind are reached, also where the heading passes from pi to -pi, by the shorter turn."""
     for goal in record.goals:
-        problem = ending(record, goal, SUCCEEDED, limits) or _too_far(record, goal, limits) or _long_way(record, goal)
+        problem = ending(record, goal, SUCCEEDED, limits) or too_far(record, goal, limits) or _long_way(record, goal)
         if problem is not None:
             return problem
     return Passed() if len(record.goals) > 1 else NotReached("the first goal did not end")
