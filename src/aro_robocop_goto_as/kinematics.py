@@ -13,13 +13,13 @@ import numpy as np
 from .geometry import STANDSTILL, Pose2D, Pose3D, Twist2D, arc, quaternion_from_rpy, wrap_angle
 from .robot import BodyState, Pair, RobotModel, RobotState
 from .slice import FEW, Slice
+from .sweep import SKIN, ends, share_to_circles, share_to_sides, short_of, to_segments
 from .tiles import Tiles
 from .world import World
 
 LOWEST = 0.02  # [m] at which obstacles are met: a bottom plate
 SPREAD = 0.09  # [m] at the most from there to the next height, and so on up to the lidar
 NEARBY = 1.0  # [m] how far many walls are looked up
-SKIN = 1e-6  # [m] kept free, so that rounding never puts a disc inside a wall
 
 
 class _Walls:
@@ -186,7 +186,7 @@ class Kinematics:
         share = self._share_against_walls(it, centre, move, length) if it.room < 0.0 else 1.0
         if crowded:
             rings = self._others(i) + [0.0, 0.0, it.radius + SKIN]
-            share = min(share, _short_of(_share_to_circles(centre, move, rings), length))
+            share = min(share, short_of(share_to_circles(centre, move, rings), length))
         return share
 
     def _share_against_walls(self, it: _Disc, centre: np.ndarray, move: np.ndarray, length: float) -> float:
@@ -197,9 +197,9 @@ class Kinematics:
         if gap >= length:
             return 1.0
         circles = self._walls[it.heights].circles
-        rounds = np.concatenate([circles + [0.0, 0.0, it.radius], _ends(segments, it.radius)])
-        free = min(_share_to_circles(centre, move, rounds), _share_to_sides(centre, move, segments, it.radius))
-        return _short_of(free, length)
+        rounds = np.concatenate([circles + [0.0, 0.0, it.radius], ends(segments, it.radius)])
+        free = min(share_to_circles(centre, move, rounds), share_to_sides(centre, move, segments, it.radius))
+        return short_of(free, length)
 
     def _near(self, it: _Disc, centre: np.ndarray, length: float = 0.0) -> np.ndarray:
         """All segments, or of many at least those within NEARBY of a disc that moves from there by a length [m]."""
@@ -212,7 +212,7 @@ class Kinematics:
         """How far [m] a disc at a point (2,) is from the nearest wall, NEARBY at most; negative where it is in one."""
         walls = self._walls[it.heights]
         limit = np.inf if walls.tiles is None else it.radius + NEARBY
-        away = np.concatenate([_to_segments(centre, segments),
+        away = np.concatenate([to_segments(centre, segments),
                                np.hypot(*(walls.circles[:, :2] - centre).T) - walls.circles[:, 2], [limit]])
         return float(away.min()) - it.radius
 
@@ -243,59 +243,3 @@ class Kinematics:
 
     def close(self) -> None:
         """Nothing to give back."""
-
-
-def _short_of(share: float, length: float) -> float:
-    """The share that keeps the skin free; 1 where nothing is met."""
-    return share if share >= 1.0 else max(0.0, share - SKIN / length)
-
-
-def _ends(segments: np.ndarray, radius: float) -> np.ndarray:
-    """The ends of segments (m, 2, 2) as circles (2 m, 3) of one radius."""
-    points = segments.reshape(-1, 2)
-    return np.column_stack([points, np.full(len(points), radius)])
-
-
-def _to_segments(point: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Distances (m,) [m] from a point (2,) to segments (m, 2, 2)."""
-    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
-    offset = point - start
-    share = np.clip((offset * along).sum(axis=1) / np.maximum((along ** 2).sum(axis=1), 1e-30), 0.0, 1.0)
-    return np.hypot(*(offset - share[:, None] * along).T)
-
-
-def _share_to_circles(start: np.ndarray, move: np.ndarray, circles: np.ndarray) -> float:
-    """Share of a displacement until it first enters a circle (m, 3); leaving one that it is in is free."""
-    if not len(circles):
-        return 1.0
-    offset = circles[:, :2] - start
-    towards = offset @ move
-    squared = float(move @ move)
-    if squared == 0.0:
-        return 1.0
-    root = towards ** 2 - squared * ((offset ** 2).sum(axis=1) - circles[:, 2] ** 2)
-    share = (towards - np.sqrt(np.maximum(root, 0.0))) / squared
-    met = (root > 0.0) & (towards > 0.0) & (share < 1.0)
-    return max(0.0, float(share[met].min())) if met.any() else 1.0
-
-
-def _share_to_sides(start: np.ndarray, move: np.ndarray, segments: np.ndarray, radius: float) -> float:
-    """Share of a displacement until it comes within `radius` of the flat side of a segment (m, 2, 2)."""
-    if not len(segments):
-        return 1.0
-    along = segments[:, 1] - segments[:, 0]
-    length = np.hypot(along[:, 0], along[:, 1])
-    along = along / length[:, None]
-    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    offset = start - segments[:, 0]
-    away = (offset * normal).sum(axis=1)
-    side = np.where(away >= 0.0, 1.0, -1.0)
-    approach = -(normal @ move) * side
-    nearing = approach > 0.0
-    share = np.full(len(segments), 1.0)
-    with np.errstate(over="ignore"):  # hardly nearing: never met
-        share[nearing] = np.maximum((np.abs(away[nearing]) - radius) / approach[nearing], 0.0)
-    share = np.minimum(share, 1.0)
-    touch = ((offset + share[:, None] * move) * along).sum(axis=1)
-    met = (share < 1.0) & (touch >= 0.0) & (touch <= length)
-    return float(share[met].min()) if met.any() else 1.0

@@ -2,12 +2,13 @@
 
 import os
 import signal
-import socket
 import subprocess
 import time
 
 import pytest
 from test_rostests import processes_with
+
+from aro_robocop_goto_as.loopback import free_port
 
 DEADLINE = 120.0  # [s, wall]
 
@@ -16,9 +17,7 @@ class Goto:
     """The command on its own, with no master where it looks for one; its output and the processes it starts."""
 
     def __init__(self, folder, *arguments):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.setting = b"ROS_HOME=" + os.fsencode(folder)
         self.output = folder / "output"
         environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",

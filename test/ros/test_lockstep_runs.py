@@ -7,7 +7,6 @@ stopped many times, and one of them is frozen.
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -15,6 +14,8 @@ from pathlib import Path
 
 import pytest
 import yaml
+
+from aro_robocop_goto_as.loopback import free_port
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -27,9 +28,7 @@ class Ros:
     """A master of its own, and the nodes that a test starts on it."""
 
     def __init__(self, folder):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.port = probe.getsockname()[1]
+        self.port = free_port()
         self.folder = folder
         self.environment = {
             **os.environ, "ROS_HOSTNAME": "localhost", "ROS_MASTER_URI": f"http://localhost:{self.port}",

@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -12,6 +11,8 @@ from pathlib import Path
 import pytest
 from students import contents, copy_of
 from test_rostests import processes_with
+
+from aro_robocop_goto_as.loopback import free_port
 
 HERE = Path(__file__).resolve().parent
 DEADLINE = 150.0  # [s, wall] a build and a start on a busy machine
@@ -22,9 +23,7 @@ class Hosted:
     """`robocop sim --with PACKAGE` on a master of its own."""
 
     def __init__(self, package, folder, *arguments):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
                             "ROS_HOME": str(folder), "ROBOCOP_RVIZ": "false"}
         self.environment.pop("ROS_IP", None)

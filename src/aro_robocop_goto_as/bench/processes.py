@@ -4,7 +4,6 @@ import contextlib
 import ctypes
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -15,6 +14,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional
 import rosgraph
 
 from ..errors import BenchError
+from ..loopback import free_port
 from .drain import Tally
 
 PATIENCE = 60.0  # [s, wall] for a process to start or to answer; a busy machine is slow, but not that slow
@@ -125,10 +125,8 @@ def running(child: Child) -> Iterator[Any]:
 @contextlib.contextmanager
 def own_ros() -> Iterator[Path]:
     """A master on a free port of loopback, a ROS home of its own; yields the directory of both, gone at the end."""
-    with tempfile.TemporaryDirectory(prefix="robocop_bench_") as name, socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-        probe.close()
+    with tempfile.TemporaryDirectory(prefix="robocop_bench_") as name:
+        port = free_port()
         own: Dict[str, str] = {"ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
                                "ROS_HOME": name, "ROS_LOG_DIR": os.path.join(name, "log")}
         for variable in ("ROS_IP", "ROS_NAMESPACE"):

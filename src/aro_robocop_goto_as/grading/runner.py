@@ -4,7 +4,6 @@ import json
 import os
 import queue
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -13,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence
 
+from ..loopback import free_port
 from . import record as rec
 from .sandbox import Cage
 from .submission import Script, Submission
@@ -86,7 +86,7 @@ def _environment(out: Path, state: Path) -> Dict[str, str]:
     types = state / "compat" / "devel" / "lib" / "python3" / "dist-packages"
     environment = {
         **os.environ,
-        "ROS_MASTER_URI": f"http://localhost:{_free_port()}",
+        "ROS_MASTER_URI": f"http://localhost:{free_port()}",
         "ROS_HOSTNAME": "localhost",
         "ROS_HOME": str(out / "ros"),
         "ROS_LOG_DIR": str(out / "ros"),
@@ -94,12 +94,6 @@ def _environment(out: Path, state: Path) -> Dict[str, str]:
     environment["PYTHONPATH"] = f"{environment.get('PYTHONPATH', '')}:{types}"
     environment.pop("ROS_IP", None)
     return environment
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def _watch(

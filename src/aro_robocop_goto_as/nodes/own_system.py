@@ -3,7 +3,6 @@
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import time
 import uuid
@@ -12,6 +11,8 @@ from typing import Iterator, List
 
 import rosgraph
 import rospy
+
+from ..loopback import free_port
 
 PACKAGE = "aro_robocop_goto_as"
 MARK = "ROBOCOP_SYSTEM"  # environment variable that tells such a system's processes from all others
@@ -27,7 +28,7 @@ def own_system(launch_file: str, arguments: List[str], log: str) -> Iterator[boo
 
     Sets ROS_MASTER_URI of this process. Whatever ends the block, a signal included, ends the system.
     """
-    port, mark = _free_port(), f"{MARK}={uuid.uuid4().hex}"
+    port, mark = free_port(), f"{MARK}={uuid.uuid4().hex}"
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     os.makedirs(os.path.dirname(log), exist_ok=True)
     name, _, value = mark.partition("=")
@@ -74,12 +75,6 @@ def _processes_with(setting: bytes) -> List[int]:
             if setting in environment.read_bytes().split(b"\0"):
                 found.append(int(environment.parent.name))
     return found
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def _wait_for_master(system: "subprocess.Popen[bytes]") -> bool:

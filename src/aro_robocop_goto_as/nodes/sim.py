@@ -1,12 +1,10 @@
 """robocop_sim: the simulator's loop, paced against the wall clock and, in lockstep, against the controllers."""
 
-import os
 import queue
 import sys
 import time
 from typing import Any, Callable, Dict, List, Set, TypeVar
 
-import rospkg
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from rosgraph_msgs.msg import Clock
@@ -15,19 +13,17 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ..errors import CommandError, FrameError, ParameterError, RobocopError, WorldError
+from ..errors import CommandError, FrameError, ParameterError, RobocopError
 from ..geometry import Pose2D, Twist2D, compose
 from ..lockstep import Lockstep
-from ..models import load_model
 from ..params import SimParams
-from ..random_world import random_world
 from ..robot import RobotModel
 from ..shapes import World
 from ..simtime import NANOSECONDS
 from ..simulator import Observations, Simulator
-from ..spawns import FARTHEST, robots_from
-from ..world import find_world, load_world
+from ..spawns import FARTHEST
 from . import convert, params
+from .building import build_simulator
 from .map_topics import MapTopics
 from .pacer import Pacer
 from .publishing import publisher
@@ -37,35 +33,11 @@ from .status import StatusReport
 from .world_control import WorldControl
 from .world_markers import CLEAR, robot_markers, world_markers
 
-PACKAGE = "aro_robocop_goto_as"
-RANDOM = "random"  # as `world`: one made from the seed
 PAUSED_CLOCK_PERIOD = 0.1  # [s, wall] a paused simulator repeats its clock, so that nodes which start then have time
 LONGEST_WAIT = 0.5  # [s, wall] between two looks for a parameter that was set
 LOOK_PERIOD = 0.05  # [s, wall] between two looks for controllers that have disconnected, while waiting for answers
 
 T = TypeVar("T")
-
-
-def make_random(seed: int) -> str:
-    """Make a random world and leave it in ROS' home as a file, whose path can be given as `world` again."""
-    path = os.path.join(rospkg.get_ros_home(), f"random_{seed}.sdf")
-    try:
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(random_world(seed))
-    except OSError as error:
-        raise WorldError(f"{path}: can't write the random world: {error.strerror}") from error
-    return path
-
-
-def build_simulator(p: SimParams) -> Simulator:
-    """The simulator for these parameters; RobocopError when world, robots or their places can't be had."""
-    share = rospkg.RosPack().get_path(PACKAGE)
-    path = make_random(p.seed) if p.world == RANDOM else find_world(p.world, os.path.join(share, "worlds"))
-    world = load_world(path)
-    if world.moving() and not p.moving:
-        rospy.loginfo("what world %s can move stands still, unless moving:=true", world.name)
-    return Simulator(p, world, robots_from(p, world, lambda name: load_model(name, share)))
 
 
 class SimNode:
