@@ -111,6 +111,11 @@ class Lockstep:
         self.misses += len(late)
         return late
 
+    def slower_than_ticks(self) -> bool:
+        """Whether somebody is known to answer, in a steady rhythm, more seldom than the ticks come."""
+        rhythms = [it.gaps for it in self._controllers.values() if it.next_gap() is not None]
+        return any(set(gaps) - {1} for gaps in rhythms)
+
     def drivers(self) -> List[str]:
         """Who is being waited for, tick by tick."""
         return sorted(name for name, it in self._controllers.items() if it.awaited)

@@ -82,7 +82,9 @@ threading.Thread(target=shout, daemon=True).start()
 KILL_MASTER = """
 import os, threading, time, xmlrpc.client
 def strike():
-    time.sleep(2.0)
+    while not rospy.core.is_initialized():
+        time.sleep(0.05)
+    rospy.wait_for_message('/robocop_goto_as/goal', rospy.AnyMsg)
     for uri in (os.environ['ROS_MASTER_URI'],
                 rospy.get_master().lookupNode('/robocop_sim')[2]):
         try:
@@ -90,4 +92,42 @@ def strike():
         except Exception as error:
             print(error, flush=True)
 threading.Thread(target=strike, daemon=True).start()
+"""
+MEMORY = """
+import os, time
+for _ in range(12):
+    if os.fork() == 0:
+        taken = bytearray(400 * 2 ** 20)
+        time.sleep(60.0)
+        os._exit(0)
+"""
+BUILD = """
+import os, socket
+for path in ('/root/.bashrc', '/etc/shadow', PLAN, NEIGHBOUR, os.path.join(os.path.dirname(__file__), 'link')):
+    try:
+        print('SUCCESS', path, len(open(path).read()))
+    except OSError as error:
+        print('refused', path, error)
+for path in (NEIGHBOUR, '/var/tmp/robocop-was-here', os.path.expanduser('~root/robocop-was-here')):
+    try:
+        open(path, 'a').close()
+        print('SUCCESS', path)
+    except OSError as error:
+        print('refused', path, error)
+try:
+    socket.create_connection(('127.0.0.1', PORT), timeout=1.0)
+    print('SUCCESS', PORT)
+except OSError as error:
+    print('refused', PORT, error)
+if 'SECRET_OF_THE_TEACHER' in os.environ:
+    print('SUCCESS environment')
+"""
+"""Code that a package's CMakeLists.txt, or its launch file, runs."""
+BUILD_FULL = """
+for number in range(40):
+    with open(f'big{number}', 'wb') as f:
+        for _ in range(60):
+            f.write(bytes(2 ** 20))
+import time
+time.sleep(30.0)
 """

@@ -36,9 +36,9 @@ def recorded(text: str, folder: Path, only: Sequence[str] = (), budget: float = 
     """A solution driven through the scenarios of its part, or some of them, in the cage."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
-    submission = take(str(folder / "solution.py"), SHARE, STATE)
-    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE,
-                      cage(not CAGED, [STATE / "venv", STATE / "compat"]), only, budget=budget)
+    around = cage(not CAGED, [STATE / "venv", STATE / "compat"])
+    submission = take(str(folder / "solution.py"), SHARE, STATE, folder, around)
+    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE, around, only, budget=budget)
 
 
 def graded(name: str, text: str, folder: Path) -> Grade:

@@ -5,7 +5,12 @@ import socket
 
 import attacks
 import pytest
-from graded import PLAN, RIGHT, recorded
+from graded import CAGED, PLAN, RIGHT, SHARE, STATE, recorded
+
+from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.grading import skeleton
+from aro_robocop_goto_as.grading.sandbox import cage
+from aro_robocop_goto_as.grading.submission import take
 
 BUDGET = 60.0  # [s, wall] for an attack's two scenarios
 pytestmark = pytest.mark.xdist_group("hosting")  # they build upon the same workspaces as those who host packages
@@ -47,4 +52,53 @@ def test_an_endless_loop_is_a_fail_with_a_reason(tmp_path):
 
 def test_who_kills_the_master_and_the_grader_loses_and_the_reason_is_said(tmp_path):
     it, _ = attacked(attacks.KILL_MASTER, tmp_path / "mine")
-    assert it.problem.startswith(("the run was cut short during", "time-out"))
+    assert "was ended while the submission ran" in it.problem or "was shut down while" in it.problem
+
+
+def test_who_takes_all_memory_with_many_processes_is_ended_and_the_reason_is_said(tmp_path):
+    it, _ = attacked(attacks.MEMORY, tmp_path / "mine")
+    reasons = {death.reason for record in it.records.values() for death in record.deaths}
+    assert reasons == {"its processes together took more than 2048 MB of memory"}
+
+
+@pytest.fixture
+def package(tmp_path):
+    """The skeleton's package, as `robocop new` makes it."""
+    skeleton.make(SHARE, tmp_path / "lab")
+    return tmp_path / "lab"
+
+
+def taken(package, workshop):
+    """Build and read a package as the judge does."""
+    return take(str(package), SHARE, STATE, workshop, cage(not CAGED, [STATE / "venv", STATE / "compat"]))
+
+
+def test_building_a_package_and_reading_its_launch_file_reach_nothing_outside(package, tmp_path, monkeypatch):
+    neighbour = tmp_path / "neighbour.py"
+    neighbour.write_text("secret")
+    monkeypatch.setenv("SECRET_OF_THE_TEACHER", "42")
+    (package / "link").symlink_to(neighbour)
+    with socket.socket() as outside:
+        outside.bind(("127.0.0.1", 0))
+        outside.listen()
+        names = f"PLAN, NEIGHBOUR, PORT = {str(PLAN)!r}, {str(neighbour)!r}, {outside.getsockname()[1]}\n"
+        (package / "attack.py").write_text(names + attacks.BUILD)
+        with open(package / "CMakeLists.txt", "a") as text:
+            text.write("execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/attack.py)\n")
+        launch = package / "launch" / "robocop_goto_as.launch"
+        command = "sh -c &quot;python3 $(find aro_robocop_goto_as)/attack.py&quot;"
+        launch.write_text(f'<launch><param name="loot" command="{command}"/></launch>')
+        submission = taken(package, tmp_path / "workshop")
+    log = next((tmp_path / "workshop").glob("*/build.log")).read_text()
+    assert set(submission.parameters) == {"/loot"}
+    for words in (log, submission.parameters["/loot"]):
+        assert sum(line.startswith("refused ") for line in words.splitlines()) == 9, words
+        assert "SUCCESS" not in words, words
+
+
+def test_a_build_that_fills_the_disk_is_ended_and_the_reason_is_said(package, tmp_path):
+    (package / "attack.py").write_text(attacks.BUILD_FULL)
+    with open(package / "CMakeLists.txt", "a") as text:
+        text.write("execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/attack.py)\n")
+    with pytest.raises(GradingError, match="catkin_make was ended: it wrote more than 512 MB"):
+        taken(package, tmp_path / "workshop")

@@ -86,6 +86,17 @@ def test_a_loop_of_any_rate_is_waited_for_when_it_is_due_and_only_then(hz: Fract
     assert set(answers[-5:]) == {SURE}
 
 
+def test_a_steady_loop_is_known_to_be_slower_than_the_ticks_or_not() -> None:
+    for every in (1, 3):
+        lockstep = Lockstep()
+        for tick in range(1, 30):
+            lockstep.tick = tick
+            if tick % every == 0:
+                lockstep.commanded("/a")
+        assert lockstep.slower_than_ticks() == (every == 3)
+    assert not Lockstep().slower_than_ticks()
+
+
 def test_a_faster_loop_is_one_driver() -> None:
     lockstep = Lockstep()
     for _ in range(5):

@@ -5,10 +5,12 @@ import os
 import shutil
 import sys
 import tempfile
+import zlib
 from pathlib import Path
 from typing import Dict
 
 from ..errors import RobocopError
+from ..hosting.workspace import alone
 from . import judge, record, report, runner
 from .judge import Grade, Outcome
 from .plan import Plan, load
@@ -77,10 +79,11 @@ def main() -> None:
     plan_path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
     try:
         plan = load(plan_path)
-        submission = take(args.path, share, state)
         around = cage(args.unsafe, [state / "venv", state / "compat"])
-        folder = Path(args.report) if args.report else state / "reports" / submission.name
-        result = grade(submission, plan, plan_path, folder, state, around)
+        with alone(state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"):
+            submission = take(args.path, share, state, state / "grade", around)
+            folder = Path(args.report) if args.report else state / "reports" / submission.name
+            result = grade(submission, plan, plan_path, folder, state, around)
     except RobocopError as error:
         print(f"robocop grade: {error}", file=sys.stderr)
         sys.exit(1)

@@ -113,10 +113,11 @@ class Line:
 
 @dataclass(frozen=True)
 class Death:
-    """The node's process ended by itself."""
+    """The node's process ended by itself, or, with a reason, was ended for what it took."""
 
     time: float
     status: int
+    reason: str = ""
 
 
 @dataclass(frozen=True)

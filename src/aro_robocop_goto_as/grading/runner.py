@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence
 
 from ..loopback import free_port
+from . import building
 from . import record as rec
-from .sandbox import Cage
+from .sandbox import OWN_ENVIRONMENT, Cage
 from .submission import Script, Submission
 
 PROBE = "aro_robocop_goto_as.grading.probe.main"
@@ -48,7 +49,7 @@ def run(
     home = out / "home"
     home.mkdir(exist_ok=True)
     environment = _environment(out, state)
-    command, node_environment = script.command(), dict(submission.environment)
+    command, node_environment = script.command(), building.shown(submission.environment)
     # Logs right in the home: rospy would give a folder there to the home's owner, who the caged node is not; without
     # one it logs nothing at all.
     node_environment.update(
@@ -58,10 +59,11 @@ def run(
             "ROS_HOSTNAME": "localhost",
             "HOME": str(home),
             "PYTHONUNBUFFERED": "1",
+            "ROS_MASTER_URI": environment["ROS_MASTER_URI"],
         }
     )
     if cage is not None:
-        command = cage.around_node(command, submission.reads, home)
+        command, node_environment = cage.around_node(command, node_environment, submission.reads, home), OWN_ENVIRONMENT
     job = out / f"{script.part}-job.json"
     job.write_text(
         json.dumps(

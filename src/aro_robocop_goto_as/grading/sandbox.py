@@ -1,9 +1,10 @@
-"""bubblewrap around a submission: a network of its own, a system it can only read, a home that is gone afterwards.
+"""bubblewrap around other people's code: a network of its own, a system to read only, a home that is soon gone.
 
 The probe runs in a network namespace of its own, loopback only, with a ROS master in it. The submission runs in that
 same network, but with its own processes and files, and as a user who owns nothing: it sees neither the grader's
-processes, records and points nor other submissions. Its limits are the kernel's, per process or user; wall time is the
-runner's business.
+processes, records and points nor other submissions. Building it is running it, so that is done inside as well. Limits
+here are the kernel's, per process or user; what all processes take together is guard.py's business, wall time the
+runner's.
 """
 
 import os
@@ -11,7 +12,7 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple
+from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..errors import GradingError
 
@@ -22,14 +23,15 @@ SPACE = 64 * 1024 ** 2  # bytes of each place that it can write to, all in memor
 CPU_TIME = 200  # [s] of each process
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
-SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/opt", "/etc/alternatives", "/etc/group", "/etc/hosts",
-          "/etc/ld.so.cache", "/etc/localtime", "/etc/nsswitch.conf", "/etc/passwd", "/etc/ros")
+SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/opt", "/etc/alternatives", "/etc/catkin", "/etc/group",
+          "/etc/hosts", "/etc/ld.so.cache", "/etc/localtime", "/etc/nsswitch.conf", "/etc/passwd", "/etc/ros")
+OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself, which is ours
 TRIAL = 10.0  # [s, wall]
 
 
 @dataclass(frozen=True)
 class Cage:
-    """How the probe and a node are started inside."""
+    """How the probe, a node and a build are started inside."""
 
     reads: Tuple[Path, ...]  # besides the system: what built code needs, such as the virtual environment
 
@@ -38,28 +40,54 @@ class Cage:
         return ["bwrap", "--die-with-parent", "--unshare-net", "--unshare-pid", "--dev-bind", "/", "/",
                 "--proc", "/proc", "--", *command]
 
-    def around_node(self, command: Sequence[str], reads: Sequence[Path], home: Path) -> List[str]:
+    def around_node(self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path],
+                    home: Path) -> List[str]:
         """Reads the system and its own files, writes a small home in memory, is alone with its processes."""
+        return [*self._walls([*reads, home]), *_bound("--ro-bind", [*self.reads, *reads]), *_writable(str(home)),
+                "--chdir", str(home), "--", *_rights(environment), *command]
+
+    def around_build(self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path],
+                     folder: Path) -> List[str]:
+        """The same without any network; `folder`, which has to belong to `user()`, is the place it can write to."""
+        return [*self._walls([*reads, folder]), "--unshare-net", *_bound("--ro-bind", [*self.reads, *reads]),
+                *_bound("--bind", [folder]), "--chdir", str(folder), "--", *_rights(environment), *command]
+
+    def _walls(self, seen: Sequence[Path]) -> List[str]:
         wrap = ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
         if os.geteuid() == 0:
             wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
         wrap += ["--proc", "/proc", "--dev", "/dev"]
         for place in ("/tmp", "/dev/shm"):
             wrap += _writable(place)
-        for parent in _parents([*map(Path, SYSTEM), *self.reads, *reads, home]):
+        for parent in _parents([*map(Path, SYSTEM), *self.reads, *seen]):
             wrap += ["--perms", "0755", "--dir", str(parent)]
-        for path in SYSTEM:
-            wrap += ["--ro-bind-try", path, path]
-        for read in (*self.reads, *reads):
-            wrap += ["--ro-bind", str(read), str(read)]
-        wrap += [*_writable(str(home)), "--chdir", str(home), "--"]
-        if os.geteuid() == 0:
-            # A user of this run alone: the kernel counts a user's processes, and runs must not starve one another.
-            user = FIRST_USER + os.getpid() % USERS
-            wrap += ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs",
-                     "--bounding-set=-all", "--inh-caps=-all", "--"]
-        return [*wrap, "prlimit", f"--as={MEMORY}", f"--nproc={PROCESSES}", f"--fsize={FILE_SIZE}", f"--cpu={CPU_TIME}",
-                "--core=0", "--", *command]
+        return [*wrap, *_bound("--ro-bind-try", map(Path, SYSTEM))]
+
+
+def user() -> int:
+    """Who caged code is when root starts it: a user of this process alone.
+
+    The kernel counts a user's processes, and runs at the same time must not starve one another.
+    """
+    return FIRST_USER + os.getpid() % USERS if os.geteuid() == 0 else os.geteuid()
+
+
+def hand_over(folder: Path, owner: int) -> None:
+    """Give a folder with all in it to a user; only root can, and only root needs it. Links are not followed."""
+    if os.geteuid() == 0:
+        for place, folders, files in os.walk(folder):
+            for name in (".", *folders, *files):
+                os.chown(os.path.join(place, name), owner, owner, follow_symlinks=False)
+
+
+def _rights(environment: Mapping[str, str]) -> List[str]:
+    """Who it is, what it may take, and its environment, which only comes into force behind all the walls."""
+    command = []
+    if os.geteuid() == 0:
+        command = ["setpriv", f"--reuid={user()}", f"--regid={user()}", "--clear-groups", "--no-new-privs",
+                   "--bounding-set=-all", "--inh-caps=-all", "--"]
+    return [*command, "prlimit", f"--as={MEMORY}", f"--nproc={PROCESSES}", f"--fsize={FILE_SIZE}", f"--cpu={CPU_TIME}",
+            "--core=0", "--", "env", "-i", *(f"{name}={value}" for name, value in environment.items())]
 
 
 def _parents(paths: Sequence[Path]) -> List[Path]:
@@ -72,6 +100,10 @@ def _writable(place: str) -> List[str]:
     return ["--perms", "0777", "--size", str(SPACE), "--tmpfs", place]
 
 
+def _bound(how: str, paths: Iterable[Path]) -> List[str]:
+    return [word for path in paths for word in (how, str(path), str(path))]
+
+
 def cage(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Cage]:
     """The cage, or None where none is wanted. GradingError where bubblewrap can't run."""
     if unsafe:
@@ -80,7 +112,7 @@ def cage(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Cage]:
     if shutil.which("bwrap") is None:
         raise GradingError(f"bubblewrap is not installed; {advice}")
     made = Cage(tuple(reads))
-    trial = made.around_probe(made.around_node(["/bin/true"], (), Path("/tmp/home")))
+    trial = Cage(()).around_probe(Cage(()).around_node(["/bin/true"], {}, (), Path("/tmp/home")))
     done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL)
     if done.returncode != 0:
         raise GradingError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")

@@ -2,27 +2,30 @@
 
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 from xml.etree import ElementTree
 
 import yaml
 
 from ..errors import GradingError
+from ..hosting import workspace
 from ..hosting.compat import compat_environment
 from ..hosting.package import NODES, Package, find_package
-from ..hosting.workspace import Environment, build, sourced
+from ..hosting.workspace import Environment, alone, sourced
+from . import building
+from .sandbox import Cage
 from .skeleton import make
 
 LAB = "aro_robocop_goto_as"
 PARTS = dict(zip((script for script, _ in NODES), ("server", "bridge")))
 IS_SERVER, IS_BRIDGE = re.compile(r"\b\w*ActionServer\b"), re.compile(r"move_base_simple|\bSimpleActionClient\b")
 LAUNCH_PATIENCE = 30.0  # [s, wall]
+MOST_PARAMETERS = 100_000  # bytes of roslaunch's listing
 
 
 @dataclass(frozen=True)
@@ -51,8 +54,11 @@ class Submission:
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
-def take(path: str, share: Path, state: Path) -> Submission:
-    """The submission at `path`, built. GradingError or HostingError says why there is none."""
+def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cage]) -> Submission:
+    """The submission at `path`; a package is built, in the cage, in a folder of its own below `workshop`.
+
+    GradingError or HostingError says why there is none.
+    """
     top = Path(path).expanduser().resolve()
     if top.is_file():
         return _files([top], share, state)
@@ -61,7 +67,7 @@ def take(path: str, share: Path, state: Path) -> Submission:
     loose = [top / script for script in PARTS if (top / script).is_file()]
     if loose and not list(top.rglob("package.xml")):
         return _files(loose, share, state)
-    return _package(find_package(str(top)), share, state)
+    return _package(find_package(str(top)), share, state, workshop, cage)
 
 
 def _files(paths: List[Path], share: Path, state: Path) -> Submission:
@@ -106,20 +112,22 @@ def lab_environment(share: Path, state: Path) -> Environment:
         if path.is_file()
     )
     underlay = compat_environment(share, state)
-    if stamp.is_file() and stamp.read_text() == wanted:
-        return sourced(folder / "devel" / "setup.bash", underlay)
-    stamp.unlink(missing_ok=True)
-    with tempfile.TemporaryDirectory() as made:
-        make(share, Path(made, LAB))
-        environment = build({LAB: Path(made, LAB)}, folder, underlay)
-    stamp.write_text(wanted)
+    with alone(folder):
+        if stamp.is_file() and stamp.read_text() == wanted:
+            return sourced(folder / "devel" / "setup.bash", underlay)
+        stamp.unlink(missing_ok=True)
+        with tempfile.TemporaryDirectory() as made:
+            make(share, Path(made, LAB))
+            environment = workspace.build({LAB: Path(made, LAB)}, folder, underlay)
+        stamp.write_text(wanted)
     return environment
 
 
-def _package(package: Package, share: Path, state: Path) -> Submission:
-    folder = state / "grade" / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
-    underlay = compat_environment(share, state) if package.name == LAB else lab_environment(share, state)
-    environment = build({package.name: package.path}, folder, underlay)
+def _package(package: Package, share: Path, state: Path, workshop: Path, cage: Optional[Cage]) -> Submission:
+    folder = workshop / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
+    below = [] if package.name == LAB else [state / "grade" / "lab"]
+    underlay = lab_environment(share, state) if below else compat_environment(share, state)
+    environment = building.build(package.name, package.path, folder, underlay, below, cage)
     copy = folder / "src" / package.name
     launched = _launched(copy)
     scripts: List[Script] = []
@@ -140,10 +148,10 @@ def _package(package: Package, share: Path, state: Path) -> Submission:
     return Submission(
         package.path.name,
         package.path,
-        [folder, state / "grade" / "lab"] if package.name != LAB else [folder],
+        [folder, *below],
         environment,
         scripts,
-        _parameters(package, copy, environment),
+        _parameters(package, copy, environment, building.run_in(cage, folder, below, LAUNCH_PATIENCE)),
     )
 
 
@@ -160,21 +168,29 @@ def _launched(copy: Path) -> Dict[str, Dict[str, str]]:
     return found
 
 
-def _parameters(package: Package, copy: Path, environment: Environment) -> Mapping[str, Any]:
-    """What its launch file sets on the parameter server."""
+class _PlainLoader(yaml.SafeLoader):
+    """YAML without aliases: a few lines of them can stand for more than fits into memory."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise GradingError("its parameters refer to one another (YAML aliases), which is not supported")
+        return super().compose_node(parent, index)
+
+
+def _parameters(package: Package, copy: Path, environment: Environment, run: workspace.Run) -> Mapping[str, Any]:
+    """What its launch file sets on the parameter server; launch files may run commands, so it is read in the cage."""
     if package.launch_file is None:
         return {}
     path = copy / package.launch_file.relative_to(package.path)
-    done = subprocess.run(
-        ["roslaunch", "--dump-params", str(path)],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=LAUNCH_PATIENCE,
-    )
-    if done.returncode != 0:
-        raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(done.stderr)}")
-    return {name: value for name, value in (yaml.safe_load(done.stdout) or {}).items() if name != "/use_sim_time"}
+    status, output, errors = building.output_of(run, ["roslaunch", "--dump-params", str(path)], environment,
+                                                MOST_PARAMETERS)
+    if status != 0 or not output.strip():  # roslaunch's status is 0 for a file that it can't load
+        raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(errors)}")
+    try:
+        found = yaml.load(output, _PlainLoader) or {}
+    except yaml.YAMLError as error:
+        raise GradingError(f"{path.name}: its parameters can't be read: {error}") from error
+    return {name: value for name, value in found.items() if name != "/use_sim_time"}
 
 
 def _first_line(text: str) -> str:

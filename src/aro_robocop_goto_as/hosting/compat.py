@@ -3,7 +3,7 @@
 import zlib
 from pathlib import Path
 
-from .workspace import Environment, base_environment, build, sourced
+from .workspace import Environment, alone, base_environment, build, sourced
 
 PACKAGES = ("aro_sim", "gazebo_msgs")
 
@@ -15,11 +15,12 @@ def compat_environment(share: Path, state: Path) -> Environment:
     """
     folder, sources = state / "compat", {name: share / "compat" / name for name in PACKAGES}
     stamp, wanted = folder / "built-from", _sum(share / "compat")
-    if not stamp.is_file() or stamp.read_text() != wanted:
-        stamp.unlink(missing_ok=True)
-        environment = build(sources, folder, base_environment())
-        stamp.write_text(wanted)
-        return environment
+    with alone(folder):
+        if not stamp.is_file() or stamp.read_text() != wanted:
+            stamp.unlink(missing_ok=True)
+            environment = build(sources, folder, base_environment())
+            stamp.write_text(wanted)
+            return environment
     return sourced(folder / "devel" / "setup.bash", base_environment())
 
 

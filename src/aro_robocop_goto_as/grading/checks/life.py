@@ -32,7 +32,7 @@ def action_server(record: Record, limits: Limits) -> Verdict:
                       "(auto_start=False needs server.start())")
     if record.deaths:
         return Failed("a running node", f"it ended with status {record.deaths[0].status}", record.deaths[0].time,
-                      "the node ends at its start: " + last_error(record))
+                      "the node ends at its start: " + (record.deaths[0].reason or last_error(record)))
     close = difflib.get_close_matches(NAME, record.servers, n=1, cutoff=0.5) or list(record.servers[:1])
     if close:
         return Failed(NAME[1:], close[0].lstrip("/"), 0.0,
@@ -55,7 +55,7 @@ def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node is alive at the end, whatever came."""
     for death in record.deaths:
         return Failed("a running node", f"it ended with status {death.status}", death.time,
-                      "the node died: " + last_error(record))
+                      "the node died: " + (death.reason or last_error(record)))
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
     return Passed()

@@ -16,7 +16,7 @@ from .. import record as rec
 from ..plan import load
 from .bridge import BridgeRun
 from .nodes import Node
-from .run import Run
+from .run import GraderLost, Run
 from .server import ServerRun
 from .stage import Stage
 
@@ -40,8 +40,7 @@ class Job:
 
     def launch(self, run: Run) -> Node:
         """Start the node that is graded."""
-        return Node(self.command, {**self.environment, "ROS_MASTER_URI": os.environ["ROS_MASTER_URI"]}, self.folder,
-                    lambda line: run.stage.inbox.put(("line", line)))
+        return Node(self.command, self.environment, self.folder, lambda line: run.stage.inbox.put(("line", line)))
 
     def wanted(self, name: str) -> bool:
         """Whether a scenario is to be run."""
@@ -112,9 +111,15 @@ def main() -> None:
     stage = Stage(job.plan)
     _serve_gazebo(stage)
     stage.repeat_clock()
-    (_server if job.part == "server" else _bridge)(job, stage)
+    status = 0
+    try:
+        (_server if job.part == "server" else _bridge)(job, stage)
+    except GraderLost as error:
+        print(error, file=sys.stderr)
+        status = 1
     sys.stdout.flush()
-    os._exit(0)  # rospy's threads may still be talking to a node that is gone
+    sys.stderr.flush()
+    os._exit(status)  # rospy's threads may still be talking to a node that is gone
 
 
 if __name__ == "__main__":

@@ -6,6 +6,8 @@ import subprocess
 import threading
 from typing import Any, Callable, Dict, List, Optional
 
+from ..guard import Guard
+
 MOST_OUTPUT = 200_000  # bytes of a node's output that are kept; what a node writes beyond it is read and dropped
 LONGEST_LINE = 2_000
 END_PATIENCE = 3.0  # [s, wall]
@@ -18,6 +20,7 @@ class Node:
                  on_line: Callable[[str], Any]) -> None:
         self.process = subprocess.Popen(command, env=environment, cwd=folder, stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        self.guard = Guard(self.process.pid)
         self._on_line = on_line
         threading.Thread(target=self._read, daemon=True).start()
 
@@ -38,6 +41,7 @@ class Node:
 
     def end(self) -> None:
         """End the node and its children."""
+        self.guard.stop()
         for number, patience in ((signal.SIGINT, END_PATIENCE), (signal.SIGKILL, None)):
             try:
                 os.killpg(self.process.pid, number)

@@ -5,6 +5,7 @@ import time
 from typing import Any, Callable, Dict, List, Optional, Set
 
 import rosbag
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatusArray
 from geometry_msgs.msg import Twist
@@ -13,7 +14,7 @@ from rosgraph_msgs.msg import Log
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
 
 from ...geometry import STANDSTILL, Twist2D
-from ...lockstep import Lockstep
+from ...lockstep import SURE, Lockstep
 from ...nodes import convert
 from .. import record as rec
 from ..record import Record
@@ -22,13 +23,18 @@ from .stage import Event, Stage
 
 ACTION = "/robocop_goto_as"  # the handout's
 SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal
-SILENCE_AGAIN = 0.2  # [s, wall] once that was in vain: a loop whose period is no whole number of ticks, or a dead one
+SILENCE_AGAIN = 0.2  # [s, wall] for one that is due, once that was in vain
+SILENCE_LEARNING = 0.06  # [s, wall] likewise, for one that may not be due: a slow loop whose rhythm is not yet known
 TRAILING = 0.15  # [s, wall] for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback, but need not
 SETTLE = 0.15  # [s, wall] for what a node does at once, without time moving on
 PACE = 0.008  # [s, wall] at least of a tick that nobody has to answer
 STREAMS = ("command", "feedback")
 MOST_ENTRIES = 20_000  # of a kind in one record
+
+
+class GraderLost(Exception):
+    """The submission has ended the ROS master or the grader's own node: nothing that follows can be judged."""
 
 
 class Run:
@@ -44,7 +50,7 @@ class Run:
         self.known: Dict[str, int] = {}  # goal -> status
         self.heard: Set[str] = set()  # streams, since the last tick
         self.said_death = False
-        self.fell_silent = False  # since the goal was sent
+        self.fell_silent = False  # since the goal was sent, or known to answer more seldom than the ticks come
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
         self.subscribers: Dict[str, rospy.Subscriber] = {}
@@ -104,6 +110,8 @@ class Run:
     def finish(self, name: str, **more: Any) -> Record:
         """The record of the scenario."""
         self.close_bag()
+        if not rosgraph.is_master_online():
+            raise GraderLost("the ROS master was ended while the submission ran")
         return Record(name, self.part, marks=self.marks, **{key: tuple(it) for key, it in self.parts.items()}, **more)
 
     def add(self, part: str, entry: Any) -> None:
@@ -183,6 +191,8 @@ class Run:
 
     def tick(self, pace: float = PACE) -> None:
         """One control tick. While a goal is pursued it lasts until it is answered, otherwise `pace` [s, wall]."""
+        if rospy.is_shutdown():
+            raise GraderLost("the grader's ROS node was shut down while the submission ran")
         self.heard.clear()
         started = time.monotonic()
         sample = self.stage.tick()
@@ -195,12 +205,18 @@ class Run:
         self._look_at_node()
 
     def _await_answers(self) -> None:
-        """Until every stream that is awaited was heard, or the goal's end."""
+        """Until every stream that is awaited was heard, or the goal's end.
+
+        Who is known to be slower than the ticks may not be due at this one, so the wait is short.
+        """
 
         def done() -> bool:
             return self.awaiting in self.ended or not self.lockstep.missing() or self._dead()
 
-        deadline = time.monotonic() + (SILENCE_AGAIN if self.fell_silent else SILENCE)
+        patience = SILENCE
+        if self.fell_silent:
+            patience = SILENCE_AGAIN if self.lockstep.patience() >= SURE else SILENCE_LEARNING
+        deadline = time.monotonic() + patience
         while not self.drain(done, TRAILING if self.heard else 0.05):
             if self.heard or time.monotonic() >= deadline:
                 self.fell_silent = self.fell_silent or not self.heard
@@ -211,11 +227,12 @@ class Run:
 
     def pursue(self, goal: str) -> None:
         """From now on ticks wait for what comes of this goal; it has just been sent, and time stands."""
+        busy = self.awaiting and self.awaiting not in self.ended  # a loop that wakes up with the next tick only
         self.awaiting = goal
-        self.fell_silent = False
+        self.fell_silent = self.lockstep.slower_than_ticks()
         self.heard.clear()
         self.lockstep = Lockstep(self.stage.tick_number)
-        self.drain(lambda: goal in self.known or goal in self.ended, SILENCE)
+        self.drain(lambda: goal in self.known or goal in self.ended, SETTLE if busy else SILENCE)
         self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
         for stream in STREAMS:
             self.lockstep.commanded(stream)
@@ -235,7 +252,7 @@ class Run:
     def _look_at_node(self) -> None:
         if self.node is not None and not self.said_death and self.node.death() is not None:
             self.said_death = True
-            self.add("deaths", rec.Death(self.stage.now, self.node.process.returncode))
+            self.add("deaths", rec.Death(self.stage.now, self.node.process.returncode, self.node.guard.reason))
 
     def wait_for(self, condition: Callable[[], bool], patience: float, pace: float = PACE) -> bool:
         """Let time go on until a condition holds, the node is dead or `patience` [s, wall] is over."""

@@ -36,9 +36,8 @@ class ServerRun:
         self.launch = launch
         self.stage = stage
         self.run = Run(stage, "server")
-        self.goal_topic = rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10)
-        self.cancel_topic = rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10)
         self.deadline = 0.0
+        self.goal_topic, self.cancel_topic = _topics()
 
     def start(self, bag: str = "") -> Record:
         """The node's start: whether its action server comes up."""
@@ -107,7 +106,10 @@ class ServerRun:
         if self.run.node is not None:
             self.run.node.end()
             self.run.node = None
-            self.run.drain(lambda: self.goal_topic.get_num_connections() == 0, 1.0)
+            # A publisher notices that its reader has gone when it writes; a fresh one counts only the next node.
+            for topic in (self.goal_topic, self.cancel_topic):
+                topic.unregister()
+            self.goal_topic, self.cancel_topic = _topics()
 
     def _step(self, index: int, name: str, step: Step) -> str:
         """One line of a script; what went wrong, or nothing."""
@@ -181,4 +183,11 @@ class ServerRun:
 
     def close(self) -> None:
         """End the node."""
-        self._end_node()
+        if self.run.node is not None:
+            self.run.node.end()
+
+
+def _topics() -> Tuple[rospy.Publisher, rospy.Publisher]:
+    """For goals and for cancels."""
+    return (rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10),
+            rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10))

@@ -1,0 +1,55 @@
+"""The guard ends what takes too much together, says why, and leaves alone what only shares."""
+
+import subprocess
+import sys
+
+import pytest
+
+from aro_robocop_goto_as.grading.guard import Guard
+
+MB = 1024 ** 2
+PATIENCE = 30.0  # [s, wall]
+# Children that take memory, or only look at what their parent has taken; they stay until they are ended.
+FAMILY = """
+import os, time
+shared = bytearray({shared} * 2 ** 20)
+for _ in range(4):
+    if os.fork() == 0:
+        own = bytearray({own} * 2 ** 20)
+        time.sleep(600.0)
+time.sleep({alive})
+"""
+
+
+def watched(code, folder=None, **limits):
+    """A guarded program: its exit status and the guard's reason."""
+    process = subprocess.Popen([sys.executable, "-c", code], start_new_session=True, cwd=folder)
+    guard = Guard(process.pid, folder, **limits)
+    try:
+        return process.wait(PATIENCE), guard.reason
+    finally:
+        guard.stop()
+
+
+def test_processes_that_take_too_much_together_are_ended():
+    status, reason = watched(FAMILY.format(shared=1, own=60, alive=600.0), memory=200 * MB)
+    assert status < 0
+    assert reason == "its processes together took more than 200 MB of memory"
+
+
+def test_memory_that_processes_share_counts_once(tmp_path):
+    code = FAMILY.format(shared=100, own=1, alive=1.0) + "os.killpg(0, 15)"
+    assert watched(code, memory=250 * MB)[1] == ""
+
+
+def test_a_folder_that_grows_too_large_is_the_end(tmp_path):
+    code = "import time\nopen('big', 'wb').write(bytes(5 * 2 ** 20))\ntime.sleep(600.0)"
+    status, reason = watched(code, tmp_path, disk=4 * MB)
+    assert status < 0
+    assert reason == "it wrote more than 4 MB"
+
+
+@pytest.mark.parametrize("code", ["", "raise SystemExit(3)"])
+def test_who_ends_by_himself_has_no_reason(code):
+    status, reason = watched(code)
+    assert (status, reason) == (3 if code else 0, "")
