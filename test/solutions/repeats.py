@@ -19,7 +19,8 @@ from typing import Any, Dict, List, Tuple
 from graded import CAGED, PLAN, RIGHT, SHARE, STATE, graded, recorded
 from wrong_solutions import WRONG, Wrong
 
-from aro_robocop_goto_as.grading import judge, main
+from aro_robocop_goto_as.grading import judge
+from aro_robocop_goto_as.grading.exam import examine
 from aro_robocop_goto_as.grading.judge import Outcome
 from aro_robocop_goto_as.grading.plan import load
 from aro_robocop_goto_as.grading.sandbox import cage
@@ -57,8 +58,7 @@ def _right(name: str, folder: Path) -> List[str]:
     """Whatever is not passed, extra checks too."""
     if name == REFERENCE:
         around = cage(not CAGED, [STATE / "venv", STATE / "compat"])
-        grade = main.grade(take(str(SHARE), SHARE, STATE, folder, around), load(PLAN), PLAN, folder / "report", STATE,
-                           around)
+        grade = examine(take(str(SHARE), SHARE, STATE, folder, around), PLAN, folder / "report", STATE, around)
     else:
         grade = graded(name, RIGHT[name].read_text(), folder)
     return [line.words() for line in grade.lines if line.outcome is not Outcome.PASSED]

@@ -2,44 +2,27 @@
 
 import argparse
 import os
-import shutil
 import sys
-import tempfile
 import zlib
 from pathlib import Path
-from typing import Dict
 
 from ..errors import RobocopError
 from ..hosting.workspace import alone
-from . import judge, record, report, runner
+from .exam import examine
 from .judge import Grade, Outcome
-from .plan import Plan, load
-from .sandbox import Cage, cage
-from .submission import Submission, take
+from .plan import load
+from .sandbox import cage
+from .submission import take
 
 SIGNS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
-def grade(
-    submission: Submission, plan: Plan, plan_path: Path, folder: Path, state: Path, around: "Cage | None"
-) -> Grade:
-    """Run and judge all parts of a submission, and write the report with the bags of what failed into `folder`."""
-    records: Dict[str, Dict[str, record.Record]] = {}
-    problems: Dict[str, str] = {}
-    with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
-        for script in submission.scripts:
-            out = Path(work, script.part)
-            recorded = runner.run(submission, script, plan_path, out, state, around, on_progress=_progress(script.part))
-            records[script.part], problems[script.part] = recorded.records, recorded.problem
-        result = judge.judge(submission.name, plan, records, problems)
-        folder.mkdir(parents=True, exist_ok=True)
-        report.write(result, plan, records, folder)
-        _keep_bags(result, Path(work), folder)
-    return result
+def _progress(part: str, scenario: str) -> None:
+    if sys.stderr.isatty():
+        print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
 
 
-def _progress(part: str) -> "runner.Progress":
-    def show(scenario: str) -> None:
+def show(scenario: str) -> None:
         if sys.stderr.isatty():
             print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
 
@@ -78,12 +61,12 @@ def main() -> None:
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     plan_path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
     try:
-        plan = load(plan_path)
+        load(plan_path)  # complains now, and not after the build
         around = cage(args.unsafe, [state / "venv", state / "compat"])
         with alone(state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"):
             submission = take(args.path, share, state, state / "grade", around)
             folder = Path(args.report) if args.report else state / "reports" / submission.name
-            result = grade(submission, plan, plan_path, folder, state, around)
+            result = examine(submission, plan_path, folder, state, around, _progress)
     except RobocopError as error:
         print(f"robocop grade: {error}", file=sys.stderr)
         sys.exit(1)

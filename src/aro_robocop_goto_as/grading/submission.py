@@ -73,6 +73,8 @@ def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cag
 def _files(paths: List[Path], share: Path, state: Path) -> Submission:
     """Loose files, run where they are, with the skeleton's package around them."""
     for path in paths:
+        if path.resolve().parent != path.parent.resolve():
+            raise GradingError(f"{path}: expected a file, it is a link to a file elsewhere")
         if not _part_of(path):
             raise GradingError(
                 f"{path}: neither a server nor a bridge: no ActionServer in it, and neither a client nor "
