@@ -22,20 +22,6 @@ def _progress(part: str, scenario: str) -> None:
         print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
 
 
-def show(scenario: str) -> None:
-        if sys.stderr.isatty():
-            print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
-
-    return show
-
-
-def _keep_bags(result: Grade, work: Path, folder: Path) -> None:
-    for line in result.lines:
-        bag = work / line.part / f"{line.part}-{line.scenario}.bag"
-        if line.failure is not None and bag.is_file():
-            shutil.copyfile(bag, folder / bag.name)
-
-
 def show(result: Grade) -> str:
     """The grade for a terminal."""
     lines = []
