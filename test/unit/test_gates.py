@@ -16,7 +16,7 @@ ROS_PARTS = ("nodes", "grading.probe", "bench")
 # Modules that package.xml knows by another name.
 ROSDEP_KEYS = {name: f"python3-{name}" for name in ("lxml", "numpy", "psutil", "rospkg", "yaml")}
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
-OPTIONAL = {"gazebo_msgs"}  # imported on request only: compat/ has it
+OPTIONAL = {"gazebo_msgs", "distributed"}  # imported on request only: in compat/, in deb-packages/class.txt
 IMPORT_WITHOUT_ROS = """
 import importlib, sys
 

@@ -2,6 +2,7 @@
 
 import shutil
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, Optional
 
@@ -29,7 +30,7 @@ def examine(
     with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
         for script in submission.scripts:
             recorded = runner.run(submission, script, plan_path, Path(work, script.part), state, around,
-                                  on_progress=lambda scenario, part=script.part: on_progress(part, scenario))
+                                  on_progress=partial(on_progress, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
         result = judge.judge(submission.name, plan, records, problems)
         folder.mkdir(parents=True, exist_ok=True)

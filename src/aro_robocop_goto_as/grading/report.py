@@ -30,7 +30,7 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
     """All three, into a folder that exists."""
     (folder / "report.json").write_text(json.dumps(as_json(grade), indent=1))
     ElementTree.ElementTree(_junit(grade)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
-    (folder / "report.html").write_text(_html(grade, plan, records))
+    (folder / "report.html").write_text(_html(grade, plan, records), encoding="utf-8", errors="replace")
 
 
 def as_json(grade: Grade) -> Dict[str, object]:

@@ -1,0 +1,147 @@
+"""What a class hands in is packed and told apart; what comes of it is kept whole, listed and counted."""
+
+import csv
+import io
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.grading.classroom import overview
+from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, unpack
+from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results, table
+from aro_robocop_goto_as.grading.classroom.worker import Done
+from aro_robocop_goto_as.grading.plan import load
+
+PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Anna handed in a folder, Ben a file; there is also what is neither."""
+    top = tmp_path / "class"
+    (top / "anna" / "scripts").mkdir(parents=True)
+    (top / "anna" / "scripts" / "robocop_goto_as.py").write_text("one")
+    (top / "anna" / "build").mkdir()
+    (top / "anna" / "build" / "big").write_text("made, not written")
+    (top / "ben.py").write_text("two")
+    (top / "list.csv").write_text("anna,ben")
+    (top / ".hidden.py").write_text("")
+    (top / "link.py").symlink_to(top / "ben.py")
+    return top
+
+
+def only(folder):
+    """The hand-in of a folder that has one."""
+    (found,), _ = collect(folder)
+    return found
+
+
+def test_folders_and_python_files_are_hand_ins_and_come_out_as_they_went_in(folder, tmp_path):
+    found, others = collect(folder)
+    assert [it.name for it in found] == ["anna", "ben.py"]
+    assert others == ["link.py", "list.csv"]
+    assert [it.problem for it in found] == ["", ""]
+    anna, ben = (unpack(it, tmp_path / "out") for it in found)
+    assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
+    assert not (anna / "build").exists()
+    assert ben.read_text() == "two"
+
+
+def test_the_digest_is_the_contents_and_not_the_times(folder):
+    before, _ = collect(folder)
+    os.utime(folder / "ben.py", (0, 0))
+    assert [it.digest for it in collect(folder)[0]] == [it.digest for it in before]
+    (folder / "anna" / "scripts" / "robocop_goto_as.py").write_text("One")
+    after, _ = collect(folder)
+    assert after[0].digest != before[0].digest and after[1].digest == before[1].digest
+
+
+def test_a_link_is_packed_as_a_link(tmp_path):
+    (tmp_path / "class" / "eve").mkdir(parents=True)
+    (tmp_path / "secret").write_text("points")
+    (tmp_path / "class" / "eve" / "link").symlink_to(tmp_path / "secret")
+    out = unpack(only(tmp_path / "class"), tmp_path / "out")
+    assert (out / "link").is_symlink()
+    assert b"points" not in only(tmp_path / "class").packed
+
+
+def test_what_can_not_be_packed_says_why(tmp_path):
+    (tmp_path / "pipes" / "eve").mkdir(parents=True)
+    os.mkfifo(tmp_path / "pipes" / "eve" / "pipe")
+    assert only(tmp_path / "pipes").problem == "eve/pipe: neither a file nor a folder nor a link"
+    (tmp_path / "large" / "eve").mkdir(parents=True)
+    with open(tmp_path / "large" / "eve" / "hole", "wb") as hole:
+        hole.truncate(10 ** 12)
+    assert only(tmp_path / "large").problem == "larger than 64 MB"
+
+
+def test_a_folder_without_hand_ins_is_refused(tmp_path):
+    with pytest.raises(GradingError, match="no folder and no Python file in it"):
+        collect(tmp_path)
+    with pytest.raises(GradingError, match="expected a folder with one folder or Python file"):
+        collect(tmp_path / "nothing")
+
+
+def report(name, points, cause=""):
+    """A worker's answer with one check in it."""
+    failure = {"cause": cause} if cause else None
+    check = {"name": "cancel", "part": "server", "outcome": "failed" if cause else "passed", "points": points,
+             "failure": failure}
+    raw = json.dumps({"name": name, "checks": [check], "problems": []}).encode()
+    return Done(name, f"digest of {name}", {"report.json": raw, "report.html": b"<html>"}, 3.0, "here")
+
+
+def test_what_is_kept_is_there_unless_hand_in_or_plan_have_changed(tmp_path):
+    results = Results(tmp_path, {"plan": "1"})
+    hand_in = HandIn("anna", digest="digest of anna")
+    assert not results.has(hand_in)
+    results.keep(report("anna", 0.2))
+    assert results.has(hand_in)
+    assert results.read("anna").points == 0.2
+    assert not results.has(HandIn("anna", digest="another"))
+    assert not Results(tmp_path, {"plan": "2"}).has(hand_in)
+    results.keep(report("anna", 0.1))
+    assert results.read("anna").points == 0.1
+
+
+def test_half_a_result_is_none(tmp_path):
+    results = Results(tmp_path, {})
+    results.keep(report("anna", 0.2))
+    (tmp_path / "anna" / "hand_in.json").write_text("{")
+    assert not results.has(HandIn("anna", digest="digest of anna"))
+    shutil.copytree(tmp_path / "anna", tmp_path / ".new-anna")
+    Results(tmp_path, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["anna"]
+
+
+RESULTS = (
+    Result("=anna", (Check("cancel", "server", "failed", 0.0, "<cause>"),
+                     Check("action_server", "server", "passed", 0.5)), (), 9.0),
+    Result("ben", (Check("cancel", "server", "failed", 0.0, "<cause>"),), ("=cmd",), 9.0),
+    Result("carl", (), ("nothing to grade",), 9.0),
+)
+
+
+def test_the_table_has_a_line_each_and_nothing_that_a_spreadsheet_would_calculate():
+    rows = list(csv.DictReader(io.StringIO(table(RESULTS, PLAN))))
+    assert [row["name"] for row in rows] == ["'=anna", "ben", "carl"]
+    assert [row["points"] for row in rows] == ["0.5", "0.0", "0"]
+    assert {row["of"] for row in rows} == {"8.0"}
+    assert [row["server"] for row in rows] == ["0.5", "0.0", "not handed in"]
+    assert {row["bridge"] for row in rows} == {"not handed in"}
+    assert [row["cancel"] for row in rows] == ["failed", "failed", "not handed in"]
+    assert rows[1]["problem"] == "'=cmd"
+
+
+def test_the_overview_counts_checks_and_causes_and_escapes_them():
+    html = overview.page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True)
+    assert "3 of 4 graded, still at it" in html and "http-equiv='refresh'" in html
+    assert "2 × &lt;cause&gt;" in html and "<cause>" not in html and "<1>" not in html
+    assert "0 of 2" in html, "of those who handed in a server that came so far"
+    assert "dora" in html
+    assert "interrupted" in overview.page("class", RESULTS, PLAN, {"dora": "waiting"}, running=False)
+    assert "http" not in overview.page("class", RESULTS, PLAN, {}, running=False)
