@@ -12,6 +12,8 @@ from .sdf_world import read_model
 from .shapes import Obstacle, World
 
 LEVEL = 1e-9
+# Obstacles are named MODEL/LINK/COLLISION here and MODEL::LINK in Gazebo.
+PLAIN_NAME = "printable characters without '/', '::', and spaces at the ends"
 
 
 def requested_model(name: str, xml: str, file: str, pose: Pose3D) -> World:
@@ -19,12 +21,24 @@ def requested_model(name: str, xml: str, file: str, pose: Pose3D) -> World:
     is empty.
 
     xml: the text of its SDF, or empty; file: what an <include> may have as its <uri>, or empty. Relative paths start
-    at the directory that this process runs in. WorldError unless one of both is given, and where it can't be read.
+    at the directory that this process runs in. WorldError unless one of both is given, where it can't be read, and
+    where its name could not be told from the names of what is in models.
     """
     if bool(xml) == bool(file):
         raise WorldError("expected either xml or file")
+    if name and not _is_plain(name):
+        raise WorldError(f"the name {name!r} of the request: expected {PLAIN_NAME}")
     root = sdf.parse_text(xml.encode(), "xml of the request") if xml else sdf.parse(_located(file))
-    return read_model(root, name, pose)
+    model = read_model(root, name, pose)
+    (own_name,) = model.models
+    if not _is_plain(own_name):
+        raise WorldError(f"the name {own_name!r} of the model in {model.path}: expected {PLAIN_NAME}; the request may "
+                         "give another name")
+    return model
+
+
+def _is_plain(name: str) -> bool:
+    return bool(name) and name == name.strip() and name.isprintable() and "/" not in name and "::" not in name
 
 
 def _located(file: str) -> str:

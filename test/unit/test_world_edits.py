@@ -86,6 +86,26 @@ def test_model_to_put_in_is_given_as_xml_or_as_a_file_and_not_as_both(crate_fold
             requested(file, xml=xml)
 
 
+@pytest.mark.parametrize("name", ["a/b", "/", "a::b", " ", "\t", " crate", "crate\n", "a\0b"])
+def test_name_that_would_be_taken_for_several_is_refused(name):
+    with pytest.raises(WorldError) as caught:
+        requested("", name, CRATE.decode())
+    assert str(caught.value) == (f"the name {name!r} of the request: expected printable characters without '/', '::', "
+                                 "and spaces at the ends")
+
+
+@pytest.mark.parametrize("name", ["Crate 2", "crate.2-b_c", "krabička", "a:b"])
+def test_name_in_other_letters_is_taken(name):
+    assert names(requested("", name, CRATE.decode())) == [f"{name}/l/c"]
+
+
+def test_models_own_name_is_refused_likewise_unless_the_request_gives_another():
+    text = CRATE.decode().replace('name="crate"', 'name="a/b"')
+    with pytest.raises(WorldError, match=r"the name 'a/b' of the model in xml of the request: expected .* without '/'"):
+        requested("", xml=text)
+    assert names(requested("", "crate", text)) == ["crate/l/c"]
+
+
 def test_only_the_model_of_that_name_is_taken_out():
     world = with_model(with_model(world_named("empty"), crate("box")), crate("box_2"))
     assert names(without_model(world, "box"))[-1] == "box_2/l/c"
