@@ -28,10 +28,10 @@ _SKIPPED: Dict[str, str] = {
 _GROUND_PLANE, _SUN = "model://ground_plane", "model://sun"
 # Skipped as well, but worth telling: somebody put them there because they do something.
 _TOLD = {
-    "world": ("actor", "joint", "light", "plugin", "road", "sensor"),
+    "world": ("actor", "frame", "joint", "light", "plugin", "road", "sensor"),
     "include": ("plugin",),
-    "model": ("joint", "plugin"),
-    "link": ("light", "sensor"),
+    "model": ("frame", "joint", "plugin"),
+    "link": ("frame", "light", "sensor"),
 }
 
 
@@ -60,8 +60,13 @@ def read_model(root: sdf.Element, name: str, pose: Pose3D) -> World:
     return reading.world(own_name, Pose2D())
 
 
+def _is_spawn(element: sdf.Element) -> bool:
+    """Whether an element of a <world> is our <frame>, where the robot starts."""
+    return bool(element.tag == "frame" and element.get("name") == SPAWN_FRAME)
+
+
 def _spawn(world: sdf.Element) -> Pose2D:
-    frames = [frame for frame in world.iterchildren("frame") if frame.get("name") == SPAWN_FRAME]
+    frames = [frame for frame in world.iterchildren("frame") if _is_spawn(frame)]
     if not frames:
         return Pose2D()
     sdf.check_unique(frames)
@@ -121,7 +126,7 @@ class _Reading:
     def tell_skipped(self, element: sdf.Element) -> None:
         """Note which of an element's children do something that is left out here."""
         for child in element.iterchildren(*_TOLD[element.tag]):
-            if is_motion(child) and element.tag == "model":
+            if (is_motion(child) and element.tag == "model") or (_is_spawn(child) and element.tag == "world"):
                 continue
             self.tell(f"{child.tag} '{child.get('name', '')}'", child)
 

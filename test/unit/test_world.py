@@ -229,6 +229,13 @@ def test_what_is_left_out_and_could_be_missed_is_told_once_the_worlds_own_first(
     assert world.ignored == ("light 'lamp' (line 3)", "sensor 'eye' (line 7)", "plugin 'mover' (line 5)")
 
 
+def test_frames_that_nothing_can_be_placed_in_are_told_but_not_the_spawn(tmp_path):
+    in_model = '<frame name="handle"/>\n<link name="l"><frame name="tip"/></link>'
+    in_world = '<frame name="robot_spawn"/><frame name="door"/>'
+    world = load_world(write(tmp_path, f'{in_world}\n<model name="m"><static>1</static>{in_model}</model>'))
+    assert world.ignored == ("frame 'door' (line 3)", "frame 'handle' (line 4)", "frame 'tip' (line 5)")
+
+
 def test_visuals_comments_foreign_elements_and_empty_frames_do_no_harm(tmp_path):
     visual = '<visual name="v"><geometry><mesh><uri>model://a.dae</uri></mesh></geometry></visual>'
     shape = f'<x:colour xmlns:x="urn:x"/>{SPHERE}'
