@@ -1,5 +1,6 @@
 """SDF elements -> World: of what a file describes only the collisions are kept, all that a robot can touch."""
 
+import os
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
@@ -13,7 +14,7 @@ from .sdf_state import state_poses
 from .shapes import Obstacle, Plane, World
 
 SPAWN_FRAME = "robot_spawn"
-DEEPEST = 20  # models and files within each other: deeper only goes what includes itself
+DEEPEST = 20  # models within each other
 
 # What SDF defines but a robot among fixed obstacles doesn't feel. What is neither here nor read is refused.
 _SKIPPED: Dict[str, str] = {
@@ -112,6 +113,7 @@ class _Reading:
         self.state: Mapping[str, Tuple[Pose3D, sdf.Element]] = {}
         self.state_used: Set[str] = set()
         self.shapes = Shapes()
+        self.open_files = [os.path.realpath(path)]  # the world's own, one that it includes, one that this includes
 
     def world(self, name: str, spawn: Pose2D) -> World:
         """All of it."""
@@ -133,7 +135,7 @@ class _Reading:
     def children(self, parent: sdf.Element, place: _Place) -> None:
         """The models and includes of a <world> or a <model>, whose names must differ."""
         if len(place.names) >= DEEPEST:
-            raise sdf.error(parent, f"more than {DEEPEST} models within each other; does one include itself?")
+            raise sdf.error(parent, f"more than {DEEPEST} models within each other; supported: {DEEPEST}")
         taken: Set[str] = set()
         for element in parent.iterchildren("include", "model"):
             name = self.include(element, place) if element.tag == "include" else self.model(element, place, None)
@@ -157,10 +159,15 @@ class _Reading:
         if uri == _GROUND_PLANE:
             return self.ground_plane(instead, place)
         path = resources.find_model(uri, include)
+        if os.path.realpath(path) in self.open_files:
+            raise sdf.error(include, f"'{uri}' is {path} again, within itself; expected another model")
+        self.open_files.append(os.path.realpath(path))
         try:
             return self.model(sdf.read_root(path, ("model",)), place, instead)
         except WorldError as exc:
             raise WorldError(f"{exc}; included by {sdf.file_of(include)}:{include.sourceline}") from exc
+        finally:
+            self.open_files.pop()
 
     def ground_plane(self, instead: _Instead, place: _Place) -> str:
         """Gazebo's own model of this name, which a world may include without having it."""

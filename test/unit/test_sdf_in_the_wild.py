@@ -134,10 +134,36 @@ def test_error_in_an_included_file_names_that_file_and_who_included_it(tmp_path,
     assert message.endswith(f"; included by {tmp_path}/worlds/w.world:3")
 
 
-def test_model_that_includes_itself_is_refused(tmp_path, chair):
-    sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://chair</uri></include></model>')
-    message = raised_by(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
-    assert "more than 20 models within each other" in message
+def test_model_that_includes_itself_is_refused_in_one_short_message(tmp_path, chair):
+    include = "<include><uri>model://chair</uri></include>"
+    sdf_file(chair / "new.sdf", f'<model name="chair">\n{include}</model>')
+    world = world_file(tmp_path / "worlds", include)
+    file = f"{chair}/new.sdf"
+    told = f"{file}:3: in 'chair': 'model://chair' is {file} again, within itself; expected another model"
+    assert raised_by(world) == f"{told}; included by {world}:3"
+    assert raised_by(str(chair / "new.sdf")) == told
+
+
+def test_models_that_include_each_other_are_refused_with_the_way_around(tmp_path, chair):
+    desk = tmp_path / "models" / "desk"
+    sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://desk</uri></include></model>')
+    sdf_file(desk / "model.sdf", '<model name="desk">\n\n<include><uri>model://chair</uri></include></model>')
+    world = world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>")
+    message = raised_by(world)
+    assert message.startswith(f"{desk}/model.sdf:4: in 'desk': 'model://chair' is {chair}/new.sdf again, within")
+    assert message.endswith(f"; included by {chair}/new.sdf:2; included by {world}:3")
+
+
+def test_same_model_may_be_included_side_by_side_and_below_another(tmp_path, chair):
+    seat = "<include><uri>model://chair</uri><name>{}</name></include>"
+    body = f'{seat.format("a")}{seat.format("b")}<model name="m">{seat.format("c")}</model>'
+    world = load_world(world_file(tmp_path / "worlds", body))
+    assert [o.name for o in world.obstacles] == ["a/l/c", "b/l/c", "m/c/l/c"]
+
+
+def test_models_nested_without_end_are_refused(tmp_path):
+    body = '<model name="m">' * 30 + "</model>" * 30
+    assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
 
 
 def test_model_file_is_a_world_of_its_one_model(chair):
