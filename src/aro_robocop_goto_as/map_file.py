@@ -13,6 +13,8 @@ from .errors import WorldError
 from .geometry import Pose2D, wrap_angle
 
 MODES = ("trinary", "scale", "raw")
+MOST_TOLD = 10  # items of a list that an error repeats
+PNG_MOST = 1032  # times that deflate makes something smaller, at most
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _OPAQUE = np.array(True)  # of every pixel
 _TRUTHS = {"0": False, "false": False, "1": True, "true": True}
@@ -59,6 +61,8 @@ class _Entries:
         """What is expected of a key, with what is there and where."""
         node = self.nodes[key]
         found = repr(node.value) if isinstance(node, yaml.ScalarNode) else f"a {node.id}"
+        if isinstance(node, yaml.SequenceNode) and len(node.value) <= MOST_TOLD:
+            found = f"[{', '.join(i.value if isinstance(i, yaml.ScalarNode) else f'a {i.id}' for i in node.value)}]"
         return WorldError(f"{self.path}:{node.start_mark.line + 1}: {key} is {found}, expected {expected}")
 
     def text(self, key: str, expected: str) -> str:
@@ -96,7 +100,7 @@ def read_spec(path: str) -> MapSpec:
     """A map's YAML file. WorldError that names file, line, key, what is there and what is expected."""
     entries = _Entries(path)
     resolution = entries.number("resolution", 1e-6, 1e3, "metres a cell, greater than 0")
-    x, y, yaw = entries.numbers("origin", 3, "[x, y, yaw] of the lower left corner, in metres and radians")
+    x, y, yaw = entries.numbers("origin", 3, "three numbers [x, y, yaw] of the lower left corner [m, m, rad]")
     negate = entries.text("negate", "0 or 1").lower()
     if negate not in _TRUTHS:
         raise entries.error("negate", "0 or 1")
@@ -115,20 +119,44 @@ def read_spec(path: str) -> MapSpec:
 def read_cells(spec: MapSpec) -> np.ndarray:
     """A map's image as the cells that map_server publishes, (rows, columns) int8, the image's last row first.
 
-    -1 unknown, 0 free to 100 occupied. WorldError if the image can't be read.
+    -1 unknown, 0 free to 100 occupied. WorldError if the image can't be read, and, before memory is taken for it, if
+    its header claims more pixels than are in the file or than Pillow opens.
     """
     try:
         with Image.open(spec.image) as image:
             if image.format not in ("PNG", "PPM"):
                 raise WorldError(f"{spec.image}: a {image.format} image; supported: PGM, PNG")
+            _check_held(image, spec.image)
             pixels, opaque = _grey(image, with_alpha=spec.mode == "trinary")
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as exc:
+    except Image.DecompressionBombError as exc:
+        raise WorldError(f"{spec.image}: the header claims too large an image ({exc}); expected no more than "
+                         f"{2 * (Image.MAX_IMAGE_PIXELS or 0)} pixels") from exc
+    except (OSError, SyntaxError, ValueError) as exc:
         raise WorldError(f"{spec.image}: not a PGM or PNG image that can be read: {exc}") from exc
     if pixels.dtype == np.uint8:  # the usual map: each of 256 greys is worked out once
         cells = _cells(np.arange(256.0), _OPAQUE, spec)[pixels]
     else:
         cells = _cells(pixels, opaque, spec)
     return np.ascontiguousarray(cells[::-1])
+
+
+def _check_held(image: Any, path: str) -> None:
+    """WorldError unless the file can hold as many pixels as its header claims.
+
+    Pillow takes memory for all that are claimed, and looks for plain PGM's for minutes where there are none.
+    """
+    with open(path, "rb") as file:
+        plain = file.read(2) == b"P2"
+        blank = np.frombuffer(file.read() if plain else b"", dtype=np.uint8) <= ord(" ")
+    if plain:
+        most = int(np.count_nonzero(blank[:-1] & ~blank[1:])) - 3  # words, less width, height and maximum
+    else:
+        held = os.path.getsize(path) - image.tile[0][2]  # bytes from the pixels' start on
+        bits = {"1": 1, "I": 16}.get(image.mode, 8)  # of a pixel, at least
+        most = 8 * held * PNG_MOST if image.format == "PNG" else 8 * held // bits
+    if image.width * image.height > most:
+        raise WorldError(f"{path}: the header claims {image.width} x {image.height} pixels, expected no more than "
+                         f"the {most} that the file can hold")
 
 
 def _grey(image: Any, with_alpha: bool) -> Tuple[np.ndarray, np.ndarray]:

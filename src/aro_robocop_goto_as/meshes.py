@@ -10,6 +10,7 @@ import trimesh
 
 from . import sdf
 from .errors import WorldError
+from .wavefront import read_obj
 
 FORMATS = (".dae", ".obj", ".stl")
 
@@ -29,7 +30,7 @@ def load_triangles(path: str) -> np.ndarray:
     except OSError as exc:
         raise WorldError(f"{path}: can't read the mesh: {exc.strerror or exc}") from exc
     unit = _collada_unit(content, path) if kind == ".dae" else 1.0
-    triangles = _parsed(content, kind, path) * unit
+    triangles = read_obj(content, path) if kind == ".obj" else _parsed(content, kind, path) * unit
     if not len(triangles):
         raise WorldError(f"{path}: the mesh has no triangles")
     if not np.isfinite(triangles).all():

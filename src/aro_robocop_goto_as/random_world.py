@@ -1,4 +1,8 @@
-"""Seed -> the SDF of a random maze with clutter, every cell of which a robot can reach."""
+"""Seed -> the SDF of a random maze with clutter, every cell of which a robot can reach.
+
+Lanes are 0.45 m wide, which is 0.225 m to each side of their middle. A Burger, of 0.105 m radius, has room there; a
+Waffle, of 0.22 m, has none beside the middle: 5 mm to each side.
+"""
 
 import itertools
 import random
@@ -8,7 +12,8 @@ SIZES = (4, 7)  # cells a side, at least and at most; a cell is a square of 1 m,
 THICKNESS, HEIGHT = 0.15, 0.5  # [m] of walls, as in the other worlds
 LOOPS = 0.15  # share of the walls between cells that are taken out of the maze, so that there are ways around
 CLUTTER = 0.5  # share of the cells that have a thing in one corner
-THING = (0.08, 0.2)  # [m] its width. It reaches no farther than 0.275 m in, so lanes of 0.45 m stay through each cell
+THING = (0.08, 0.2)  # [m] its width
+LANE = 1.0 - THICKNESS - 2.0 * THING[1]  # [m] free across each cell both ways, whichever corners things are in
 
 Cell = Tuple[int, int]  # column, row
 Wall = Tuple[Cell, Cell]  # between two neighbouring cells, the lower one first; one of them may be outside
@@ -26,7 +31,7 @@ def random_world(seed: int) -> str:
     collisions = [_collision(f"wall_{i}", pose, shape) for i, (pose, shape) in enumerate(boxes)]
     collisions += [_collision(f"thing_{i}", pose, shape) for i, (pose, shape) in enumerate(things)]
     return _FILE.format(seed=seed, columns=columns, rows=rows, goals=goals, collisions="".join(collisions),
-                        yaw="0" if ((0, 0), (1, 0)) not in walls else "1.5708")
+                        half_lane=round(LANE / 2.0, 3), yaw="0" if ((0, 0), (1, 0)) not in walls else "1.5708")
 
 
 def _maze(chance: random.Random, cells: Set[Cell]) -> Set[Wall]:
@@ -101,7 +106,7 @@ def _collision(name: str, pose: str, shape: str) -> str:
 _FILE = """<?xml version="1.0" encoding="UTF-8"?>
 <!--
   A random maze, made from seed {seed}: {columns} x {rows} cells of 1 m, walls 0.15 m thick, 0.5 m high. A robot that
-  keeps to the middle of the lanes has 0.22 m free to each side and reaches every cell.
+  keeps to the middle of the lanes has {half_lane:g} m free to each side and reaches every cell.
 
   Free goals: {goals}
 -->

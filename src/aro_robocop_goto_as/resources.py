@@ -1,4 +1,4 @@
-"""URIs of a world file -> files, found where Gazebo Classic finds them."""
+"""URIs of models and meshes -> files, found where Gazebo Classic finds them."""
 
 import os
 from typing import Callable, Dict, Iterator, List, Tuple
@@ -6,45 +6,66 @@ from typing import Callable, Dict, Iterator, List, Tuple
 import rospkg
 
 from . import sdf
+from .errors import WorldError
 
-Place = Tuple[str, str]  # a path that the URI may mean, and why it may
+Place = Tuple[str, str]  # a path that the URI may mean, or where relative ones start, and why it may
 
 _CONFIG, _MODEL = "model.config", "model.sdf"
 _BESIDE = (".", "..", "models", os.path.join("..", "models"))  # a world's models, next to it or to its directory
 
 
 def find_file(uri: str, element: sdf.Element) -> str:
-    """The file or directory that a URI of an element means: model://, package://, file://, or a plain path.
+    """The file or directory that a URI of an element means, relative paths from the element's own file.
 
-    A relative path starts at the element's own file, else in GAZEBO_RESOURCE_PATH. WorldError lists the places looked
-    in, or says which URIs are supported.
+    WorldError as locate, with the element's file and line.
+    """
+    return _for_element(locate, uri, element)
+
+
+def find_model(uri: str, element: sdf.Element) -> str:
+    """The SDF file of the model that a URI of an element means; WorldError as locate_model, with file and line."""
+    return _for_element(locate_model, uri, element)
+
+
+def locate(uri: str, start: str, why: str) -> str:
+    """The file or directory that a URI means: model://, package://, file://, or a plain path.
+
+    A relative path starts at the directory `start`, else in GAZEBO_RESOURCE_PATH. WorldError lists the places looked
+    in, or says which URIs are supported; `why`: how it explains that it looked in `start`.
     """
     scheme, separator, path = uri.partition("://")
     if not separator:
         scheme, path = "file", uri
     if scheme not in _PLACES or not path:
-        raise sdf.error(element, f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
+        raise WorldError(f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
     looked_for: List[str] = []
-    for place, reason in _PLACES[scheme](path, os.path.dirname(os.path.abspath(sdf.file_of(element)))):
+    for place, reason in _PLACES[scheme](path, (start, why)):
         if os.path.exists(place):
             return os.path.normpath(place)
         looked_for.append(f"{os.path.normpath(place)} ({reason})")
-    raise sdf.error(element, f"'{uri}' was not found; looked for: {', '.join(looked_for)}")
+    raise WorldError(f"'{uri}' was not found; looked for: {', '.join(looked_for)}")
 
 
-def find_model(uri: str, element: sdf.Element) -> str:
-    """The SDF file of a model: what find_file finds, or the file within that directory.
+def locate_model(uri: str, start: str, why: str) -> str:
+    """The SDF file of a model: what locate finds, or the file within that directory.
 
     model.config says which one it is: of several the one of the newest version that is read. Without it: model.sdf.
     """
-    found = find_file(uri, element)
+    found = locate(uri, start, why)
     if os.path.isfile(found):
         return found
     config = os.path.join(found, _CONFIG)
     path = os.path.join(found, _from_config(config) if os.path.isfile(config) else _MODEL)
     if not os.path.isfile(path):
-        raise sdf.error(element, f"'{uri}' is {found}, but there is no file {path}")
+        raise WorldError(f"'{uri}' is {found}, but there is no file {path}")
     return path
+
+
+def _for_element(find: Callable[[str, str, str], str], uri: str, element: sdf.Element) -> str:
+    try:
+        return find(uri, os.path.dirname(os.path.abspath(sdf.file_of(element))), "beside the file")
+    except WorldError as exc:
+        raise sdf.error(element, str(exc)) from exc
 
 
 def _from_config(path: str) -> str:
@@ -60,12 +81,12 @@ def _from_variable(variable: str, path: str) -> Iterator[Place]:
             yield os.path.join(directory, path), variable
 
 
-def _model_places(path: str, here: str) -> Iterator[Place]:
+def _model_places(path: str, start: Place) -> Iterator[Place]:
     yield from _from_variable("GAZEBO_MODEL_PATH", path)
     for beside in _BESIDE:
-        yield os.path.join(here, beside, path), "beside the file"
+        yield os.path.join(start[0], beside, path), start[1]
     yield os.path.expanduser(os.path.join("~", ".gazebo", "models", path)), "Gazebo's own"
-    yield from _package_places(path, here)
+    yield from _package_places(path, start)
     yield from _exported_places(path)
 
 
@@ -86,7 +107,7 @@ def _mentions(path: str, word: bytes) -> bool:
         return word in file.read()
 
 
-def _package_places(path: str, _here: str) -> Iterator[Place]:
+def _package_places(path: str, _start: Place) -> Iterator[Place]:
     name, _, rest = path.partition("/")
     try:
         yield os.path.join(rospkg.RosPack().get_path(name), rest), "in ROS_PACKAGE_PATH"
@@ -94,12 +115,12 @@ def _package_places(path: str, _here: str) -> Iterator[Place]:
         yield name, "no such package in ROS_PACKAGE_PATH"
 
 
-def _file_places(path: str, here: str) -> Iterator[Place]:
-    yield os.path.join(here, path), "beside the file"
+def _file_places(path: str, start: Place) -> Iterator[Place]:
+    yield os.path.join(start[0], path), start[1]
     yield from _from_variable("GAZEBO_RESOURCE_PATH", path)
 
 
-_PLACES: Dict[str, Callable[[str, str], Iterator[Place]]] = {
+_PLACES: Dict[str, Callable[[str, Place], Iterator[Place]]] = {
     "model": _model_places,
     "package": _package_places,
     "file": _file_places,

@@ -20,6 +20,7 @@ Element = Any  # lxml.etree._Element, which lxml neither types nor makes public
 
 # float() alone would let "1_000" and "infinity" pass.
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_FRAME_OF = {"world": "world", "model": "__model__"}  # what SDF calls the frame that an element makes for those in it
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -180,15 +181,26 @@ def _finite(count: int) -> str:
 
 
 def pose_numbers(element: Element) -> Tuple[float, ...]:
-    """x, y, z [m], roll, pitch, yaw [rad] of the element's <pose> in its parent's frame; zeros if there is none."""
+    """x, y, z [m], roll, pitch, yaw [rad] of the element's <pose> in its parent's frame; zeros if there is none.
+
+    WorldError if the pose says that it is in another frame; it may name the parent's own.
+    """
     pose = only(element, "pose")
     if pose is None:
         return (0.0,) * 6
     for key, value in pose.attrib.items():
         # Gazebo 9 writes frame='', which means the parent's frame as does no attribute at all.
-        if value or key not in ("frame", "relative_to"):
+        if key not in ("frame", "relative_to") or value not in ("", _FRAME_OF.get(_owner_of_frame(element), "")):
             raise error(pose, f"<pose {key}='{value}'> is not supported; supported: a pose in the parent's frame")
     return numbers(pose, 6)
+
+
+def _owner_of_frame(element: Element) -> str:
+    """The tag of what an element's pose is in: of the parent, but in a <state> all poses are in the world."""
+    if next(element.iterancestors("state"), None) is not None:
+        return "world"
+    parent = element.getparent()
+    return "" if parent is None else str(parent.tag)
 
 
 def pose_of(element: Element) -> Pose3D:

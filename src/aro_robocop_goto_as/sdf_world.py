@@ -1,5 +1,6 @@
 """SDF elements -> World: of what a file describes only the collisions are kept, all that a robot can touch."""
 
+import os
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
@@ -13,7 +14,7 @@ from .sdf_state import state_poses
 from .shapes import Obstacle, Plane, World
 
 SPAWN_FRAME = "robot_spawn"
-DEEPEST = 20  # models and files within each other: deeper only goes what includes itself
+DEEPEST = 20  # models within each other
 
 # What SDF defines but a robot among fixed obstacles doesn't feel. What is neither here nor read is refused.
 _SKIPPED: Dict[str, str] = {
@@ -28,10 +29,10 @@ _SKIPPED: Dict[str, str] = {
 _GROUND_PLANE, _SUN = "model://ground_plane", "model://sun"
 # Skipped as well, but worth telling: somebody put them there because they do something.
 _TOLD = {
-    "world": ("actor", "joint", "light", "plugin", "road", "sensor"),
+    "world": ("actor", "frame", "joint", "light", "plugin", "road", "sensor"),
     "include": ("plugin",),
-    "model": ("joint", "plugin"),
-    "link": ("light", "sensor"),
+    "model": ("frame", "joint", "plugin"),
+    "link": ("frame", "light", "sensor"),
 }
 
 
@@ -60,8 +61,13 @@ def read_model(root: sdf.Element, name: str, pose: Pose3D) -> World:
     return reading.world(own_name, Pose2D())
 
 
+def _is_spawn(element: sdf.Element) -> bool:
+    """Whether an element of a <world> is our <frame>, where the robot starts."""
+    return bool(element.tag == "frame" and element.get("name") == SPAWN_FRAME)
+
+
 def _spawn(world: sdf.Element) -> Pose2D:
-    frames = [frame for frame in world.iterchildren("frame") if frame.get("name") == SPAWN_FRAME]
+    frames = [frame for frame in world.iterchildren("frame") if _is_spawn(frame)]
     if not frames:
         return Pose2D()
     sdf.check_unique(frames)
@@ -107,6 +113,7 @@ class _Reading:
         self.state: Mapping[str, Tuple[Pose3D, sdf.Element]] = {}
         self.state_used: Set[str] = set()
         self.shapes = Shapes()
+        self.open_files = [os.path.realpath(path)]  # the world's own, one that it includes, one that this includes
 
     def world(self, name: str, spawn: Pose2D) -> World:
         """All of it."""
@@ -121,14 +128,14 @@ class _Reading:
     def tell_skipped(self, element: sdf.Element) -> None:
         """Note which of an element's children do something that is left out here."""
         for child in element.iterchildren(*_TOLD[element.tag]):
-            if is_motion(child) and element.tag == "model":
+            if (is_motion(child) and element.tag == "model") or (_is_spawn(child) and element.tag == "world"):
                 continue
             self.tell(f"{child.tag} '{child.get('name', '')}'", child)
 
     def children(self, parent: sdf.Element, place: _Place) -> None:
         """The models and includes of a <world> or a <model>, whose names must differ."""
         if len(place.names) >= DEEPEST:
-            raise sdf.error(parent, f"more than {DEEPEST} models within each other; does one include itself?")
+            raise sdf.error(parent, f"more than {DEEPEST} models within each other; supported: {DEEPEST}")
         taken: Set[str] = set()
         for element in parent.iterchildren("include", "model"):
             name = self.include(element, place) if element.tag == "include" else self.model(element, place, None)
@@ -152,10 +159,15 @@ class _Reading:
         if uri == _GROUND_PLANE:
             return self.ground_plane(instead, place)
         path = resources.find_model(uri, include)
+        if os.path.realpath(path) in self.open_files:
+            raise sdf.error(include, f"'{uri}' is {path} again, within itself; expected another model")
+        self.open_files.append(os.path.realpath(path))
         try:
             return self.model(sdf.read_root(path, ("model",)), place, instead)
         except WorldError as exc:
             raise WorldError(f"{exc}; included by {sdf.file_of(include)}:{include.sourceline}") from exc
+        finally:
+            self.open_files.pop()
 
     def ground_plane(self, instead: _Instead, place: _Place) -> str:
         """Gazebo's own model of this name, which a world may include without having it."""

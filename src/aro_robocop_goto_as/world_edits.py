@@ -1,13 +1,51 @@
 """World + a model put in, taken out or moved -> World."""
 
+import os
 from dataclasses import replace
 from typing import Tuple
 
+from . import sdf
 from .errors import WorldError
 from .geometry import Pose2D, Pose3D, compose, compose3, inverse3
+from .resources import locate_model
+from .sdf_world import read_model
 from .shapes import Obstacle, World
 
 LEVEL = 1e-9
+# Obstacles are named MODEL/LINK/COLLISION here and MODEL::LINK in Gazebo.
+PLAIN_NAME = "printable characters without '/', '::', and spaces at the ends"
+
+
+def requested_model(name: str, xml: str, file: str, pose: Pose3D) -> World:
+    """A world of nothing but the model that a request describes, at a pose in the world; by its own name where `name`
+    is empty.
+
+    xml: the text of its SDF, or empty; file: what an <include> may have as its <uri>, or empty. Relative paths start
+    at the directory that this process runs in. WorldError unless one of both is given, where it can't be read, and
+    where its name could not be told from the names of what is in models.
+    """
+    if bool(xml) == bool(file):
+        raise WorldError("expected either xml or file")
+    if name and not _is_plain(name):
+        raise WorldError(f"the name {name!r} of the request: expected {PLAIN_NAME}")
+    root = sdf.parse_text(xml.encode(), "xml of the request") if xml else sdf.parse(_located(file))
+    model = read_model(root, name, pose)
+    (own_name,) = model.models
+    if not _is_plain(own_name):
+        raise WorldError(f"the name {own_name!r} of the model in {model.path}: expected {PLAIN_NAME}; the request may "
+                         "give another name")
+    return model
+
+
+def _is_plain(name: str) -> bool:
+    return bool(name) and name == name.strip() and name.isprintable() and "/" not in name and "::" not in name
+
+
+def _located(file: str) -> str:
+    try:
+        return locate_model(file, os.getcwd(), "where the simulator runs")
+    except WorldError as exc:
+        raise WorldError(f"file of the request: {exc}") from exc
 
 
 def with_model(world: World, model: World) -> World:

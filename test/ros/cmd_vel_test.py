@@ -2,6 +2,7 @@
 """The simulated robot obeys the newest sensible command, and brakes when none comes any more."""
 
 import math
+import socket
 import unittest
 
 from commands import Commands
@@ -29,6 +30,11 @@ class CmdVel(unittest.TestCase):
         stamps = [m.header.stamp.to_sec() for m in self.robot.truth.messages if m.twist.twist.linear.x > 0.1]
         # Above half the speed from 0.04 s after the command to 0.04 s after its time-out, seen 30 times a second.
         self.assertAlmostEqual(stamps[-1] - stamps[0], 0.5, delta=0.07)
+
+    def test_commands_are_not_held_back_on_their_way_to_be_sent_together(self):
+        """For a publisher that does not ask for it itself."""
+        option = self.commands.to_simulator().getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+        self.assertEqual(option, 1)
 
     def test_newest_command_wins(self):
         for i in range(20):

@@ -16,6 +16,10 @@ class Commands:
         self._topic = rospy.Publisher(topic, Twist, queue_size=10)
         wait_for_subscriber(self._topic, SIMULATOR)
 
+    def to_simulator(self):
+        """The socket on which they go to the simulator."""
+        return next(c.socket for c in self._topic.impl.connections if c.endpoint_id == SIMULATOR)
+
     def once(self, v, w=0.0):
         """One command [m/s, rad/s]."""
         twist = Twist()

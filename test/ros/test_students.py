@@ -129,6 +129,12 @@ def test_a_launch_file_of_another_name_takes_its_argument_and_a_crash_on_the_sec
     assert "RuntimeError: already" in it.output
 
 
+def test_a_simulator_that_refuses_its_arguments_ends_it_with_status_1(hosted):
+    it = hosted("timer_driven", "scan_profile:=no_such")
+    assert it.process.wait(DEADLINE) == 1, it.output
+    assert "scan_profile" in it.output and processes_with(it.setting) == []
+
+
 def test_a_package_that_does_not_build_shows_why(hosted, tmp_path):
     package = copy_of("timer_driven", tmp_path)
     (package / "action" / "GoToPosition.action").write_text("geometry_msgs/Pint position\n---\n---\n")

@@ -96,7 +96,7 @@ class Worlds(unittest.TestCase):
         for name, kind, arguments, words in (
                 ("spawn_model", SpawnModel, ("a", "<sdf", "", level), "xml of the request:1: not well-formed XML"),
                 ("spawn_model", SpawnModel, ("a", "<robot/>", "", level), "<robot>, expected <sdf>"),
-                ("spawn_model", SpawnModel, ("a", "", "/no/such.sdf", level), "/no/such.sdf: can't read the file"),
+                ("spawn_model", SpawnModel, ("a", "", "/no/such.sdf", level), "'/no/such.sdf' was not found"),
                 ("spawn_model", SpawnModel, ("a", "", "", level), "expected either xml or file"),
                 ("spawn_model", SpawnModel, ("a", CRATE.format("<gaol/>"), "", level), "<gaol> in <model>"),
                 ("spawn_model", SpawnModel, ("a", CRATE.format(""), "", leaning), "quaternion of length 1"),

@@ -57,7 +57,8 @@ BROKEN = {  # file: (content, what is said after the file's path)
     "no_origin.yaml": (
         MAP.replace("origin", "orgin"), r": no origin; expected the keys image, resolution, origin, negate, "),
     "in_degrees.yaml": (
-        MAP.replace("0.0, 0.0, 0.0", "0.0, 0.0, 90°"), r":3: origin is a sequence, expected \[x, y, yaw\] .*radians"),
+        MAP.replace("0.0, 0.0, 0.0", "0.0, 0.0, 90°"),
+        r":3: origin is \[0.0, 0.0, 90°\], expected three numbers .*rad\]"),
 }
 
 

@@ -1,6 +1,8 @@
 """Maps of map_server as worlds: read by its rules, walls where cells are occupied, scans that fall on them."""
 
 import math
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -298,6 +300,14 @@ def test_both_drives_hold_a_big_map(big, burger):
         drive.close()
 
 
+@pytest.mark.parametrize("header", ["P5", "P2\n# made by hand, as it were\n"])
+def test_pgm_whose_pixels_are_just_as_many_as_its_header_claims_is_read(tmp_path, header):
+    pixels = room().astype(np.uint8)
+    body = pixels.tobytes() if header == "P5" else " ".join(map(str, pixels.ravel())).encode()
+    (tmp_path / "m.pgm").write_bytes(f"{header} 40 30 255\n".encode() + body)
+    assert load_world(write_map_over(tmp_path, "m.pgm")).occupancy.cells.shape == (30, 40)
+
+
 # What is refused
 
 
@@ -316,7 +326,12 @@ BROKEN = {  # case: (text of the YAML, line of the error or None, what the messa
     "image a photograph": (yaml_of(image="m.jpg"), None, ["m.jpg", "JPEG", "PGM, PNG"]),
     "no resolution": (yaml_of(resolution="0"), 2, ["resolution is '0'", "greater than 0"]),
     "resolution in words": (yaml_of(resolution="5 cm"), 2, ["resolution is '5 cm'", "metres a cell"]),
-    "origin without yaw": (yaml_of(origin="[0, 0]"), 3, ["origin is a sequence", "[x, y, yaw]"]),
+    "origin without yaw": (yaml_of(origin="[0, 0]"), 3, ["origin is [0, 0], expected three numbers [x, y, yaw]"]),
+    "origin in words": (yaml_of(origin="[0, left, 0]"), 3, ["origin is [0, left, 0], expected three numbers"]),
+    "origin of one number": (yaml_of(origin="0"), 3, ["origin is '0', expected three numbers"]),
+    "origin within a list": (yaml_of(origin="[[0, 0, 0]]"), 3, ["origin is [a sequence], expected three numbers"]),
+    "origin by names": (yaml_of(origin="{x: 0, y: 0, yaw: 0}"), 3, ["origin is a mapping, expected three numbers"]),
+    "origin without end": (yaml_of(origin=str([0] * 99)), 3, ["origin is a sequence, expected three numbers"]),
     "origin not finite": (yaml_of(origin="[0, .nan, 0]"), 3, ["origin", "[x, y, yaw]"]),
     "negate unclear": (yaml_of(negate="maybe"), 4, ["negate is 'maybe'", "0 or 1"]),
     "threshold in percent": (yaml_of(occupied_thresh="65"), 5, ["occupied_thresh is '65'", "from 0 to 1"]),
@@ -339,3 +354,36 @@ def test_broken_map_is_refused_with_file_line_and_key(tmp_path, case):
     message = str(caught.value)
     assert message.startswith(f"{path}:{line}: " if line else str(tmp_path))
     assert [word for word in named if word not in message] == []
+
+
+CLAIMS = {  # file: (content, what the header is said to claim, and what was expected)
+    "beyond.pgm": (b"P5 100000 100000 255\n0", "too large an image (.*10000000000 pixels.*); expected no more than "),
+    "binary.pgm": (b"P5 9000 9000 255\n0", "9000 x 9000 pixels, expected no more than the 1 that the file can hold"),
+    "wide.pgm": (b"P5 20 20 65535\n" + bytes(799), "20 x 20 pixels, expected no more than the 399 that"),
+    "cut.pgm": (b"P5 20 20 255\n" + bytes(399), "20 x 20 pixels, expected no more than the 399 that"),
+    "plain.pgm": (b"P2 9000 9000 255\n1 2 3", "9000 x 9000 pixels, expected no more than the 3 that"),
+    "short.pgm": (b"P2 20 20 255\n" + b"254 " * 399, "20 x 20 pixels, expected no more than the 399 that"),
+    "empty.pgm": (b"P2 20 20 255", "20 x 20 pixels, expected no more than the 0 that"),
+}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_image_that_claims_more_than_its_file_holds_is_refused_before_memory_is_taken(tmp_path, name, monkeypatch):
+    def loaded(_image):
+        raise AssertionError("the pixels were asked for")
+
+    content, said = CLAIMS[name]
+    (tmp_path / name).write_bytes(content)
+    monkeypatch.setattr(Image.Image, "load", loaded)
+    with pytest.raises(WorldError, match=f"^{tmp_path}/{name}: the header claims {said}"):
+        load_world(write_map_over(tmp_path, name))
+
+
+def test_png_that_claims_more_than_its_file_can_hold_is_refused(tmp_path):
+    Image.fromarray(room().astype(np.uint8)).save(str(tmp_path / "m.png"))
+    content = bytearray((tmp_path / "m.png").read_bytes())
+    content[16:24] = struct.pack(">II", 9000, 9000)
+    content[29:33] = struct.pack(">I", zlib.crc32(bytes(content[12:29])))
+    (tmp_path / "m.png").write_bytes(bytes(content))
+    with pytest.raises(WorldError, match="m.png: the header claims 9000 x 9000 pixels, expected no more than the "):
+        load_world(write_map_over(tmp_path, "m.png"))

@@ -2,12 +2,15 @@
 
 import itertools
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT, model_named
 from test_world import cell_of, clearance, flood, free_cells
 
-from aro_robocop_goto_as.random_world import random_world
+from aro_robocop_goto_as import random_world as random_world_module
+from aro_robocop_goto_as.random_world import LANE, random_world
 from aro_robocop_goto_as.world import load_world
 
 
@@ -39,3 +42,25 @@ def test_random_world_is_a_world_file_like_any_other(tmp_path, seed):
     world = made(tmp_path, seed)
     assert world.name == f"random_{seed}" and world.ignored == ()
     assert clearance(world, np.array([0.0, 0.0])) >= 0.3
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_lanes_are_as_wide_as_is_said_through_every_cell_both_ways(tmp_path, seed):
+    world = made(tmp_path, seed)
+    goals = re.findall(r"\((\d), (\d)\)", random_world(seed).split("Free goals:")[1])
+    ways = np.stack([np.linspace(-0.2, 0.2, 41), np.zeros(41)], axis=1)
+    for centre in np.array(goals, dtype=float):
+        for way in (ways, ways[:, ::-1]):
+            assert (clearance(world, centre + way) >= LANE / 2.0 - 1e-6).all()
+
+
+def test_docs_say_what_room_the_lanes_leave_to_which_robot():
+    chapter = (Path(ROOT) / "docs" / "worlds.md").read_text(encoding="utf-8").split("\n## ")
+    (docs,) = [text for text in chapter if text.startswith("Random worlds")]
+    radius = {name: model_named(name).figures.footprint_radius for name in ("burger", "waffle", "waffle_pi")}
+    assert radius["waffle_pi"] == radius["waffle"] < LANE / 2.0
+    for text in (docs, random_world_module.__doc__):
+        said = " ".join(text.split())
+        assert f"{LANE:g} m" in said and f"{LANE / 2.0:g} m to each side" in said
+        assert f"Burger, of {radius['burger']} m radius" in said and f"of {radius['waffle']} m, has none" in said
+        assert f"{1000.0 * (LANE / 2.0 - radius['waffle']):.0f} mm to each side" in said

@@ -7,8 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from aro_robocop_goto_as.loopback import free_port
+
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = ("run", "goto", "test", "bench", "shell", "setup", "clean", "help")
+LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py aro_robocop_goto_as"
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
 
 
@@ -86,7 +89,7 @@ def test_ros_network_setting_is_respected(name, value):
 
 def test_without_display_rviz_stays_closed_and_it_says_so():
     command, _, said = dry_run("run", "world:=empty")
-    assert command == "roslaunch aro_robocop_goto_as robocop_goto_as.launch rviz:=false world:=empty"
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false world:=empty")
     assert "display" in said
 
 
@@ -111,7 +114,13 @@ def test_live_display_opens_rviz():
 @pytest.mark.parametrize("wish", ["rviz:=true", "rviz:=false"])
 def test_explicit_rviz_wins(wish):
     command = dry_run("run", wish)[0]
-    assert command == f"roslaunch aro_robocop_goto_as robocop_goto_as.launch {wish}"
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch {wish}")
+
+
+@pytest.mark.parametrize("command, file", [("run", "robocop_goto_as.launch"), ("sim", "robocop_sim.launch")])
+def test_what_is_started_ends_with_a_status_that_tells_how_the_simulator_ended(command, file):
+    nobody = f"http://localhost:{free_port()}"
+    assert f"{LAUNCH} {file}" in dry_run(command, "world:=empty", ROS_MASTER_URI=nobody)[0]
 
 
 @pytest.mark.parametrize("command", ["run", "sim"])

@@ -134,10 +134,36 @@ def test_error_in_an_included_file_names_that_file_and_who_included_it(tmp_path,
     assert message.endswith(f"; included by {tmp_path}/worlds/w.world:3")
 
 
-def test_model_that_includes_itself_is_refused(tmp_path, chair):
-    sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://chair</uri></include></model>')
-    message = raised_by(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
-    assert "more than 20 models within each other" in message
+def test_model_that_includes_itself_is_refused_in_one_short_message(tmp_path, chair):
+    include = "<include><uri>model://chair</uri></include>"
+    sdf_file(chair / "new.sdf", f'<model name="chair">\n{include}</model>')
+    world = world_file(tmp_path / "worlds", include)
+    file = f"{chair}/new.sdf"
+    told = f"{file}:3: in 'chair': 'model://chair' is {file} again, within itself; expected another model"
+    assert raised_by(world) == f"{told}; included by {world}:3"
+    assert raised_by(str(chair / "new.sdf")) == told
+
+
+def test_models_that_include_each_other_are_refused_with_the_way_around(tmp_path, chair):
+    desk = tmp_path / "models" / "desk"
+    sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://desk</uri></include></model>')
+    sdf_file(desk / "model.sdf", '<model name="desk">\n\n<include><uri>model://chair</uri></include></model>')
+    world = world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>")
+    message = raised_by(world)
+    assert message.startswith(f"{desk}/model.sdf:4: in 'desk': 'model://chair' is {chair}/new.sdf again, within")
+    assert message.endswith(f"; included by {chair}/new.sdf:2; included by {world}:3")
+
+
+def test_same_model_may_be_included_side_by_side_and_below_another(tmp_path, chair):
+    seat = "<include><uri>model://chair</uri><name>{}</name></include>"
+    body = f'{seat.format("a")}{seat.format("b")}<model name="m">{seat.format("c")}</model>'
+    world = load_world(world_file(tmp_path / "worlds", body))
+    assert [o.name for o in world.obstacles] == ["a/l/c", "b/l/c", "m/c/l/c"]
+
+
+def test_models_nested_without_end_are_refused(tmp_path):
+    body = '<model name="m">' * 30 + "</model>" * 30
+    assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
 
 
 def test_model_file_is_a_world_of_its_one_model(chair):
@@ -214,6 +240,22 @@ def test_mesh_of_a_box_is_the_same_for_scans_and_for_physics_as_the_box(tmp_path
     np.testing.assert_allclose(met[1], met[0], atol=2e-3)
 
 
+CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 0 1\n"
+A, B, C = (0, 0, 0), (1, 0, 0), (0, 0, 1)
+
+
+@pytest.mark.parametrize(("rest", "expected"), [
+    (b"f 1 2 3", [(A, B, C)]),
+    (b"f 3/9/9 2//9 1/9  # a comment\r\nvt 0\nl 1 2\n\xff", [(C, B, A)]),
+    (b"f 1 \\\n2 3\n", [(A, B, C)]),
+    (b"v 1 0 1 0.5 0.5 0.5\nf 1 2 4 3", [(A, B, (1, 0, 1)), (A, (1, 0, 1), C)]),
+    (b"f -3 -2 -1\nv 5 0 0\nf -4 -3 -1\nf 1 2 5\nv 6 0 0", [(A, B, C), (A, B, (5, 0, 0)), (A, B, (6, 0, 0))]),
+])
+def test_obj_is_read_by_its_corners_and_faces_alone(tmp_path, rest, expected):
+    (tmp_path / "m.obj").write_bytes(CORNERS + rest)
+    assert only_obstacle(mesh_world(tmp_path, "m.obj")).geometry.corners.tolist() == np.array(expected).tolist()
+
+
 def test_mesh_with_more_triangles_than_bullet_takes_at_once_is_whole(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=6, radius=1.0)
     assert len(ball.faces) > 60000
@@ -246,7 +288,15 @@ def test_robot_is_stopped_by_a_mesh_where_its_scan_sees_it(tmp_path, burger, dri
 BROKEN_MESHES = {  # file: (content, what the message must name)
     "empty.stl": (b"", ["empty.stl"]),
     "text.obj": (b"hello", ["text.obj", "triangle"]),
-    "nan.obj": (b"v 0 0 0\nv 1 0 0\nv nan 0 1\nf 1 2 3\n", ["nan.obj", "finite"]),
+    "nan.obj": (b"v 0 0 0\nv 1 0 0\nv nan 0 1\nf 1 2 3\n", ["nan.obj:3: v is 'nan 0 1', expected 3 finite numbers"]),
+    "words.obj": (b"v 0 0 0\nv 1 a 0\n", ["words.obj:2: v is '1 a 0', expected 3 finite numbers"]),
+    "flat.obj": (b"v 0 0\n", ["flat.obj:1: v is '0 0', expected 3 finite numbers"]),
+    "beyond.obj": (CORNERS + b"f 1 2 9\n", ["beyond.obj:4: f has corner 9, expected one of the file's 3"]),
+    "zero.obj": (CORNERS + b"f 0 1 2\n", ["zero.obj:4: f is '0 1 2', expected 3 or more corners, whole numbers"]),
+    "before.obj": (CORNERS + b"f -4 1 2\n", ["before.obj:4: f is '-4 1 2', expected", "below 0, of the 3 before it"]),
+    "part.obj": (CORNERS + b"f 1 2 3.5\n", ["part.obj:4: f is '1 2 3.5', expected 3 or more corners"]),
+    "edge.obj": (CORNERS + b"f 1 2\n", ["edge.obj:4: f is '1 2', expected 3 or more corners"]),
+    "binary.obj": (b"f " + bytes(range(128, 256)) * 9, ["binary.obj:1: f is '\\\\x80", "expected 3 or more corners"]),
     "cut.dae": (TRIANGLE_DAE[:700].encode(), ["cut.dae", "XML"]),
     "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), ["unit.dae", "meter='0'"]),
     "entity.dae": (b"<!DOCTYPE COLLADA [<!ENTITY e SYSTEM 'file:///etc/hostname'>]><COLLADA/>", ["DOCTYPE"]),

@@ -229,12 +229,39 @@ def test_what_is_left_out_and_could_be_missed_is_told_once_the_worlds_own_first(
     assert world.ignored == ("light 'lamp' (line 3)", "sensor 'eye' (line 7)", "plugin 'mover' (line 5)")
 
 
+def test_frames_that_nothing_can_be_placed_in_are_told_but_not_the_spawn(tmp_path):
+    in_model = '<frame name="handle"/>\n<link name="l"><frame name="tip"/></link>'
+    in_world = '<frame name="robot_spawn"/><frame name="door"/>'
+    world = load_world(write(tmp_path, f'{in_world}\n<model name="m"><static>1</static>{in_model}</model>'))
+    assert world.ignored == ("frame 'door' (line 3)", "frame 'handle' (line 4)", "frame 'tip' (line 5)")
+
+
 def test_visuals_comments_foreign_elements_and_empty_frames_do_no_harm(tmp_path):
     visual = '<visual name="v"><geometry><mesh><uri>model://a.dae</uri></mesh></geometry></visual>'
     shape = f'<x:colour xmlns:x="urn:x"/>{SPHERE}'
     pose = "<pose frame=''>1 2 <!-- three --> 3 0 0 -0</pose>"
     (obstacle,) = load_world(write(tmp_path, model(visual + collision(shape), pose=pose))).obstacles
     assert (obstacle.pose.position, obstacle.geometry) == ((1.0, 2.0, 3.0), Sphere(0.5))
+
+
+@pytest.mark.parametrize("attribute", ["relative_to", "frame"])
+def test_pose_may_name_the_frame_that_it_is_in_anyway(tmp_path, attribute):
+    world, own, empty = (f"<pose {attribute}='{name}'>1 0 0 0 0 0</pose>" for name in ("world", "__model__", ""))
+    spawn = f'<frame name="robot_spawn">{world}</frame>'
+    include = f"<include><uri>model://ground_plane</uri>{world}</include>"
+    link = f'<link name="l">{own}{collision(SPHERE, pose=empty)}</link>'
+    body = f'<model name="m">{world}<model name="in">{own}{link}</model></model>'
+    found = load_world(write(tmp_path, spawn + include + body))
+    assert found.spawn == Pose2D(1.0, 0.0, 0.0)
+    assert {o.name: o.pose.position for o in found.obstacles} == {
+        "ground_plane/link/collision": (1, 0, 0), "m/in/l/c": (4, 0, 0)}
+
+
+def test_saved_pose_may_name_the_world_at_any_depth(tmp_path):
+    pose = "<pose relative_to='world'>5 0 0 0 0 0</pose>"
+    state = f'<state><model name="m">{pose}<link name="l">{pose.replace("5", "7")}</link></model></state>'
+    (obstacle,) = load_world(write(tmp_path, model(collision(SPHERE)) + state)).obstacles
+    assert obstacle.pose.position == (7, 0, 0)
 
 
 # What is refused
@@ -281,6 +308,13 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         ["relative_to='door'", "m/l", "parent"],
     ),
     "pose in a frame of SDF 1.4": (model('\n<pose frame="hall">0 0 0 0 0 0</pose>'), 5, ["frame='hall'"]),
+    "pose of a link in the world": (
+        model("\n<pose relative_to='world'>0 0 0 0 0 0</pose>"), 5, ["relative_to='world'", "m/l"]),
+    "pose of a collision in its model": (
+        model(collision(SPHERE, pose="<pose relative_to='__model__'>0 0 0 0 0 0</pose>")),
+        4, ["relative_to='__model__'", "m/l/c"]),
+    "pose of a model in itself": (
+        model("", pose="<pose frame='__model__'>0 0 0 0 0 0</pose>"), 3, ["frame='__model__'", "'m'", "parent"]),
     "pose in degrees": (model('<pose degrees="true">0 0 0 0 0 90</pose>'), 4, ["degrees='true'"]),
     "pose of five numbers": (model("<pose>0 0 0\n0 0</pose>"), 4, ["<pose>", "'0 0 0 0 0'", "6 finite numbers"]),
     "pose that isn't a number": (model("<pose>nan 0 0 0 0 0</pose>"), 4, ["'nan 0 0 0 0 0'"]),

@@ -10,7 +10,7 @@ from aro_robocop_goto_as import sdf
 from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, compose3, inverse3
 from aro_robocop_goto_as.sdf_world import read_model
-from aro_robocop_goto_as.world_edits import with_model, with_model_at, without_model
+from aro_robocop_goto_as.world_edits import requested_model, with_model, with_model_at, without_model
 
 CRATE = b"""<sdf version="1.6"><model name="crate"><static>1</static><link name="l"><pose>0 0 0.25 0 0 0</pose>
 <collision name="c"><geometry><box><size>0.4 0.4 0.5</size></box></geometry></collision></link></model></sdf>"""
@@ -19,6 +19,10 @@ AHEAD = Pose3D((1.0, 0.0, 0.0))
 
 def crate(name="", pose=AHEAD):
     return read_model(sdf.parse_text(CRATE, "crate.sdf"), name, pose)
+
+
+def requested(file, name="", xml=""):
+    return requested_model(name, xml, file, AHEAD)
 
 
 def names(world):
@@ -39,6 +43,67 @@ def test_name_that_is_taken_or_unknown_is_refused_with_what_there_is():
     for edit in (lambda: without_model(world, "crat"), lambda: with_model_at(world, "crat", AHEAD)):
         with pytest.raises(WorldError, match="no model 'crat'; there are: ground_plane, crate"):
             edit()
+
+
+@pytest.fixture
+def crate_folder(tmp_path, monkeypatch):
+    """A model's folder that GAZEBO_MODEL_PATH leads to, in the directory that the process runs in."""
+    home = tmp_path / "models" / "crate"
+    home.mkdir(parents=True)
+    (home / "crate_1.sdf").write_bytes(CRATE)
+    (home / "model.config").write_text("<model><sdf version='1.6'>crate_1.sdf</sdf></model>")
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "models"))
+    monkeypatch.chdir(tmp_path)
+    return home
+
+
+@pytest.mark.parametrize("file", [
+    "model://crate", "model://crate/", "model://crate/crate_1.sdf", "models/crate", "models/crate/crate_1.sdf", "{}",
+    "{}/crate_1.sdf", "file://{}"])
+def test_model_to_put_in_is_found_as_an_included_one_is(crate_folder, file):
+    model = requested(file.format(crate_folder))
+    assert names(model) == ["crate/l/c"] and model.models == {"crate": AHEAD}
+
+
+def test_file_to_put_in_that_is_not_found_is_told_with_the_places_looked_in(crate_folder):
+    with pytest.raises(WorldError) as caught:
+        requested("model://stool")
+    assert str(caught.value).startswith("file of the request: 'model://stool' was not found; looked for: ")
+    assert f"{crate_folder.parent}/stool (GAZEBO_MODEL_PATH)" in str(caught.value)
+    with pytest.raises(WorldError, match=r"'stool.sdf' was not found; looked for: /.*stool.sdf \(where the simulator"):
+        requested("stool.sdf")
+    with pytest.raises(WorldError, match="'https://a.b/stool' is not supported; supported: model://, package://"):
+        requested("https://a.b/stool")
+    (crate_folder / "model.config").unlink()
+    with pytest.raises(WorldError, match=f"but there is no file {crate_folder}/model.sdf"):
+        requested("model://crate")
+
+
+def test_model_to_put_in_is_given_as_xml_or_as_a_file_and_not_as_both(crate_folder):
+    assert names(requested("", xml=CRATE.decode())) == ["crate/l/c"]
+    for file, xml in (("", ""), ("model://crate", CRATE.decode())):
+        with pytest.raises(WorldError, match="expected either xml or file"):
+            requested(file, xml=xml)
+
+
+@pytest.mark.parametrize("name", ["a/b", "/", "a::b", " ", "\t", " crate", "crate\n", "a\0b"])
+def test_name_that_would_be_taken_for_several_is_refused(name):
+    with pytest.raises(WorldError) as caught:
+        requested("", name, CRATE.decode())
+    assert str(caught.value) == (f"the name {name!r} of the request: expected printable characters without '/', '::', "
+                                 "and spaces at the ends")
+
+
+@pytest.mark.parametrize("name", ["Crate 2", "crate.2-b_c", "krabička", "a:b"])
+def test_name_in_other_letters_is_taken(name):
+    assert names(requested("", name, CRATE.decode())) == [f"{name}/l/c"]
+
+
+def test_models_own_name_is_refused_likewise_unless_the_request_gives_another():
+    text = CRATE.decode().replace('name="crate"', 'name="a/b"')
+    with pytest.raises(WorldError, match=r"the name 'a/b' of the model in xml of the request: expected .* without '/'"):
+        requested("", xml=text)
+    assert names(requested("", "crate", text)) == ["crate/l/c"]
 
 
 def test_only_the_model_of_that_name_is_taken_out():

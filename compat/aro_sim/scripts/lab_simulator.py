@@ -28,8 +28,11 @@ def main():
     args, spawn_args = words[:words.index("--")], words[words.index("--") + 1:]
     args += ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"] + spawn_from(spawn_args)
     args += shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))
-    command = ["roslaunch", "--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
     workspace = os.environ.get("ROBOCOP_WS")
+    # Not roslaunch itself, whose exit status says nothing of how the simulator ended.
+    launch = [f"{workspace}/lib/aro_robocop_goto_as/robocop_launch.py"] if workspace else [
+        "rosrun", "aro_robocop_goto_as", "robocop_launch.py"]
+    command = [*launch, "--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
     if not workspace:
         os.execvp(command[0], command)
     types = [path for path in os.environ.get("PYTHONPATH", "").split(":") if "/compat/" in path]  # of gazebo_msgs

@@ -66,8 +66,8 @@ def sort_arguments(package: Package, given: List[str], simulator: List[str]) -> 
     return own, shlex.join(others)
 
 
-def main() -> None:
-    """Becomes roslaunch, so that what ends this ends all; exit status 1 when it does not come so far."""
+def prepare() -> Tuple[Path, Environment]:
+    """By this program's arguments: the launch file of it all, and the environment for it. Exits with 1 if it can't."""
     parser = argparse.ArgumentParser(prog="robocop sim --with", description=__doc__)
     parser.add_argument("path", help="folder of a catkin package, or of a workspace with one in it")
     parser.add_argument("--launch", default="", help="which of its launch files (default robocop_goto_as.launch)")
@@ -83,4 +83,4 @@ def main() -> None:
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)
-    os.execvpe("roslaunch", ["roslaunch", str(path)], {**environment, "ROBOCOP_SIM_ARGS": others})
+    return path, {**environment, "ROBOCOP_SIM_ARGS": others}

@@ -82,8 +82,9 @@ class RobotTopics:
         """Hand over what comes in, from rospy's threads."""
         i = self.index
         self._inputs = [
+            # Else the publisher's kernel may hold a command back for 40 ms: at ten times real time, for 0.4 s.
             rospy.Subscriber(self.topic("cmd_vel"), Twist,
-                             lambda m: on_command(i, sender(m), convert.from_twist_msg(m))),
+                             lambda m: on_command(i, sender(m), convert.from_twist_msg(m)), tcp_nodelay=True),
             rospy.Subscriber(self.topic("initialpose"), PoseWithCovarianceStamped, lambda m: on_place(i, m)),
         ]
         if self.p.sync == "lockstep":

@@ -17,13 +17,11 @@ from aro_robocop_goto_as.srv import (
     SpawnModelResponse,
 )
 
-from .. import sdf
 from ..errors import WorldError
 from ..geometry import Pose3D
-from ..sdf_world import read_model
 from ..shapes import World
 from ..spawns import FARTHEST
-from ..world_edits import with_model, with_model_at, without_model
+from ..world_edits import requested_model, with_model, with_model_at, without_model
 
 if TYPE_CHECKING:
     from .sim import SimNode
@@ -70,11 +68,8 @@ class WorldControl:
             return False, str(error)
 
     def spawn(self, name: str, xml: str, file: str, pose: Pose3D) -> str:
-        """Put a model in, given as XML or as a file; what was done, in words. WorldError where it can't be."""
-        if bool(xml) == bool(file):
-            raise WorldError("expected either xml or file")
-        root = sdf.parse_text(xml.encode(), "xml of the request") if xml else sdf.parse(file)
-        model = read_model(root, name, pose)
+        """Put a model in, as requested_model reads it; what was done, in words. WorldError where it can't be."""
+        model = requested_model(name, xml, file, pose)
         self._change(lambda world: with_model(world, model))
         told = f"; not simulated: {', '.join(model.ignored)}" if model.ignored else ""
         return f"model '{model.name}' with {len(model.obstacles)} collisions{told}"

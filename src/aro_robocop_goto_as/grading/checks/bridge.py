@@ -49,11 +49,11 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
 
 
 def _why_nothing(record: Record) -> str:
-    """Which connection lacks, if one does."""
-    if not record.marks.get("listeners", 1.0):
-        return "nothing listens to /move_base_simple/goal"
+    """Which connection lacks, if one does; a bridge that waits for a server of another name has none."""
     if not record.marks.get("clients", 1.0):
         return "the client did not connect to robocop_goto_as: is its name right?"
+    if not record.marks.get("listeners", 1.0):
+        return "nothing listens to /move_base_simple/goal"
     return "nothing was sent: is send_goal() called?"
 
 
