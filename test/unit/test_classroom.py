@@ -5,6 +5,7 @@ import io
 import json
 import os
 import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -69,10 +70,41 @@ def test_a_link_is_packed_as_a_link(tmp_path):
     assert b"points" not in only(tmp_path / "class").packed
 
 
+def test_a_zip_counts_as_the_folder_that_is_in_it(tmp_path):
+    (tmp_path / "class" / "eve").mkdir(parents=True)
+    (tmp_path / "class" / "eve" / "run.sh").write_text("one")
+    (tmp_path / "class" / "eve" / "run.sh").chmod(0o755)
+    eve = only(tmp_path / "class")
+    shutil.make_archive(str(tmp_path / "zipped" / "eve"), "zip", tmp_path / "class" / "eve")
+    (tmp_path / "moodle" / "eve").mkdir(parents=True)
+    shutil.copy(tmp_path / "zipped" / "eve.zip", tmp_path / "moodle" / "eve" / "lab.zip")
+    for folder in ("zipped", "moodle"):
+        again = only(tmp_path / folder)
+        assert again.problem == "" and again.digest == eve.digest
+        script = unpack(again, tmp_path / f"out_{folder}") / "run.sh"
+        assert script.read_text() == "one" and os.access(script, os.X_OK)
+
+
+@pytest.mark.parametrize("name, megabytes, problem", [
+    ("../../evil.py", 0, "../../evil.py: expected a path within the zip"),
+    ("/etc/evil.py", 0, "/etc/evil.py: expected a path within the zip"),
+    ("bomb.py", 65, "larger than 64 MB"),
+    ("", 0, "can't be read: File is not a zip file"),
+])
+def test_a_zip_that_is_up_to_something_is_refused(name, megabytes, problem, tmp_path):
+    with open(tmp_path / "eve.zip", "wb") as file:
+        if not name:
+            file.write(b"PK no zip at all")
+        else:
+            with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+                archive.writestr(name, bytes(megabytes * 1024 ** 2))
+    assert only(tmp_path).problem == problem
+
+
 def test_what_can_not_be_packed_says_why(tmp_path):
     (tmp_path / "pipes" / "eve").mkdir(parents=True)
     os.mkfifo(tmp_path / "pipes" / "eve" / "pipe")
-    assert only(tmp_path / "pipes").problem == "eve/pipe: neither a file nor a folder nor a link"
+    assert only(tmp_path / "pipes").problem == "pipe: neither a file nor a folder nor a link"
     (tmp_path / "large" / "eve").mkdir(parents=True)
     with open(tmp_path / "large" / "eve" / "hole", "wb") as hole:
         hole.truncate(10 ** 12)
@@ -80,9 +112,9 @@ def test_what_can_not_be_packed_says_why(tmp_path):
 
 
 def test_a_folder_without_hand_ins_is_refused(tmp_path):
-    with pytest.raises(GradingError, match="no folder and no Python file in it"):
+    with pytest.raises(GradingError, match="nothing handed in"):
         collect(tmp_path)
-    with pytest.raises(GradingError, match="expected a folder with one folder or Python file"):
+    with pytest.raises(GradingError, match="expected a folder with one folder, zip or Python file"):
         collect(tmp_path / "nothing")
 
 

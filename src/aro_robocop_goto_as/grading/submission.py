@@ -61,30 +61,29 @@ def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cag
     """
     top = Path(path).expanduser().resolve()
     if top.is_file():
-        return _files([top], share, state)
+        return _files([top], top, share, state)
     if not top.is_dir():
         raise GradingError(f"{path}: expected a package, a server's or a bridge's file; there is nothing")
-    loose = [top / script for script in PARTS if (top / script).is_file()]
-    if loose and not list(top.rglob("package.xml")):
-        return _files(loose, share, state)
+    loose = [next(iter(sorted(top.rglob(script))), top) for script in PARTS]
+    if loose != [top, top] and not list(top.rglob("package.xml")):
+        return _files([path for path in loose if path != top], top, share, state)
     return _package(find_package(str(top)), share, state, workshop, cage)
 
 
-def _files(paths: List[Path], share: Path, state: Path) -> Submission:
-    """Loose files, run where they are, with the skeleton's package around them."""
+def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission:
+    """Loose files in `top`, run where they are, with the skeleton's package around them."""
     for path in paths:
-        if path.resolve().parent != path.parent.resolve():
-            raise GradingError(f"{path}: expected a file, it is a link to a file elsewhere")
+        if not path.is_file() or top not in (path.resolve(), *path.resolve().parents):
+            raise GradingError(f"{path}: expected a file, and no link to one elsewhere")
         if not _part_of(path):
             raise GradingError(
                 f"{path}: neither a server nor a bridge: no ActionServer in it, and neither a client nor "
                 "/move_base_simple/goal"
             )
     scripts = [Script(_part_of(path), path, dict(NODES)[_script(_part_of(path))]) for path in paths]
-    name = paths[0].stem if len(paths) == 1 else paths[0].parent.name
     return Submission(
-        name,
-        paths[0] if len(paths) == 1 else paths[0].parent,
+        top.stem if top.is_file() else top.name,
+        top,
         [*paths, state / "grade" / "lab"],
         lab_environment(share, state),
         scripts,

@@ -57,7 +57,7 @@ def shown(name: str) -> str:
 def main() -> None:
     """Exit status 0: everybody is graded; 1: somebody can't be, or nobody; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__)
-    parser.add_argument("folder", metavar="DIR", help="one folder (a package) or Python file in it for each hand-in")
+    parser.add_argument("folder", metavar="DIR", help="in it a folder (a package), zip or Python file for each hand-in")
     parser.add_argument("--report", metavar="DIR", help="where results go (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--workers", type=int, metavar="N", help="processes here (default: one for each core)")
@@ -75,7 +75,7 @@ def main() -> None:
         text = plan_path.read_text()
         hand_ins, others = collect(folder)
         for name in others:
-            print(f"left aside: {shown(name)}, which is neither a folder nor a Python file", flush=True)
+            print(f"left aside: {shown(name)}, which is neither a folder nor a zip nor a Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         results = Results(Path(args.report) if args.report else state / "classes" / folder.name,
                           {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
