@@ -14,7 +14,7 @@ PYTHON_FILES = sorted(path for part in ("src", "scripts", "test") for path in (R
 # The parts that may use ROS. All the rest is the core.
 ROS_PARTS = ("nodes", "grading.probe", "bench")
 # Modules that package.xml knows by another name.
-ROSDEP_KEYS = {name: f"python3-{name}" for name in ("lxml", "numpy", "psutil", "rospkg", "yaml")}
+ROSDEP_KEYS = {name: f"python3-{name}" for name in ("lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")}
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
 OPTIONAL = {"gazebo_msgs", "distributed"}  # imported on request only: in compat/, in deb-packages/class.txt
 IMPORT_WITHOUT_ROS = """

@@ -36,7 +36,8 @@ class Line:
         """The outcome with its reason, for a person."""
         if self.failure is not None:
             it = self.failure
-            return (f"failed: {it.cause}. Expected {it.expected}, seen {it.seen}, at {it.time:.1f} s of scenario "
+            end = "" if it.cause.endswith(("?", ".")) else "."
+            return (f"failed: {it.cause}{end} Expected {it.expected}, seen {it.seen}, at {it.time:.1f} s of scenario "
                     f"{self.scenario}")
         return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
 

@@ -1,102 +1,114 @@
-"""A record -> plots as inline SVG: no script, no file, no network."""
+"""A record -> plots as inline SVG, drawn by matplotlib: no script, no file, no network."""
 
+import io
 import math
-from html import escape
+import re
 from typing import Callable, Dict, List, Sequence, Tuple
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+from matplotlib.ticker import MultipleLocator
 
 from .plan import Limits
 from .record import STATUS_NAMES, TERMINAL, Goal, Record, Sample, end_of, errors_at
 
-WIDTH, HEIGHT, LEFT, BOTTOM, TOP = 560.0, 180.0, 46.0, 26.0, 14.0
-TRACK = 360.0  # height of the trajectory's plot
-BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777"
+BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
+STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
+WIDTH = 6.4  # [inch], as all sizes of matplotlib
+STYLE = {
+    "svg.fonttype": "none",  # text as text: smaller, and it can be searched
+    "svg.hashsalt": "robocop",  # the same plot is the same text
+    "font.size": 8.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#999999",
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "legend.borderaxespad": 0.2,
+}
 JUMP = 0.2  # [m] in a tick: no robot drives so fast
 MOST_POINTS = 600  # of a curve: more are not seen
+GAP = 0.5  # [s] without a value, and a curve is parted
+MOST_GOALS = 6  # in a timeline
+NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclass="[^"]*"', re.DOTALL)
 
-Point = Tuple[float, float]
-Curve = Tuple[str, str, Sequence[Point]]  # name, colour, points
-
-
-def _number(value: float) -> str:
-    return f"{value:.1f}".rstrip("0").rstrip(".")
-
-
-def _thinned(points: Sequence[Point]) -> List[Point]:
-    finite = [point for point in points if math.isfinite(point[0]) and math.isfinite(point[1])]
-    step = max(1, len(finite) // MOST_POINTS)
-    return finite[::step]
+Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
+Level = Tuple[float, str]
 
 
-def _frame(title: str, body: str, height: float = HEIGHT) -> str:
-    return (
-        f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{escape(title)}">'
-        f'<text x="{LEFT:g}" y="10" class="title">{escape(title)}</text>{body}</svg>'
-    )
+def _figure(height: float, rows: int = 1) -> Tuple[Figure, List[Axes]]:
+    figure = Figure(figsize=(WIDTH, height), constrained_layout=True)
+    axes = figure.subplots(rows, 1, sharex=True, squeeze=False)
+    return figure, [row[0] for row in axes]
 
 
-def over_time(
-    title: str,
-    curves: Sequence[Curve],
-    levels: Sequence[Tuple[float, str]] = (),
-    at: Sequence[float] = (),
-    bound: float = math.inf,
-) -> str:
-    """Curves over simulated time [s]; `levels` are limits to compare with, `at` moments to look at."""
-    drawn = [
-        (name, colour, _thinned([(t, max(-bound, min(bound, y))) for t, y in points]))
-        for name, colour, points in curves
-    ]
-    everything = [point for _, _, points in drawn for point in points]
-    if not everything:
-        return _frame(title, f'<text x="{LEFT:g}" y="60">nothing was recorded</text>')
-    t0, t1 = min(t for t, _ in everything), max(t for t, _ in everything)
-    values = [y for _, y in everything] + [level for level, _ in levels]
-    low, high = min(values), max(values)
-    margin = 0.08 * (high - low) or 0.1
-    low, high = low - margin, high + margin
-    right, base = WIDTH - 8.0, HEIGHT - BOTTOM
+def _svg(figure: Figure) -> str:
+    """The figure as an element of a page."""
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    svg = text.getvalue()
+    return NOT_INLINE.sub("", svg[svg.index("<svg"):])
 
-    def place(t: float, y: float) -> Point:
-        return LEFT + (t - t0) / ((t1 - t0) or 1.0) * (right - LEFT), base - (y - low) / (high - low) * (base - TOP)
 
-    parts = [f'<rect x="{LEFT:g}" y="{TOP:g}" width="{right - LEFT:g}" height="{base - TOP:g}" class="box"/>']
-    for share in (0.0, 0.5, 1.0):
-        t, y = t0 + share * (t1 - t0), low + share * (high - low)
-        x, _ = place(t, low)
-        _, v = place(t0, y)
-        parts.append(
-            f'<text x="{x:.1f}" y="{HEIGHT - 12:g}" class="tick" text-anchor="middle">{_number(t)} s</text>'
-            f'<text x="{LEFT - 4:g}" y="{v + 3:.1f}" class="tick" text-anchor="end">{y:.2f}</text>'
-        )
+def _plot(draw: Callable[..., None], height: float, rows: int = 1) -> "Plot":
+    """A function that draws into axes -> one that returns the SVG."""
+
+    def plot(record: Record, limits: Limits, at: Sequence[float]) -> str:
+        with matplotlib.rc_context(STYLE):
+            figure, axes = _figure(height, rows)
+            draw(axes, record, at)
+            return _svg(figure)
+
+    plot.__doc__ = draw.__doc__
+    return plot
+
+
+def over_time(axes: Axes, title: str, curves: Sequence[Curve], levels: Sequence[Level], at: Sequence[float],
+              bound: float, held: bool = False) -> None:
+    """Curves over simulated time [s]; `levels` are limits to compare with, `at` moments to look at.
+
+    A value is cut at +-`bound`, and lasts until the next one if it is `held`.
+    """
+    axes.set_title(title)
+    for name, colour, points in curves:
+        finite = [(t, max(-bound, min(bound, y))) for t, y in points if math.isfinite(t) and math.isfinite(y)]
+        shown = _parted(finite[::max(1, len(finite) // MOST_POINTS)], math.inf if held else GAP)
+        axes.plot([t for t, _ in shown], [y for _, y in shown], color=colour, label=name,
+                  drawstyle="steps-post" if held else "default")
     for level, words in levels:
-        _, y = place(t0, level)
-        parts.append(
-            f'<line x1="{LEFT:g}" x2="{right:g}" y1="{y:.1f}" y2="{y:.1f}" class="level"/>'
-            f'<text x="{right - 2:g}" y="{y - 2:.1f}" class="tick" text-anchor="end">{escape(words)}</text>'
-        )
+        axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
+        axes.annotate(words, (1.0, level), xycoords=("axes fraction", "data"), xytext=(3, 0),
+                      textcoords="offset points", va="center", color=GREY)
+    _mark(axes, at)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=len(curves))
+
+
+def _parted(points: Sequence[Tuple[float, float]], gap: float) -> List[Tuple[float, float]]:
+    """With a hole wherever there is nothing for longer than a gap [s]."""
+    found: List[Tuple[float, float]] = []
+    for point in points:
+        if found and point[0] - found[-1][0] > gap:
+            found.append((point[0], math.nan))
+        found.append(point)
+    return found
+
+
+def _mark(axes: Axes, at: Sequence[float]) -> None:
     for moment in at:
-        x, _ = place(min(max(moment, t0), t1), low)
-        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{TOP:g}" y2="{base:g}" class="at"/>')
-    parts += [_polyline(colour, [place(t, y) for t, y in points]) for _, colour, points in drawn]
-    parts.append(_legend([(name, colour) for name, colour, _ in drawn]))
-    return _frame(title, "".join(parts))
+        axes.axvline(moment, color=RED, linestyle=":", linewidth=1.6)
 
 
-def _polyline(colour: str, points: Sequence[Point]) -> str:
-    return (
-        '<polyline fill="none" stroke-width="1.5" stroke="'
-        + colour
-        + '" points="'
-        + " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-        + '"/>'
-    )
-
-
-def _legend(entries: Sequence[Tuple[str, str]]) -> str:
-    return "".join(
-        f'<text x="{LEFT + 150 * number:g}" y="{HEIGHT - 1:g}" class="tick" fill="{colour}">— {escape(name)}</text>'
-        for number, (name, colour) in enumerate(entries)
-    )
+def _time_axis(axes: Axes) -> None:
+    axes.set_xlabel("simulated time [s]")
 
 
 def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
@@ -109,42 +121,34 @@ def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
     return legs
 
 
-def track(record: Record, limits: Limits, at: Sequence[float]) -> str:
+def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """The way over the world, seen from above, in odom."""
-    way = [(sample.x, sample.y) for sample in record.samples]
-    points = way + [(goal.x, goal.y) for goal in record.goals] + [(c.odom_x, c.odom_y) for c in record.clicks]
-    if not points:
-        return _frame("trajectory", '<text x="46" y="60">nothing was recorded</text>')
-    x0, x1 = min(x for x, _ in points) - 0.6, max(x for x, _ in points) + 0.6
-    y0, y1 = min(y for _, y in points) - 0.6, max(y for _, y in points) + 0.6
-    scale = min((WIDTH - 20) / (x1 - x0), (TRACK - 30) / (y1 - y0))
-
-    def place(x: float, y: float) -> Point:
-        return 10 + (x - x0) * scale, TRACK - 10 - (y - y0) * scale
-
-    parts = ["<g>"]
+    axes = all_axes[0]
+    axes.set_title("the way in odom [m], seen from above")
     for outline in record.obstacles:
-        corners = [place(x, y) for x, y in zip(outline[::2], outline[1::2])]
-        parts.append('<polygon class="wall" points="' + " ".join(f"{x:.1f},{y:.1f}" for x, y in corners) + '"/>')
+        axes.add_patch(Polygon(list(zip(outline[::2], outline[1::2])), facecolor="#bbbbbb", edgecolor="#888888"))
     for goal in record.goals:
-        x, y = place(goal.x, goal.y)
-        parts.append(
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{0.1 * scale:.1f}" class="goal"/>'
-            f'<text x="{x + 6:.1f}" y="{y - 6:.1f}" class="tick">{escape(goal.id[-24:])}</text>'
-        )
+        axes.add_patch(Circle((goal.x, goal.y), 0.1, fill=False, edgecolor=GREEN, linewidth=1.5))
+        axes.annotate(f"goal {goal.id[-24:]}", (goal.x, goal.y), xytext=(8, 6), textcoords="offset points", color=GREEN)
+    for number, leg in enumerate(_legs(record.samples)):
+        colour, name = (BLUE, "robot") if number == 0 else (GREY, "set down elsewhere")
+        axes.plot([it.x for it in leg], [it.y for it in leg], color=colour, label=name if leg else None)
+        if leg:
+            axes.plot(leg[0].x, leg[0].y, "o", color=colour, markersize=4)
     for moment in at:
         near = min(record.samples, key=lambda sample: abs(sample.time - moment), default=None)
         if near is not None:
-            x, y = place(near.x, near.y)
-            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" class="spot"/>')
-    for number, leg in enumerate(_legs(record.samples)):
-        colour = BLUE if number == 0 else GREY  # set down elsewhere, so beside other obstacles
-        parts.append(_polyline(colour, [place(x, y) for x, y in _thinned([(s.x, s.y) for s in leg])]))
-    x, y = place(*way[0]) if way else (0.0, 0.0)
-    parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{BLUE}"/></g>')
-    return _frame(
-        "trajectory from the dot on; green: goals, grey: obstacles and the way from a new start", "".join(parts), TRACK
-    )
+            axes.plot(near.x, near.y, "o", markersize=10, fillstyle="none", color=RED, markeredgewidth=1.8)
+    seen = ([(it.x, it.y) for it in record.samples] + [(it.x, it.y) for it in record.goals]
+            + [(it.odom_x, it.odom_y) for it in record.clicks])
+    if seen:  # and of obstacles what is near
+        axes.set_xlim(min(x for x, _ in seen) - 0.6, max(x for x, _ in seen) + 0.6)
+        axes.set_ylim(min(y for _, y in seen) - 0.6, max(y for _, y in seen) + 0.6)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2)
+    axes.set_aspect("equal", adjustable="datalim")
+    largest = max((abs(number) for point in seen for number in point), default=0.0)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MultipleLocator(0.5 if largest < 2.0 else 1.0))
 
 
 def _on_way(record: Record) -> List[Tuple[Sample, Goal]]:
@@ -159,94 +163,67 @@ def _on_way(record: Record) -> List[Tuple[Sample, Goal]]:
     return found
 
 
-def errors(record: Record, limits: Limits, at: Sequence[float]) -> str:
+def _errors(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """Both errors, true and fed back."""
     pairs = [(s.time, errors_at(s, g)) for s, g in _on_way(record)]
-    position = over_time(
-        "position error [m]",
-        [
-            ("true", BLUE, [(t, error[0]) for t, error in pairs]),
-            ("feedback", ORANGE, [(it.time, it.position_error) for it in record.feedback]),
-        ],
-        [(0.1, "reached")],
-        at,
-        50.0,
-    )
-    angle = over_time(
-        "angle error [rad]",
-        [
-            ("true", BLUE, [(t, error[1]) for t, error in pairs]),
-            ("feedback", ORANGE, [(it.time, it.angle_error) for it in record.feedback]),
-        ],
-        [(0.1, "0.1"), (-0.1, "-0.1")],
-        at,
-        50.0,
-    )
-    return position + angle
+    over_time(all_axes[0], "position error [m]",
+              [("true", BLUE, [(t, error[0]) for t, error in pairs]),
+               ("feedback", ORANGE, [(it.time, it.position_error) for it in record.feedback])],
+              [(0.1, "0.1")], at, 50.0)
+    over_time(all_axes[1], "angle error [rad]",
+              [("true", BLUE, [(t, error[1]) for t, error in pairs]),
+               ("feedback", ORANGE, [(it.time, it.angle_error) for it in record.feedback])],
+              [(0.1, "0.1"), (-0.1, "−0.1")], at, 50.0)
+    _time_axis(all_axes[1])
 
 
-def distances(record: Record, limits: Limits, at: Sequence[float]) -> str:
+def _distances(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """To the goal and to what is ahead."""
-    return over_time(
-        "distance to the goal and to the nearest obstacle ahead [m]",
-        [
-            ("goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
-            ("ahead", RED, [(s.time, s.ahead) for s in record.samples]),
-        ],
-        [(0.3, "0.3"), (0.1, "0.1")],
-        at,
-        4.0,
-    )
+    over_time(all_axes[0], "distance [m]",
+              [("to the goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
+               ("to the nearest thing ahead", RED, [(s.time, s.ahead) for s in record.samples])],
+              [(0.3, "0.3"), (0.1, "0.1")], at, 4.0)
+    _time_axis(all_axes[0])
 
 
-def speeds(record: Record, limits: Limits, at: Sequence[float]) -> str:
+def _speeds(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """What was commanded."""
-    return over_time(
-        "commanded linear.x [m/s] and angular.z [rad/s]",
-        [
-            ("linear.x", BLUE, [(it.time, it.v) for it in record.commands]),
-            ("angular.z", ORANGE, [(it.time, it.w) for it in record.commands]),
-        ],
-        [(0.0, "")],
-        at,
-        10.0,
-    )
+    over_time(all_axes[0], "commands",
+              [("linear.x [m/s]", BLUE, [(it.time, it.v) for it in record.commands]),
+               ("angular.z [rad/s]", ORANGE, [(it.time, it.w) for it in record.commands])],
+              [], at, 10.0, held=True)
+    _time_axis(all_axes[0])
 
 
-def states(record: Record, limits: Limits, at: Sequence[float]) -> str:
+def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """Each goal's states over time."""
-    if not record.samples:
-        return _frame("states of the goals", '<text x="46" y="60">nothing was recorded</text>')
-    t0, t1 = record.samples[0].time, record.samples[-1].time
-    parts, right = [], WIDTH - 8.0
-    for row, goal in enumerate(record.goals[:6]):
-        y = TOP + 8 + row * 26
-        changes = sorted(
-            [(goal.time, "sent")] + [(s.time, STATUS_NAMES[s.status]) for s in record.statuses if s.id == goal.id],
-            key=lambda change: change[0],
-        )
-        for number, (start, name) in enumerate(changes):
-            end = changes[number + 1][0] if number + 1 < len(changes) else t1
-            x, x2 = (LEFT + (t - t0) / ((t1 - t0) or 1.0) * (right - LEFT) for t in (start, end))
-            colour = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}.get(name, GREY)
-            shade = 0.35 if name in [STATUS_NAMES[it] for it in TERMINAL] else 0.8
-            parts.append(
-                f'<rect x="{x:.1f}" y="{y:g}" width="{max(1.0, x2 - x):.1f}" height="16" fill="{colour}" '
-                f'opacity="{shade}"/>'
-            )
-            if x2 - x > 50 or number + 1 == len(changes):
-                parts.append(f'<text x="{x + 3:.1f}" y="{y + 12:g}" class="tick">{name}</text>')
-    for moment in at:
-        x = LEFT + (min(max(moment, t0), t1) - t0) / ((t1 - t0) or 1.0) * (right - LEFT)
-        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{TOP:g}" y2="{HEIGHT - BOTTOM:g}" class="at"/>')
-    return _frame(f"states of the goals, {_number(t0)} to {_number(t1)} s", "".join(parts))
+    axes, goals = all_axes[0], record.goals[:MOST_GOALS]
+    axes.set_title("states of the goals")
+    end = record.samples[-1].time if record.samples else 1.0
+    axes.set_xlim(record.samples[0].time if record.samples else 0.0, end)
+    for row, goal in enumerate(goals):
+        changes = sorted([(goal.time, "sent")] + [(it.time, STATUS_NAMES[it.status]) for it in record.statuses
+                                                  if it.id == goal.id], key=lambda change: change[0])
+        for (start, name), (until, _) in zip(changes, [*changes[1:], (end, "")]):
+            terminal = name in [STATUS_NAMES[it] for it in TERMINAL]
+            axes.broken_barh([(start, until - start)], (row - 0.35, 0.7), color=STATE_COLOURS.get(name, GREY),
+                             alpha=0.35 if terminal else 0.85, linewidth=0)
+            if name != "sent":
+                axes.annotate(name, (start, row), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.5,
+                              color="black" if terminal else "white", annotation_clip=False)
+    axes.set_yticks(range(len(goals)), [goal.id[-24:] for goal in goals])
+    axes.set_ylim(max(1, len(goals)) - 0.5, -0.5)
+    axes.grid(False, axis="y")
+    _mark(axes, at)
+    _time_axis(axes)
 
 
-PLOTS: Dict[str, Callable[[Record, Limits, Sequence[float]], str]] = {
-    "track": track,
-    "errors": errors,
-    "distances": distances,
-    "speeds": speeds,
-    "states": states,
-    "clicks": track,
+Plot = Callable[[Record, Limits, Sequence[float]], str]
+PLOTS: Dict[str, Plot] = {
+    "track": _plot(_track, 3.6),
+    "errors": _plot(_errors, 3.4, 2),
+    "distances": _plot(_distances, 2.2),
+    "speeds": _plot(_speeds, 2.0),
+    "states": _plot(_states, 1.5),
+    "clicks": _plot(_track, 3.6),
 }

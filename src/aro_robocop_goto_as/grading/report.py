@@ -18,10 +18,8 @@ STYLE = """body{font:15px/1.45 sans-serif;margin:2em auto;max-width:75em;padding
 table{border-collapse:collapse;width:100%}td,th{padding:.3em .6em;
 border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
 .passed{color:#2c8a3d}.failed{color:#c62828}.not{color:#777}h1 small{font-weight:normal;color:#555}
-svg{width:100%;max-width:560px;font:10px sans-serif;display:inline-block;margin:.4em .8em .4em 0}
-.title{font-weight:bold;font-size:10.5px}.tick{font-size:9.5px}.box{fill:none;stroke:#999}
-.level{stroke:#999;stroke-dasharray:4 3}.at{stroke:#c62828;stroke-dasharray:2 2;stroke-width:1.5}
-.wall{fill:#bbb;stroke:#888}.goal{fill:none;stroke:#2c8a3d;stroke-width:1.5}.spot{fill:none;stroke:#c62828;stroke-width:2}
+svg{width:100%;max-width:600px;height:auto;display:inline-block;margin:.4em .8em .4em 0}svg *{font-family:sans-serif}
+details svg{max-width:48%;vertical-align:top}
 .beside{display:flex;gap:1em;flex-wrap:wrap;border-bottom:1px solid #ddd;padding:.6em 0}.beside p{flex:1 1 20em}
 pre{background:#f5f5f5;padding:.6em;overflow:auto;max-height:20em}"""
 

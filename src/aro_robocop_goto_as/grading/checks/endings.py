@@ -20,6 +20,8 @@ from .verdict import Failed, NotReached, Passed, Verdict, check
 
 NO_RESULT = "No terminal", "without setting", "did not set the goal to a terminal status", "user should have"
 DOUBLE = "must be in a preempting or active state", "must be in a pending or recalling state", "currently in state"
+GONE_ON = ("its wheels went on turning until odometry said that it was there. Is the distance ahead looked at in each "
+           "iteration?")
 EXCEPTION = "xception in your execute callback", "Traceback"
 
 
@@ -38,8 +40,9 @@ def ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[
     end = ends[0]
     if end.status == wanted:
         return None
-    return Failed(name, f"{STATUS_NAMES[end.status]}{': ' + end.message if end.message else ''}", end.time,
-                  _hit(record, goal, end.time) + _why(record, end.status, wanted))
+    hit = _hit(record, goal, end.time)
+    why = (GONE_ON if hit and (wanted, end.status) == (ABORTED, SUCCEEDED) else _why(record, end.status, wanted))
+    return Failed(name, f"{STATUS_NAMES[end.status]}{': ' + end.message if end.message else ''}", end.time, hit + why)
 
 
 def _hit(record: Record, goal: Goal, end: float) -> str:
