@@ -13,7 +13,6 @@ from aro_robocop_goto_as.grading.sandbox import cage
 from aro_robocop_goto_as.grading.submission import take
 
 BUDGET = 60.0  # [s, wall] for an attack's two scenarios
-pytestmark = pytest.mark.xdist_group("hosting")  # they build upon the same workspaces as those who host packages
 
 
 def attacked(code, folder):

@@ -15,7 +15,6 @@ import time
 import pytest
 from graded import RIGHT, SWITCHES
 
-pytestmark = pytest.mark.xdist_group("hosting")  # they build upon the same workspaces as those who host packages
 distributed = pytest.importorskip("distributed", reason="deb-packages/class.txt has it")
 PATIENCE = 60.0  # [s, wall]
 PLAN = """

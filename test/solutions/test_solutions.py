@@ -15,7 +15,6 @@ from aro_robocop_goto_as.grading.judge import Outcome
 
 SOME_RIGHT = ("base_server", "base_bridge", "timer_driven_class")
 SOME_WRONG = ("misspelt_name", "not_wrapped", "handouts_double_state", "bridge_never_cancels")
-pytestmark = pytest.mark.xdist_group("hosting")  # they build upon the same workspaces as those who host packages
 
 
 def pytest_generate_tests(metafunc):

@@ -9,7 +9,7 @@ from distributed import Client, LocalCluster, as_completed
 from ...errors import GradingError
 from .worker import Done, Task, ready, work
 
-CONNECT_PATIENCE = 10.0  # [s, wall]
+CONNECT_PATIENCE = 5.0  # [s, wall]
 RETRIES = 1  # of a task that a worker's machine could not do; whose worker died is done again in any case
 START = "start workers with: ./robocop grade-worker"
 

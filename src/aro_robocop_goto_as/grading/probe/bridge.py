@@ -7,7 +7,12 @@ import rospy
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionResult
+from aro_robocop_goto_as.msg import (
+    GoToPositionAction,
+    GoToPositionActionGoal,
+    GoToPositionFeedback,
+    GoToPositionResult,
+)
 
 from ...geometry import Pose2D, Twist2D, compose, inverse
 from .. import record as rec
@@ -32,7 +37,7 @@ class BridgeRun:
         self.launch = launch
         self.stage = stage
         self.run = Run(stage, "bridge")
-        self.run.handlers.update({"goal": self._on_goal, "cancel": self._on_cancel})
+        self.run.handlers.update({"sent": self._on_sent, "goal": self._on_goal, "cancel": self._on_cancel})
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}
         self.server: Any = None
@@ -40,6 +45,8 @@ class BridgeRun:
     # -- the server that it talks to --
 
     def _serve(self) -> None:
+        # actionlib's server says nothing of a goal whose cancel was faster, so goals are counted as they come.
+        self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, "sent")
         self.server = actionlib.ActionServer(
             ACTION,
             GoToPositionAction,
@@ -49,13 +56,21 @@ class BridgeRun:
         )
         self.server.start()
 
+    def _on_sent(self, message: GoToPositionActionGoal) -> None:
+        position, name = message.goal.position, message.goal_id.id
+        self.run.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
+        self._note_if_cancelled(name)
+
+    def _note_if_cancelled(self, name: str) -> None:
+        """A goal's cancel may have been faster: they come by two connections."""
+        if any(cancel.id == name for cancel in self.run.parts["cancels"]):
+            self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+
     def _on_goal(self, handle: Any) -> None:
-        position, name = handle.get_goal().position, handle.get_goal_id().id
+        name = handle.get_goal_id().id
         handle.set_accepted()
         self.handles[name] = handle
-        self.run.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
-        if any(cancel.id == name for cancel in self.run.parts["cancels"]):  # its cancel was faster
-            self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+        self._note_if_cancelled(name)
         handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
 
     def _on_cancel(self, message: GoalID) -> None:
