@@ -7,7 +7,6 @@ from typing import Any, Dict, Tuple
 
 import numpy as np
 import yaml
-from PIL import Image
 
 from .errors import WorldError
 from .geometry import Pose2D, wrap_angle
@@ -122,6 +121,8 @@ def read_cells(spec: MapSpec) -> np.ndarray:
     -1 unknown, 0 free to 100 occupied. WorldError if the image can't be read, and, before memory is taken for it, if
     its header claims more pixels than are in the file or than Pillow opens.
     """
+    from PIL import Image  # here, as only maps need it
+
     try:
         with Image.open(spec.image) as image:
             if image.format not in ("PNG", "PPM"):

@@ -6,7 +6,6 @@ import os
 from typing import Any
 
 import numpy as np
-import trimesh
 
 from . import sdf
 from .errors import WorldError
@@ -39,6 +38,8 @@ def load_triangles(path: str) -> np.ndarray:
 
 
 def _parsed(content: bytes, kind: str, path: str) -> np.ndarray:
+    import trimesh  # here, as it costs half a second and 20 MB, and few worlds have meshes
+
     # Neither trimesh nor pycollada says which errors they raise: of a broken file it is whatever they stumble over.
     try:
         loaded: Any = trimesh.load_scene(io.BytesIO(content), file_type=kind[1:], process=False, skip_materials=True)
