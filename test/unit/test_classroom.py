@@ -151,9 +151,9 @@ def test_half_a_result_is_none(tmp_path):
 
 
 RESULTS = (
-    Result("=anna", (Check("cancel", "server", "failed", 0.0, "<cause>"),
+    Result("=anna", (Check("cancel", "server", "failed", 0.0, "<cause> at 1.5"),
                      Check("action_server", "server", "passed", 0.5)), (), 9.0),
-    Result("ben", (Check("cancel", "server", "failed", 0.0, "<cause>"),), ("=cmd",), 9.0),
+    Result("ben", (Check("cancel", "server", "failed", 0.0, "<cause> at -3"),), ("=cmd",), 9.0),
     Result("carl", (), ("nothing to grade",), 9.0),
 )
 
@@ -172,7 +172,7 @@ def test_the_table_has_a_line_each_and_nothing_that_a_spreadsheet_would_calculat
 def test_the_overview_counts_checks_and_causes_and_escapes_them():
     html = overview.page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True)
     assert "3 of 4 graded, still at it" in html and "http-equiv='refresh'" in html
-    assert "2 × &lt;cause&gt;" in html and "<cause>" not in html and "<1>" not in html
+    assert "2 × &lt;cause&gt; at 1.5" in html and "<cause>" not in html and "<1>" not in html
     assert "0 of 2" in html, "of those who handed in a server that came so far"
     assert "dora" in html
     assert "interrupted" in overview.page("class", RESULTS, PLAN, {"dora": "waiting"}, running=False)

@@ -2,8 +2,9 @@
 
 import collections
 import os
+import re
 from html import escape
-from typing import List, Mapping, Optional, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from urllib.parse import quote
 
 from ..checks import sentence
@@ -12,11 +13,13 @@ from .results import NOT_HANDED_IN, Result
 
 REFRESH = 5  # [s] while it is still going on
 MOST_CAUSES = 3
+MOST_WORDS = 200  # letters of a cause
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
 SIGNS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: "–"}
 STYLE = """body{font:15px/1.45 sans-serif;margin:2em auto;max-width:90em;padding:0 1em;color:#222}
 h1 small{font-weight:normal;color:#555}table{border-collapse:collapse;margin:1em 0}
-td,th{padding:.25em .5em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}td.n{text-align:right}
-th.turned{height:11em;vertical-align:bottom;padding:0 .1em;font-weight:normal;font-size:12px}
+td,th{padding:.25em .5em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
+td.n{text-align:right;white-space:nowrap}th.turned{height:11em;vertical-align:bottom;padding:0 .1em;font-weight:normal;font-size:12px}
 th.turned span{writing-mode:vertical-rl;transform:rotate(180deg)}td.sign{text-align:center;padding:.25em .1em}
 .passed{color:#2c8a3d}.failed{color:#c62828}.not{color:#999}
 .bar{display:flex;width:16em;height:1em;background:#eee}.bar i{display:block;height:100%}
@@ -74,10 +77,18 @@ def _checks(results: Sequence[Result], plan: Plan) -> List[str]:
         tried = sum(outcomes.values()) - outcomes[NOT_HANDED_IN]
         bar = "".join(f"<i class='{word.split()[0]}' style='width:{100.0 * outcomes[word] / max(1, tried):.1f}%'></i>"
                       for word in ("passed", "failed", "not reached"))
-        causes = collections.Counter(line.cause for it in results for line in it.checks
-                                     if line.name == check.name and line.cause)
-        listed = "".join(f"<li>{number} × {escape(cause)[:200]}" for cause, number in causes.most_common(MOST_CAUSES))
+        listed = "".join(f"<li>{number} × {escape(cause[:MOST_WORDS])}"
+                         for cause, number in _most_frequent([line.cause for it in results for line in it.checks
+                                                              if line.name == check.name and line.cause]))
         rows.append(f"<tr><td>{escape(sentence(check.name))}<br><small>{check.name}</small>"
                     f"<td class='n'>{outcomes['passed']} of {tried}<td><span class='bar'>{bar}</span>"
                     f"<td class='n'>{outcomes['failed']}, {outcomes['not reached']}<td><ul>{listed}</ul></tr>")
     return [*rows, "</table>"]
+
+
+def _most_frequent(causes: Sequence[str]) -> List[Tuple[str, int]]:
+    """Causes with how often each one is there; those that differ in numbers only are one, told by its first."""
+    alike: Dict[str, List[str]] = {}
+    for cause in causes:
+        alike.setdefault(NUMBER.sub("#", cause), []).append(cause)
+    return [(them[0], len(them)) for them in sorted(alike.values(), key=len, reverse=True)[:MOST_CAUSES]]
