@@ -23,7 +23,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...goto import Goal
 from ...models import load_model
 from ...nodes import convert
-from ...nodes.markers import TEXT_WIDTH, circle_marker, following, goal_markers, text_marker
+from ...nodes.markers import circle_marker, following, goal_markers, text_marker
 from ...nodes.publishing import publisher
 from ...nodes.robot_topics import RobotTopics
 from ...nodes.world_markers import CLEAR, world_markers
@@ -40,7 +40,8 @@ WAY_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.9)
 WAY_STEP = 0.01  # [m]
 CLICK_COLOR = ColorRGBA(1.0, 0.75, 0.1, 0.9)
 CLICK_RADIUS = 0.2  # [m] wider than the goal's circle, so that both are seen where they belong: in one place
-TEXT_SIZE, TEXT_HEIGHT = 0.11, 0.7  # [m] of its letters, and above the floor: clear of a goal that is near
+TEXT_SIZE, TEXT_HEIGHT = 0.08, 1.5  # [m] of its letters, and above the floor: what is near ahead stays in view
+TEXT_WIDTH = 44  # characters of a line
 LOG_LINES = 5
 
 
