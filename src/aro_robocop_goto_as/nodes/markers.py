@@ -84,7 +84,8 @@ def text_marker(namespace: str, text: str, frame: str) -> Marker:
     return marker
 
 
-def _removed(namespace: str) -> Marker:
+def removed(namespace: str) -> Marker:
+    """Takes a marker away; nothing happens where there is none."""
     return Marker(ns=namespace, id=0, action=Marker.DELETE)
 
 
@@ -97,7 +98,7 @@ def server_markers(p: GotoParams, goal: Optional[Goal], clearance: Optional[floa
     if odom is not None:
         found.append(text_marker("state", textwrap.fill(state, TEXT_WIDTH), odom.child_frame_id))
         if goal is None:
-            found += [_removed("goal_circle"), _removed("goal_pin")]
+            found += [removed("goal_circle"), removed("goal_pin")]
         else:
             found += goal_markers(p.position_tolerance, goal, odom.header.frame_id)
     return MarkerArray(found)

@@ -23,10 +23,10 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...goto import Goal
 from ...models import load_model
 from ...nodes import convert
-from ...nodes.markers import circle_marker, following, goal_markers, text_marker
+from ...nodes.markers import circle_marker, following, goal_markers, removed, text_marker
 from ...nodes.publishing import publisher
 from ...nodes.robot_topics import RobotTopics
-from ...nodes.world_markers import CLEAR, world_markers
+from ...nodes.world_markers import world_markers
 from ...simulator import Observations
 from .. import record as rec
 from ..plan import Plan, world_of
@@ -41,6 +41,7 @@ WAY_STEP = 0.01  # [m]
 CLICK_COLOR = ColorRGBA(1.0, 0.75, 0.1, 0.9)
 CLICK_RADIUS = 0.2  # [m] wider than the goal's circle, so that both are seen where they belong: in one place
 TEXT_SIZE, TEXT_HEIGHT = 0.08, 1.5  # [m] of its letters, and above the floor: what is near ahead stays in view
+COME_AND_GO = ("way", "goal_circle", "goal_pin", "click")  # namespaces of markers
 TEXT_WIDTH = 44  # characters of a line
 LOG_LINES = 5
 
@@ -124,12 +125,11 @@ class Watch:
     # -- what happens, told by the stage and the run --
 
     def begin(self, name: str, about: str) -> None:
-        """A scenario: its name and a sentence go above the robot; goals, clicks and the way of the last one go away."""
+        """A scenario: its name and a sentence go above the robot, and its way starts."""
         self._way = []
         text = "\n".join([name, *textwrap.wrap(about.strip().rstrip("."), TEXT_WIDTH)])
         self._text = text_marker("scenario", text, self._robot.base_frame)
         self._text.scale.z, self._text.pose.position.z = TEXT_SIZE, TEXT_HEIGHT
-        self._scene.publish([CLEAR, self._text])
 
     def saw(self, seen: Observations, real_time: bool) -> None:
         """What a step brought, before it is published; at real time it waits until the clock's next tick is due."""
@@ -157,7 +157,8 @@ class Watch:
     def show(self, sample: rec.Sample, goals: Sequence[rec.Goal], clicks: Sequence[rec.Click]) -> None:
         """Obstacles, the way so far, the newest goal and the newest click.
 
-        All of it each time: RViz never comes back to a marker whose frame it did not know when it came.
+        All of it each time, and what is not there taken away each time: RViz never comes back to a marker whose frame
+        it did not know when it came, and may put one up that came shortly before it was taken away.
         """
         frame = self._robot.odom_frame
         if not self._way or math.hypot(sample.x - self._way[-1].x, sample.y - self._way[-1].y) > WAY_STEP:
@@ -171,7 +172,8 @@ class Watch:
             found += goal_markers(self._plan.limits.reached, Goal(goal.x, goal.y), frame)
         for click in clicks[-1:]:
             found.append(circle_marker("click", CLICK_RADIUS, Goal(click.odom_x, click.odom_y), frame, CLICK_COLOR))
-        self._scene.publish(found)
+        there = {marker.ns for marker in found}
+        self._scene.publish(found + [removed(namespace) for namespace in COME_AND_GO if namespace not in there])
 
     def _count(self, seconds: float) -> None:
         """Time that is nobody's fault: said in whole seconds to the grader outside, which has a deadline too."""
