@@ -134,6 +134,15 @@ def test_goto_passes_negative_numbers():
     assert dry_run("goto", "-0.5", "-1", "--frame", "map")[0].endswith("/robocop_goto.py -0.5 -1 --frame map")
 
 
+@pytest.mark.parametrize("settings, lacks", [({}, "DISPLAY is not set"),
+                                             ({"DISPLAY": ":4711"}, ":4711 (DISPLAY) does not answer")])
+def test_grade_without_a_display_to_watch_on_is_refused_with_what_to_do(settings, lacks, tmp_path):
+    done = robocop("grade", str(tmp_path), "--watch", **settings)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert f"{lacks}: run it on a desktop, or grade without --watch" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_up_to_date_set_up_adds_less_than_a_second():
     def seconds():
         start = time.monotonic()

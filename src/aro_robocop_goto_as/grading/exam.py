@@ -22,15 +22,19 @@ def examine(
     state: Path,
     around: Optional[Cage],
     on_progress: Progress = lambda _part, _scenario: None,
+    watched: bool = False,
 ) -> Grade:
-    """Run and judge all parts of a submission; the report, with the bags of what failed, goes to `folder`."""
+    """Run and judge all parts of a submission; the report, with the bags of what failed, goes to `folder`.
+
+    Watched, all of it is shown in RViz at real time.
+    """
     plan: Plan = load(plan_path)
     records: Dict[str, Dict[str, record.Record]] = {}
     problems: Dict[str, str] = {}
     with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
         for script in submission.scripts:
             recorded = runner.run(submission, script, plan_path, Path(work, script.part), state, around,
-                                  on_progress=partial(on_progress, script.part))
+                                  on_progress=partial(on_progress, script.part), watched=watched)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
         result = judge.judge(submission.name, plan, records, problems)
         folder.mkdir(parents=True, exist_ok=True)

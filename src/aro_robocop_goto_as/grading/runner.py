@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence
 
+from ..errors import GradingError
 from ..loopback import free_port
 from . import building
 from . import record as rec
@@ -22,6 +23,7 @@ PROBE = "aro_robocop_goto_as.grading.probe.main"
 Progress = Callable[[str], None]
 
 BUDGET = 240.0  # [s, wall] for all scenarios of a part
+END_PATIENCE = 5.0  # [s, wall]
 LOG_LINES = 15
 
 
@@ -43,8 +45,12 @@ def run(
     only: Sequence[str] = (),
     on_progress: Progress = lambda _: None,
     budget: float = BUDGET,
+    watched: bool = False,
 ) -> Recorded:
-    """Drive all scenarios of a script's part. Records and bags go to `out`; nothing of the submission can hang this."""
+    """Drive all scenarios of a script's part. Records and bags go to `out`; nothing of the submission can hang this.
+
+    Watched, it is shown in RViz at real time; GradingError where RViz can't be opened.
+    """
     out.mkdir(parents=True, exist_ok=True)
     home = out / "home"
     home.mkdir(exist_ok=True)
@@ -62,7 +68,9 @@ def run(
             "ROS_MASTER_URI": environment["ROS_MASTER_URI"],
         }
     )
-    if cage is not None:
+    if cage is None:
+        command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # in a cage bubblewrap sees to that
+    else:
         command, node_environment = cage.around_node(command, node_environment, submission.reads, home), OWN_ENVIRONMENT
     job = out / f"{script.part}-job.json"
     job.write_text(
@@ -76,6 +84,7 @@ def run(
                 "plan": str(plan),
                 "out": str(out),
                 "only": list(only),
+                "watched": watched,
             }
         )
     )
@@ -113,7 +122,7 @@ def _watch(
             start_new_session=True,
         )
     threading.Thread(target=_read, args=(process, lines), daemon=True).start()
-    deadline, problem, scenario = time.monotonic() + budget, "", "start"
+    deadline, problem, scenario, patience = time.monotonic() + budget, "", "start", 0.0
     try:
         while True:
             try:
@@ -124,13 +133,18 @@ def _watch(
                 )
                 break
             if line is None:
+                patience = END_PATIENCE
                 break
-            word, _, name = line.partition(" ")
+            word, _, rest = line.partition(" ")
             if word == "begin":
-                scenario = name
-                on_progress(name)
+                scenario = rest
+                on_progress(rest)
+            elif word == "slept":  # for whoever watches: not the submission's time
+                deadline += float(rest)
+            elif word == "error":
+                raise GradingError(rest)
     finally:
-        _end(process)
+        _end(process, patience)
     if not problem and process.returncode != 0:
         problem = f"the run was cut short during {scenario} (status {process.returncode}): {_last(log)}"
     return Recorded(_records(out, part), problem)
@@ -143,10 +157,10 @@ def _read(process: "subprocess.Popen[bytes]", lines: "queue.Queue[Optional[str]]
     lines.put(None)
 
 
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """The probe gets a moment to end its nodes; then its whole session goes."""
+def _end(process: "subprocess.Popen[bytes]", patience: float) -> None:
+    """A probe that has said all gets a moment [s] to end its nodes; then its whole session goes."""
     try:
-        process.wait(5.0)
+        process.wait(patience)
     except subprocess.TimeoutExpired:
         pass
     try:

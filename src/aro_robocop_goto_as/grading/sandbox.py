@@ -21,6 +21,7 @@ PROCESSES = 200  # threads counted; a rospy node has some 30
 FILE_SIZE = 64 * 1024 ** 2  # bytes of a file
 SPACE = 64 * 1024 ** 2  # bytes of each place that it can write to, all in memory
 CPU_TIME = 200  # [s] of each process
+WATCHED_CPU_TIME = 2000  # [s] likewise, of a node that runs at real time: a right one may wait in a busy loop
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/opt", "/etc/alternatives", "/etc/catkin", "/etc/group",
@@ -34,6 +35,7 @@ class Cage:
     """How the probe, a node and a build are started inside."""
 
     reads: Tuple[Path, ...]  # besides the system: what built code needs, such as the virtual environment
+    cpu_time: int = CPU_TIME
 
     def around_probe(self, command: Sequence[str]) -> List[str]:
         """A network and processes of its own; nothing else is taken from the probe, which is ours."""
@@ -44,13 +46,14 @@ class Cage:
                     home: Path) -> List[str]:
         """Reads the system and its own files, writes a small home in memory, is alone with its processes."""
         return [*self._walls([*reads, home]), *_bound("--ro-bind", [*self.reads, *reads]), *_writable(str(home)),
-                "--chdir", str(home), "--", *_rights(environment), *command]
+                "--chdir", str(home), "--", *_rights(environment, self.cpu_time), *command]
 
     def around_build(self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path],
                      folder: Path) -> List[str]:
         """The same without any network; `folder`, which has to belong to `user()`, is the place it can write to."""
         return [*self._walls([*reads, folder]), "--unshare-net", *_bound("--ro-bind", [*self.reads, *reads]),
-                *_bound("--bind", [folder]), "--chdir", str(folder), "--", *_rights(environment), *command]
+                *_bound("--bind", [folder]), "--chdir", str(folder), "--",
+                *_rights(environment, CPU_TIME), *command]
 
     def _walls(self, seen: Sequence[Path]) -> List[str]:
         wrap = ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
@@ -80,13 +83,13 @@ def hand_over(folder: Path, owner: int) -> None:
                 os.chown(os.path.join(place, name), owner, owner, follow_symlinks=False)
 
 
-def _rights(environment: Mapping[str, str]) -> List[str]:
+def _rights(environment: Mapping[str, str], cpu_time: int) -> List[str]:
     """Who it is, what it may take, and its environment, which only comes into force behind all the walls."""
     command = []
     if os.geteuid() == 0:
         command = ["setpriv", f"--reuid={user()}", f"--regid={user()}", "--clear-groups", "--no-new-privs",
                    "--bounding-set=-all", "--inh-caps=-all", "--"]
-    return [*command, "prlimit", f"--as={MEMORY}", f"--nproc={PROCESSES}", f"--fsize={FILE_SIZE}", f"--cpu={CPU_TIME}",
+    return [*command, "prlimit", f"--as={MEMORY}", f"--nproc={PROCESSES}", f"--fsize={FILE_SIZE}", f"--cpu={cpu_time}",
             "--core=0", "--", "env", "-i", *(f"{name}={value}" for name, value in environment.items())]
 
 
@@ -104,14 +107,14 @@ def _bound(how: str, paths: Iterable[Path]) -> List[str]:
     return [word for path in paths for word in (how, str(path), str(path))]
 
 
-def cage(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Cage]:
+def cage(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = CPU_TIME) -> Optional[Cage]:
     """The cage, or None where none is wanted. GradingError where bubblewrap can't run."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"
     if shutil.which("bwrap") is None:
         raise GradingError(f"bubblewrap is not installed; {advice}")
-    made = Cage(tuple(reads))
+    made = Cage(tuple(reads), cpu_time)
     trial = Cage(()).around_probe(Cage(()).around_node(["/bin/true"], {}, (), Path("/tmp/home")))
     done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL)
     if done.returncode != 0:

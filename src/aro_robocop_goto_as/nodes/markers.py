@@ -23,7 +23,7 @@ TEXT_WIDTH = 36  # characters of a line
 NEAR_FACTOR = 2.0  # the cone turns yellow within this multiple of the obstacle distance
 
 
-def _marker(namespace: str, kind: int, frame: str, color: ColorRGBA) -> Marker:
+def following(namespace: str, kind: int, frame: str, color: ColorRGBA) -> Marker:
     """A marker that follows its frame: stamp zero means the newest transform."""
     marker = Marker(ns=namespace, id=0, type=kind, action=Marker.ADD, color=color, frame_locked=True)
     marker.header.frame_id = frame
@@ -48,7 +48,7 @@ def cone_color(clearance: Optional[float], limit: float) -> ColorRGBA:
 
 
 def _cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
-    marker = _marker("safety_cone", Marker.TRIANGLE_LIST, frame, cone_color(clearance, p.obstacle_distance))
+    marker = following("safety_cone", Marker.TRIANGLE_LIST, frame, cone_color(clearance, p.obstacle_distance))
     marker.scale.x = marker.scale.y = marker.scale.z = 1.0
     rim = _arc(p.obstacle_distance, -p.obstacle_half_angle, p.obstacle_half_angle, 0.0)
     for near, far in zip(rim, rim[1:]):
@@ -56,20 +56,36 @@ def _cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
     return marker
 
 
-def _goal(p: GotoParams, goal: Goal, frame: str) -> Tuple[Marker, Marker]:
-    circle = _marker("goal_circle", Marker.LINE_STRIP, frame, GOAL_COLOR)
+def circle_marker(namespace: str, radius: float, at: Goal, frame: str, color: ColorRGBA) -> Marker:
+    """A circle [m] on the floor."""
+    circle = following(namespace, Marker.LINE_STRIP, frame, color)
     circle.scale.x = 0.02
-    circle.points = _arc(p.position_tolerance, 0.0, 2.0 * math.pi, 0.01)
-    pin = _marker("goal_pin", Marker.CYLINDER, frame, GOAL_COLOR)
+    circle.points = _arc(radius, 0.0, 2.0 * math.pi, 0.01)
+    circle.pose.position.x, circle.pose.position.y = at.x, at.y
+    return circle
+
+
+def goal_markers(radius: float, goal: Goal, frame: str) -> Tuple[Marker, Marker]:
+    """A pin where the goal is, and the circle [m] within which it is reached."""
+    pin = following("goal_pin", Marker.CYLINDER, frame, GOAL_COLOR)
     pin.scale.x = pin.scale.y = 0.02
     pin.scale.z = 0.4
     pin.pose.position.z = 0.2
-    for marker in (circle, pin):
-        marker.pose.position.x, marker.pose.position.y = goal.x, goal.y
-    return circle, pin
+    pin.pose.position.x, pin.pose.position.y = goal.x, goal.y
+    return circle_marker("goal_circle", radius, goal, frame, GOAL_COLOR), pin
 
 
-def _removed(namespace: str) -> Marker:
+def text_marker(namespace: str, text: str, frame: str) -> Marker:
+    """Text above a robot's base frame, turned towards who looks."""
+    marker = following(namespace, Marker.TEXT_VIEW_FACING, frame, TEXT_COLOR)
+    marker.text = text
+    marker.scale.z = 0.13
+    marker.pose.position.z = TEXT_HEIGHT
+    return marker
+
+
+def removed(namespace: str) -> Marker:
+    """Takes a marker away; nothing happens where there is none."""
     return Marker(ns=namespace, id=0, action=Marker.DELETE)
 
 
@@ -80,13 +96,9 @@ def server_markers(p: GotoParams, goal: Optional[Goal], clearance: Optional[floa
     if scan_frame:
         found.append(_cone(p, clearance, scan_frame))
     if odom is not None:
-        text = _marker("state", Marker.TEXT_VIEW_FACING, odom.child_frame_id, TEXT_COLOR)
-        text.text = textwrap.fill(state, TEXT_WIDTH)
-        text.scale.z = 0.13
-        text.pose.position.z = TEXT_HEIGHT
-        found.append(text)
+        found.append(text_marker("state", textwrap.fill(state, TEXT_WIDTH), odom.child_frame_id))
         if goal is None:
-            found += [_removed("goal_circle"), _removed("goal_pin")]
+            found += [removed("goal_circle"), removed("goal_pin")]
         else:
-            found += _goal(p, goal, odom.header.frame_id)
+            found += goal_markers(p.position_tolerance, goal, odom.header.frame_id)
     return MarkerArray(found)

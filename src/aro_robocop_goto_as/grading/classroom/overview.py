@@ -19,7 +19,8 @@ SIGNS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: 
 STYLE = """body{font:15px/1.45 sans-serif;margin:2em auto;max-width:90em;padding:0 1em;color:#222}
 h1 small{font-weight:normal;color:#555}table{border-collapse:collapse;margin:1em 0}
 td,th{padding:.25em .5em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
-td.n{text-align:right;white-space:nowrap}th.turned{height:11em;vertical-align:bottom;padding:0 .1em;font-weight:normal;font-size:12px}
+td.n{text-align:right;white-space:nowrap}
+th.turned{height:11em;vertical-align:bottom;padding:0 .1em;font-weight:normal;font-size:12px}
 th.turned span{writing-mode:vertical-rl;transform:rotate(180deg)}td.sign{text-align:center;padding:.25em .1em}
 .passed{color:#2c8a3d}.failed{color:#c62828}.not{color:#999}
 .bar{display:flex;width:16em;height:1em;background:#eee}.bar i{display:block;height:100%}

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 from urllib.parse import urlparse
 
 import rosgraph
@@ -19,13 +19,14 @@ from .nodes import Node
 from .run import GraderLost, Run
 from .server import ServerRun
 from .stage import Stage
+from .watch import Watch, WatchError
 
 MASTER_PATIENCE = 20.0  # [s, wall]
 BRIDGE = ("no_server", "click", "replace", "frame")
 
 
 class Job:
-    """What the grader asks for, a JSON file: part, command, environment, folder of the node, plan, out, only."""
+    """What the grader asks for, a JSON file: part, node's command, environment and folder, plan, out, only, watched."""
 
     def __init__(self, path: str) -> None:
         raw: Dict[str, Any] = json.loads(Path(path).read_text())
@@ -37,6 +38,8 @@ class Job:
         self.out = Path(raw["out"])
         self.only: List[str] = raw["only"]
         self.parameters: Dict[str, Any] = raw["parameters"]
+        self.watch: Optional[Watch] = None
+        self.watched: bool = raw["watched"]
 
     def launch(self, run: Run) -> Node:
         """Start the node that is graded."""
@@ -45,6 +48,12 @@ class Job:
     def wanted(self, name: str) -> bool:
         """Whether a scenario is to be run."""
         return not self.only or name in self.only
+
+    def begin(self, name: str, about: str) -> None:
+        """Say which scenario comes, and show it to whoever watches."""
+        print(f"begin {name}", flush=True)
+        if self.watch is not None:
+            self.watch.begin(f"{self.part}: {name}", about)
 
     def keep(self, record: rec.Record) -> None:
         """Write a record, then say so."""
@@ -68,11 +77,12 @@ def _serve_gazebo(stage: Stage) -> None:
 def _server(job: Job, stage: Stage) -> None:
     it = ServerRun(job.plan, job.launch, stage)
     try:
+        job.begin("start", "The node comes up")
         start = it.start(job.bag("start"))
         job.keep(start)
         for index, scenario in enumerate(job.plan.scenarios, 1):
             if start.up and job.wanted(scenario.name):
-                print(f"begin {scenario.name}", flush=True)
+                job.begin(scenario.name, scenario.about)
                 job.keep(it.scenario(index, scenario, job.bag(scenario.name)))
     finally:
         it.close()
@@ -82,8 +92,9 @@ def _bridge(job: Job, stage: Stage) -> None:
     it = BridgeRun(job.plan, job.launch, stage)
     try:
         for name in BRIDGE:
-            print(f"begin {name}", flush=True)
-            job.keep(getattr(it, name)(job.bag(name)))
+            drive = getattr(it, name)
+            job.begin(name, drive.__doc__)
+            job.keep(drive(job.bag(name)))
     finally:
         it.close()
 
@@ -113,10 +124,19 @@ def main() -> None:
     stage.repeat_clock()
     status = 0
     try:
+        if job.watched:
+            job.watch = stage.watch = Watch(stage.robot, job.plan, job.out / f"{job.part}-rviz.log")
+            job.watch.open()
         (_server if job.part == "server" else _bridge)(job, stage)
     except GraderLost as error:
         print(error, file=sys.stderr)
         status = 1
+    except WatchError as error:
+        print(f"error {error}")
+        status = 1
+    finally:
+        if job.watch is not None:
+            job.watch.close()
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)  # rospy's threads may still be talking to a node that is gone

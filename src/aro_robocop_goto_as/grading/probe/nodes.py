@@ -10,7 +10,6 @@ from ..guard import Guard
 
 MOST_OUTPUT = 200_000  # bytes of a node's output that are kept; what a node writes beyond it is read and dropped
 LONGEST_LINE = 2_000
-END_PATIENCE = 3.0  # [s, wall]
 
 
 class Node:
@@ -40,14 +39,10 @@ class Node:
         return self.process.poll()
 
     def end(self) -> None:
-        """End the node and its children."""
+        """End the node and its children at once: what it would say of being interrupted is not its author's fault."""
         self.guard.stop()
-        for number, patience in ((signal.SIGINT, END_PATIENCE), (signal.SIGKILL, None)):
-            try:
-                os.killpg(self.process.pid, number)
-            except ProcessLookupError:
-                pass
-            try:
-                self.process.wait(patience)
-            except subprocess.TimeoutExpired:
-                continue
+        try:
+            os.killpg(self.process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        self.process.wait()

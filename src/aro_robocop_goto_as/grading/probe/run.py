@@ -189,19 +189,24 @@ class Run:
 
     # -- time --
 
-    def tick(self, pace: float = PACE) -> None:
-        """One control tick. While a goal is pursued it lasts until it is answered, otherwise `pace` [s, wall]."""
+    def tick(self, pace: float = PACE, real_time: bool = True) -> None:
+        """One control tick. While a goal is pursued it lasts until it is answered, otherwise `pace` [s, wall].
+
+        Who watches sees it at real time, if it is to be.
+        """
         if rospy.is_shutdown():
             raise GraderLost("the grader's ROS node was shut down while the submission ran")
         self.heard.clear()
-        started = time.monotonic()
-        sample = self.stage.tick()
+        started = self.stage.wall()
+        sample = self.stage.tick(real_time)
         self.lockstep.tick = self.stage.tick_number
         self.add("samples", sample)
+        if self.stage.watch is not None:
+            self.stage.watch.show(sample, self.parts["goals"], self.parts["clicks"])
         if self.awaiting:
             self._await_answers()
         else:
-            self.drain(lambda: False, max(1e-3, pace - (time.monotonic() - started)))
+            self.drain(lambda: False, max(1e-3, pace - (self.stage.wall() - started)))
         self._look_at_node()
 
     def _await_answers(self) -> None:
@@ -255,11 +260,15 @@ class Run:
             self.add("deaths", rec.Death(self.stage.now, self.node.process.returncode, self.node.guard.reason))
 
     def wait_for(self, condition: Callable[[], bool], patience: float, pace: float = PACE) -> bool:
-        """Let time go on until a condition holds, the node is dead or `patience` [s, wall] is over."""
+        """Let time go on until a condition holds, the node is dead or `patience` [s, wall] is over.
+
+        It goes on as fast as ever even when watched: a node that takes simulated seconds to come up has to be there
+        within that patience all the same.
+        """
         deadline = time.monotonic() + patience
         while not condition():
             if self._dead() or time.monotonic() >= deadline:
                 self._look_at_node()
                 return condition()
-            self.tick(pace)
+            self.tick(pace, real_time=False)
         return True

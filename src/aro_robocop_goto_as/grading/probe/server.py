@@ -1,6 +1,5 @@
 """The server's scenarios: goals sent to it as any client does, on the bare topics."""
 
-import time
 from typing import Callable, Tuple
 
 import rosgraph
@@ -16,7 +15,7 @@ from .. import record as rec
 from ..plan import Plan, Scenario, Step
 from ..record import Record
 from .nodes import Node
-from .run import ACTION, Run
+from .run import ACTION, SETTLE, Run
 from .stage import Stage, outlines
 
 START_PATIENCE = 20.0  # [s, wall] for the node to bring its action server up ...
@@ -77,7 +76,7 @@ class ServerRun:
         """Drive its script to the end, or to where it can't go on."""
         run = self.run
         run.begin(index, scenario.odd_scan, bag)
-        self.deadline = time.monotonic() + self.limits.wall_time
+        self.deadline = self.stage.wall() + self.limits.wall_time
         problem = ""
         if run.node is None or run.node.death() is not None:
             self._end_node()
@@ -106,6 +105,7 @@ class ServerRun:
         if self.run.node is not None:
             self.run.node.end()
             self.run.node = None
+            self.run.drain(lambda: False, SETTLE)  # its last words belong to the scenario that is over
             # A publisher notices that its reader has gone when it writes; a fresh one counts only the next node.
             for topic in (self.goal_topic, self.cancel_topic):
                 topic.unregister()
@@ -177,7 +177,7 @@ class ServerRun:
         self.run.tick()
         if self.run.node is None or self.run.node.death() is not None:
             return "the node died"
-        if time.monotonic() > self.deadline:
+        if self.stage.wall() > self.deadline:
             return f"time-out: not done within {self.limits.wall_time:g} s of wall time"
         return ""
 

@@ -23,6 +23,7 @@ from ...params import SimParams
 from ...simulator import JOINTS, Observations, RobotSpec, Simulator
 from ..plan import Plan, site, world_of
 from ..record import Sample
+from .watch import Watch
 
 AHEAD = np.radians(30.0)
 # /cmd_vel is held for ever, as in the lab. A clock of 30 Hz costs less than one of 60, and each tick is one of its own.
@@ -53,6 +54,11 @@ class Stage:
         self.tick_number = 0
         self.p = PARAMS  # this and `control` for GazeboServices
         self.control = _Untouched()
+        self.watch: Optional[Watch] = None  # who is to be shown the run
+
+    def wall(self) -> float:
+        """The wall clock [s], without what went by for the sake of whoever watches: what deadlines go by."""
+        return time.monotonic() - (0.0 if self.watch is None else self.watch.slept)
 
     @property
     def now(self) -> float:
@@ -92,14 +98,20 @@ class Stage:
             return False
         return True
 
-    def tick(self) -> Sample:
-        """Move time on by one control tick and publish what it brings; the truth at its end."""
+    def tick(self, real_time: bool = True) -> Sample:
+        """Move time on by one control tick and publish what it brings; the truth at its end.
+
+        Somebody who watches sees it at real time, unless that is of no use.
+        """
         self.tick_number += 1
-        wanted = {sensor: [0] for sensor in self.robot.wanted() if sensor != JOINTS}
+        sent = {sensor for sensor in self.robot.wanted() if sensor != JOINTS}
+        wanted = {sensor: [0] for sensor in (sent if self.watch is None else {*sent, JOINTS})}
         for _ in range(STEPS_PER_TICK):
             seen = self.sim.step(wanted)
             if seen is not None:
-                self._publish(seen, set(wanted))
+                if self.watch is not None:
+                    self.watch.saw(seen, real_time)
+                self._publish(seen, sent)
         return self.sample()
 
     def repeat_clock(self) -> None:
@@ -112,7 +124,10 @@ class Stage:
             seen = replace(seen, scans={0: _odd(seen.scans[0])})
         self.robot.publish(seen, stamp, wanted)
         if seen.odometry is not None:
-            self.tf.publish(self.robot.transforms(seen, self.sim.map_from_odom(), stamp))
+            transforms = self.robot.transforms(seen, self.sim.map_from_odom(), stamp)
+            self.tf.publish(transforms)
+            if self.watch is not None:
+                self.watch.moves(transforms)
         if self.bag is not None:
             self._write(seen, stamp)
         if seen.clock:
@@ -156,6 +171,8 @@ class Stage:
             convert.to_transform(PARAMS.map_frame, PARAMS.odom_frame, self.sim.map_from_odom(), self.stamp),
         ]
         self.tf_static.publish(transforms)
+        if self.watch is not None:
+            self.watch.stands(transforms)
 
     def odom_from_base(self) -> Pose2D:
         """Where the robot truly is in its odom frame."""
