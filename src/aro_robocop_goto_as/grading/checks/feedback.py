@@ -59,15 +59,17 @@ def _pairs(record: Record) -> List[Pair]:
     return found
 
 
-def _beyond(value: float, truths: Sequence[float]) -> float:
-    """How far a value is outside of what was true lately; NaN is infinitely far."""
+def _position_off(pair: Pair) -> float:
+    """How far [m] a position_error is outside of what was true lately; NaN is infinitely far."""
+    value, truths = pair[0].position_error, [errors_at(sample, pair[2])[0] for sample in pair[1]]
     if not math.isfinite(value):
         return math.inf
     return max(0.0, min(truths) - value, value - max(truths))
 
 
-def _angle_off(value: float, truths: Sequence[float]) -> float:
-    """The same for angles: the truths lie on the short way from the first one."""
+def _angle_off(pair: Pair) -> float:
+    """The same for an angle_error [rad]: the truths lie on the short way from the first one."""
+    value, truths = pair[0].angle_error, [errors_at(sample, pair[2])[1] for sample in pair[1]]
     if not math.isfinite(value):
         return math.inf
     spread = [wrapped(truth - truths[0]) for truth in truths]
@@ -79,11 +81,7 @@ def _angle_off(value: float, truths: Sequence[float]) -> float:
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
     pairs = _pairs(record)
-    wrong = [
-        pair
-        for pair in pairs
-        if _beyond(pair[0].position_error, [errors_at(s, pair[2])[0] for s in pair[1]]) > limits.position_tolerance
-    ]
+    wrong = [pair for pair in pairs if _position_off(pair) > limits.position_tolerance]
     if not pairs:
         return NotReached("there was no feedback")
     if len(wrong) <= MOST_WRONG * len(pairs):
@@ -110,11 +108,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
     if not pairs:
         return NotReached("there was no feedback")
     beyond = [pair for pair in pairs if abs(pair[0].angle_error) > math.pi + 0.05]
-    unwrapped = [
-        pair
-        for pair in beyond
-        if _angle_off(pair[0].angle_error, [errors_at(s, pair[2])[1] for s in pair[1]]) <= limits.angle_tolerance
-    ]
+    unwrapped = [pair for pair in beyond if _angle_off(pair) <= limits.angle_tolerance]
     if unwrapped and len(unwrapped) > 0.7 * len(beyond):  # degrees may be right by chance, once in a while
         it = unwrapped[0][0]
         return Failed(
@@ -124,11 +118,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
             f"angle error not wrapped: {it.angle_error:.1f} rad; the difference of two angles has to be "
             "brought back to -pi..pi",
         )
-    wrong = [
-        pair
-        for pair in pairs
-        if _angle_off(pair[0].angle_error, [errors_at(s, pair[2])[1] for s in pair[1]]) > limits.angle_tolerance
-    ]
+    wrong = [pair for pair in pairs if _angle_off(pair) > limits.angle_tolerance]
     if len(wrong) <= MOST_WRONG * len(pairs):
         return Passed()
     it, around, goal = wrong[0]
