@@ -1,6 +1,7 @@
 """Dask: workers of one's own, or those of a scheduler that is there already; tasks in, results out as they come."""
 
 import contextlib
+import tempfile
 import uuid
 from typing import Iterator, Sequence, Tuple, Union
 
@@ -30,9 +31,10 @@ def connected(scheduler: str, workers: int, unsafe: bool) -> Iterator[Client]:
                 print(f"no worker at {scheduler} yet; {START} {scheduler}", flush=True)
                 client.wait_for_workers(1)
         else:
+            place = stack.enter_context(tempfile.TemporaryDirectory(prefix="robocop-dask-"))
             cluster = stack.enter_context(LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None,
-                memory_limit=0, silence_logs=50))
+                n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0, host="127.0.0.1",
+                dashboard_address="127.0.0.1:0", silence_logs=50, local_directory=place))
             client = stack.enter_context(Client(cluster))
         _expect_ready(client, unsafe)
         yield client
