@@ -131,3 +131,24 @@ for number in range(40):
 import time
 time.sleep(30.0)
 """
+MEMFD = """
+import os, time
+held = []
+for _ in range(60):
+    held.append(os.memfd_create('hidden'))
+    for _ in range(60):
+        os.write(held[-1], bytes(2 ** 20))
+time.sleep(60.0)
+"""
+FLOOD = """
+import threading
+def flood():
+    from rosgraph_msgs.msg import Log
+    while not rospy.core.is_initialized():
+        pass
+    topic = rospy.Publisher('/rosout', Log, queue_size=10)
+    log = Log(name='/flood', level=8, msg='x' * 4 * 2 ** 20)
+    for _ in range(400):
+        topic.publish(log)
+threading.Thread(target=flood, daemon=True).start()
+"""

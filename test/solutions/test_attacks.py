@@ -2,12 +2,13 @@
 
 import os
 import socket
+import subprocess
 
 import attacks
 import pytest
 from graded import CAGED, PLAN, RIGHT, SHARE, STATE, recorded
 
-from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.errors import GradingError, RobocopError
 from aro_robocop_goto_as.grading import skeleton
 from aro_robocop_goto_as.grading.sandbox import cage
 from aro_robocop_goto_as.grading.submission import take
@@ -54,10 +55,30 @@ def test_who_kills_the_master_and_the_grader_loses_and_the_reason_is_said(tmp_pa
     assert "was ended while the submission ran" in it.problem or "was shut down while" in it.problem
 
 
-def test_who_takes_all_memory_with_many_processes_is_ended_and_the_reason_is_said(tmp_path):
-    it, _ = attacked(attacks.MEMORY, tmp_path / "mine")
+@pytest.mark.parametrize("name", ["MEMORY", "MEMFD"])
+def test_who_takes_all_memory_in_many_pieces_is_ended_and_the_reason_is_said(name, tmp_path):
+    it, _ = attacked(getattr(attacks, name), tmp_path / "mine")
     reasons = {death.reason for record in it.records.values() for death in record.deaths}
     assert reasons == {"its processes together took more than 2048 MB of memory"}
+
+
+def test_of_a_flood_of_messages_only_what_is_of_use_is_kept(tmp_path):
+    it, lines = attacked(attacks.FLOOD, tmp_path / "mine")
+    assert "left" in it.records and it.problem == ""
+    assert 100 < max(map(len, lines)) < 3000
+    assert sum(path.stat().st_size for path in (tmp_path / "mine" / "out").iterdir()) < 64 * 1024 ** 2
+
+
+def test_a_cage_that_is_not_roots_has_no_other_place_to_write_to(tmp_path):
+    tmp_path.chmod(0o755)
+    code = ("import subprocess, sys\nfrom pathlib import Path\nfrom aro_robocop_goto_as.grading.sandbox import Cage\n"
+            "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
+            "touch /tmp/here && echo fine']\n"
+            "sys.exit(subprocess.call(Cage(()).around_probe(Cage(()).around_node(command, {}, (), Path('/tmp/home')))))")
+    nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+    done = subprocess.run([*nobody, "/usr/bin/python3", "-c", code], env={**os.environ, "HOME": "/tmp"},
+                          capture_output=True, text=True, timeout=BUDGET, cwd="/tmp")
+    assert done.stdout == "fine\n", done.stdout + done.stderr
 
 
 @pytest.fixture
@@ -93,6 +114,21 @@ def test_building_a_package_and_reading_its_launch_file_reach_nothing_outside(pa
     for words in (log, submission.parameters["/loot"]):
         assert sum(line.startswith("refused ") for line in words.splitlines()) == 9, words
         assert "SUCCESS" not in words, words
+
+
+@pytest.mark.parametrize("name", ["package.xml", "launch/robocop_goto_as.launch"])
+def test_a_link_to_a_device_is_not_waited_for(name, package, tmp_path):
+    (package / name).unlink()
+    (package / name).symlink_to("/dev/ptmx")
+    with pytest.raises(RobocopError, match="expected an ordinary file"):
+        taken(package, tmp_path / "workshop")
+
+
+def test_a_pipe_that_the_build_makes_is_not_waited_for(package, tmp_path):
+    with open(package / "CMakeLists.txt", "a") as text:
+        text.write("execute_process(COMMAND mkfifo ${CMAKE_CURRENT_SOURCE_DIR}/launch/zz.launch)\n")
+    with pytest.raises(RobocopError, match="zz.launch: expected an ordinary file"):
+        taken(package, tmp_path / "workshop")
 
 
 def test_a_build_that_fills_the_disk_is_ended_and_the_reason_is_said(package, tmp_path):

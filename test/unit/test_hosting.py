@@ -32,7 +32,7 @@ def test_a_package_is_found_in_its_folder_in_a_workspace_and_among_others_by_its
 
 @pytest.mark.parametrize("files, expected", [
     ({}, "no package.xml in it or below it"),
-    ({"package.xml": "<package>"}, "package.xml: no element found"),
+    ({"package.xml": "<package>"}, "package.xml: not XML that can be read: no element found"),
     ({"package.xml": "<package/>"}, "package.xml: expected a <name>"),
     ({"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")}, "2 packages are there, give the"),
     ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),

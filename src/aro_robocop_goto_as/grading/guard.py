@@ -8,12 +8,13 @@ import os
 import signal
 import threading
 from pathlib import Path
-from typing import List, Optional
+from typing import Dict, List, Optional, Sequence
 
 import psutil
 
 MEMORY = 2 * 1024 ** 3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
 DISK = 512 * 1024 ** 2  # bytes that a build may write; the lab's takes 2 MB
+SMALLEST = 4096  # bytes that a file counts at least
 PERIOD = 0.1  # [s, wall]
 
 
@@ -57,8 +58,9 @@ def together(pid: int, enough: int) -> int:
         family = [top, *top.children(recursive=True)]
     except psutil.NoSuchProcess:
         return 0
-    resident = sum(_of(process, False) for process in family)
-    return resident if resident <= enough else sum(_of(process, True) for process in family)
+    unmapped = _unmapped(family)
+    resident = sum(_of(process, False) for process in family) + unmapped
+    return resident if resident <= enough else sum(_of(process, True) for process in family) + unmapped
 
 
 def _of(process: "psutil.Process", proportional: bool) -> int:
@@ -70,13 +72,28 @@ def _of(process: "psutil.Process", proportional: bool) -> int:
         return 0
 
 
+def _unmapped(family: Sequence["psutil.Process"]) -> int:
+    """Bytes of files that are memory only (memfd), which belong to no process's size unless it has them mapped."""
+    found: Dict[int, int] = {}
+    for process in family:
+        folder = f"/proc/{process.pid}/fd"
+        try:
+            for entry in os.scandir(folder):
+                if os.readlink(entry.path).startswith("/memfd:"):
+                    status = os.stat(entry.path)
+                    found[status.st_ino] = status.st_blocks * 512
+        except OSError:  # it has ended, or is not ours to look into
+            pass
+    return sum(found.values())
+
+
 def size(folder: Path) -> int:
-    """Bytes of disk that a folder's files take; links are not followed."""
+    """Bytes of disk that a folder's files take, an empty one a little too; links are not followed."""
     found: List[int] = []
     for place, _, files in os.walk(folder):
         for name in files:
             try:
-                found.append(os.lstat(os.path.join(place, name)).st_blocks * 512)
+                found.append(max(SMALLEST, os.lstat(os.path.join(place, name)).st_blocks * 512))
             except FileNotFoundError:
                 pass
     return sum(found)

@@ -73,6 +73,11 @@ class Grade:
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
 
 
+def printable(text: str) -> str:
+    """A text on one line, without characters that do something to a terminal or that XML does not allow."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
 def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
     """The grade for the parts that there are records of; `problems` (part -> words) says why some lack."""
     lines = [_line(check, plan, records[check.part], problems.get(check.part, ""))

@@ -10,7 +10,7 @@ from ..errors import RobocopError
 from ..hosting.workspace import alone
 from . import display
 from .exam import examine
-from .judge import Grade, Outcome
+from .judge import Grade, Outcome, printable
 from .plan import load
 from .sandbox import CPU_TIME, WATCHED_CPU_TIME, cage
 from .submission import take
@@ -27,7 +27,7 @@ def _progress(part: str, scenario: str) -> None:
 def show(result: Grade) -> str:
     """The grade for a terminal."""
     lines = []
-    for line in result.lines:
+    for line in result.lines:  # words may hold what a submission says, which must not write lines of its own
         lines.append(
             f"{SIGNS[line.outcome]:11}  {line.points:4g} / {line.of:<4g}  {line.sentence}"
             + (" (extra)" if line.extra else "")
@@ -35,7 +35,8 @@ def show(result: Grade) -> str:
         if line.outcome is not Outcome.PASSED:
             lines.append(f"{'':11}  {line.words()}")
     lines += [f"problem: {problem}" for problem in result.problems]
-    return "\n".join([*lines, f"{result.name}: {result.points:g} of {result.of:g} points"])
+    lines.append(f"{result.name}: {result.points:g} of {result.of:g} points")
+    return "\n".join(printable(line) for line in lines)
 
 
 def main() -> None:

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MultipleLocator
 
 from .plan import Limits
-from .record import STATUS_NAMES, TERMINAL, Goal, Record, Sample, end_of, errors_at
+from .record import TERMINAL, Goal, Record, Sample, end_of, errors_at, status_name
 
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
@@ -38,6 +38,7 @@ STYLE = {
 JUMP = 0.2  # [m] in a tick: no robot drives so fast
 MOST_POINTS = 600  # of a curve: more are not seen
 GAP = 0.5  # [s] without a value, and a curve is parted
+FARTHEST = 50.0  # [m] from odom's origin: a goal farther off is not in the picture
 MOST_GOALS = 6  # in a timeline
 NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclass="[^"]*"', re.DOTALL)
 
@@ -121,6 +122,16 @@ def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
     return legs
 
 
+def _near(x: float, y: float) -> bool:
+    """Whether a place can be shown beside the robot's."""
+    return math.hypot(x, y) < FARTHEST
+
+
+def _name(goal: Goal) -> str:
+    """What goes into a plot of what its sender called it."""
+    return "".join(character for character in goal.id[-24:] if character.isprintable())
+
+
 def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """The way over the world, seen from above, in odom."""
     axes = all_axes[0]
@@ -128,8 +139,10 @@ def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> Non
     for outline in record.obstacles:
         axes.add_patch(Polygon(list(zip(outline[::2], outline[1::2])), facecolor="#bbbbbb", edgecolor="#888888"))
     for goal in record.goals:
-        axes.add_patch(Circle((goal.x, goal.y), 0.1, fill=False, edgecolor=GREEN, linewidth=1.5))
-        axes.annotate(f"goal {goal.id[-24:]}", (goal.x, goal.y), xytext=(8, 6), textcoords="offset points", color=GREEN)
+        if _near(goal.x, goal.y):
+            axes.add_patch(Circle((goal.x, goal.y), 0.1, fill=False, edgecolor=GREEN, linewidth=1.5))
+            axes.annotate(f"goal {_name(goal)}", (goal.x, goal.y), xytext=(8, 6), textcoords="offset points",
+                          color=GREEN, parse_math=False)
     for number, leg in enumerate(_legs(record.samples)):
         colour, name = (BLUE, "robot") if number == 0 else (GREY, "set down elsewhere")
         axes.plot([it.x for it in leg], [it.y for it in leg], color=colour, label=name if leg else None)
@@ -139,7 +152,7 @@ def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> Non
         near = min(record.samples, key=lambda sample: abs(sample.time - moment), default=None)
         if near is not None:
             axes.plot(near.x, near.y, "o", markersize=10, fillstyle="none", color=RED, markeredgewidth=1.8)
-    seen = ([(it.x, it.y) for it in record.samples] + [(it.x, it.y) for it in record.goals]
+    seen = ([(it.x, it.y) for it in record.samples] + [(it.x, it.y) for it in record.goals if _near(it.x, it.y)]
             + [(it.odom_x, it.odom_y) for it in record.clicks])
     if seen:  # and of obstacles what is near
         axes.set_xlim(min(x for x, _ in seen) - 0.6, max(x for x, _ in seen) + 0.6)
@@ -202,16 +215,16 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
     end = record.samples[-1].time if record.samples else 1.0
     axes.set_xlim(record.samples[0].time if record.samples else 0.0, end)
     for row, goal in enumerate(goals):
-        changes = sorted([(goal.time, "sent")] + [(it.time, STATUS_NAMES[it.status]) for it in record.statuses
+        changes = sorted([(goal.time, "sent")] + [(it.time, status_name(it.status)) for it in record.statuses
                                                   if it.id == goal.id], key=lambda change: change[0])
         for (start, name), (until, _) in zip(changes, [*changes[1:], (end, "")]):
-            terminal = name in [STATUS_NAMES[it] for it in TERMINAL]
+            terminal = name in [status_name(it) for it in TERMINAL]
             axes.broken_barh([(start, until - start)], (row - 0.35, 0.7), color=STATE_COLOURS.get(name, GREY),
                              alpha=0.35 if terminal else 0.85, linewidth=0)
             if name != "sent":
                 axes.annotate(name, (start, row), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.5,
                               color="black" if terminal else "white", annotation_clip=False)
-    axes.set_yticks(range(len(goals)), [goal.id[-24:] for goal in goals])
+    axes.set_yticks(range(len(goals)), [_name(goal) for goal in goals], parse_math=False)
     axes.set_ylim(max(1, len(goals)) - 0.5, -0.5)
     axes.grid(False, axis="y")
     _mark(axes, at)

@@ -13,6 +13,7 @@ from typing import Any, Dict, Iterable, List, Tuple, Type
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 STATUS_NAMES = ("PENDING", "ACTIVE", "PREEMPTED", "SUCCEEDED", "ABORTED", "REJECTED", "PREEMPTING", "RECALLING",
                 "RECALLED", "LOST")  # actionlib_msgs/GoalStatus
+MOST_TEXT = 2_000  # characters of anybody's words that are kept
 TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 
@@ -149,9 +150,16 @@ _PARTS: Dict[str, Type[Any]] = {
     "commands": Command, "clicks": Click, "lines": Line, "deaths": Death}
 
 
+def status_name(status: int) -> str:
+    """A status for a person, also one that there is none of."""
+    return STATUS_NAMES[status] if 0 <= status < len(STATUS_NAMES) else f"status {status}"
+
+
 def write(record: Record, path: Path) -> None:
     """As JSON; infinity and NaN as Python's json has them."""
-    path.write_text(json.dumps(dataclasses.asdict(record)))
+    new = path.with_suffix(".new")  # there as a whole, or not
+    new.write_text(json.dumps(dataclasses.asdict(record)))
+    new.replace(path)
 
 
 def read(path: Path) -> Record:

@@ -8,8 +8,8 @@ from typing import Dict, List
 from xml.etree import ElementTree
 
 from .checks import PLOTS as PLOT_OF
-from .judge import Grade, Line, Outcome, Records
-from .plan import Plan
+from .judge import Grade, Line, Outcome, Records, printable
+from .plan import BRIDGE_SCENARIOS, START, Plan
 from .plots import PLOTS
 
 SHOWN = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
@@ -51,7 +51,7 @@ def _junit(grade: Grade) -> ElementTree.Element:
     suite = ElementTree.Element(
         "testsuite",
         {
-            "name": grade.name,
+            "name": _clean(grade.name),
             "tests": str(len(grade.lines)),
             "failures": str(len(grade.failed())),
             "skipped": str(sum(line.outcome is Outcome.NOT_REACHED for line in grade.lines)),
@@ -68,8 +68,8 @@ def _junit(grade: Grade) -> ElementTree.Element:
 
 
 def _clean(text: str) -> str:
-    """Without the control characters that XML does not allow."""
-    return "".join(character for character in text if character in "\t\n" or character >= " ")
+    """Without the characters that XML does not allow."""
+    return "\n".join(printable(line) for line in text.split("\n"))
 
 
 def _html(grade: Grade, plan: Plan, records: Records) -> str:
@@ -83,7 +83,7 @@ def _html(grade: Grade, plan: Plan, records: Records) -> str:
     parts += [_row(line) for line in grade.lines]
     parts.append("</table>")
     for part, by_name in records.items():
-        order = ["start", *(scenario.name for scenario in plan.scenarios), "no_server", "click", "replace", "frame"]
+        order = [START, *(scenario.name for scenario in plan.scenarios), *BRIDGE_SCENARIOS]
         for name in sorted(by_name, key=order.index):
             parts += _scenario(grade, plan, records, part, name)
     return "\n".join(parts)

@@ -16,6 +16,7 @@ from ..errors import GradingError
 from ..loopback import free_port
 from . import building
 from . import record as rec
+from .guard import MEMORY, Guard
 from .sandbox import OWN_ENVIRONMENT, Cage
 from .submission import Script, Submission
 
@@ -25,6 +26,7 @@ Progress = Callable[[str], None]
 BUDGET = 240.0  # [s, wall] for all scenarios of a part
 END_PATIENCE = 5.0  # [s, wall]
 LOG_LINES = 15
+OWN_MEMORY = 1024 ** 3  # bytes that the probe may take besides the submission; it takes some 150 MB
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,7 @@ def _watch(
             stderr=errors,
             start_new_session=True,
         )
+    guard = Guard(process.pid, memory=MEMORY + OWN_MEMORY)
     threading.Thread(target=_read, args=(process, lines), daemon=True).start()
     deadline, problem, scenario, patience = time.monotonic() + budget, "", "start", 0.0
     try:
@@ -145,6 +148,8 @@ def _watch(
                 raise GradingError(rest)
     finally:
         _end(process, patience)
+        guard.stop()
+    problem = problem or guard.reason
     if not problem and process.returncode != 0:
         problem = f"the run was cut short during {scenario} (status {process.returncode}): {_last(log)}"
     return Recorded(_records(out, part), problem)

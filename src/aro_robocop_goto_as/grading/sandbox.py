@@ -27,6 +27,7 @@ USERS = 100_000
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/opt", "/etc/alternatives", "/etc/catkin", "/etc/group",
           "/etc/hosts", "/etc/ld.so.cache", "/etc/localtime", "/etc/nsswitch.conf", "/etc/passwd", "/etc/ros")
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself, which is ours
+SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")  # else a user's own cage lets him write there without limit
 TRIAL = 10.0  # [s, wall]
 
 
@@ -46,13 +47,13 @@ class Cage:
                     home: Path) -> List[str]:
         """Reads the system and its own files, writes a small home in memory, is alone with its processes."""
         return [*self._walls([*reads, home]), *_bound("--ro-bind", [*self.reads, *reads]), *_writable(str(home)),
-                "--chdir", str(home), "--", *_rights(environment, self.cpu_time), *command]
+                *SEALED, "--chdir", str(home), "--", *_rights(environment, self.cpu_time), *command]
 
     def around_build(self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path],
                      folder: Path) -> List[str]:
         """The same without any network; `folder`, which has to belong to `user()`, is the place it can write to."""
         return [*self._walls([*reads, folder]), "--unshare-net", *_bound("--ro-bind", [*self.reads, *reads]),
-                *_bound("--bind", [folder]), "--chdir", str(folder), "--",
+                *_bound("--bind", [folder]), *SEALED, "--chdir", str(folder), "--",
                 *_rights(environment, CPU_TIME), *command]
 
     def _walls(self, seen: Sequence[Path]) -> List[str]:

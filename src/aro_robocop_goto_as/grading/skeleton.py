@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -31,8 +32,9 @@ def main() -> None:
     folder = Path(parser.parse_args().name)
     try:
         make(Path(os.environ["ROBOCOP_SHARE"]), folder)
-    except RobocopError as error:
+    except (RobocopError, OSError) as error:
         print(f"robocop new: {error}", file=sys.stderr)
         sys.exit(1)
-    print(f"{folder}: follow the TODOs in its scripts/. It runs with: ./robocop sim --with {folder}\n"
-          f"and is graded with: ./robocop grade {folder}")
+    path = shlex.quote(str(folder))
+    print(f"{folder}: follow the TODOs in its scripts/. It runs with: ./robocop sim --with {path}\n"
+          f"and is graded with: ./robocop grade {path}")

@@ -1,20 +1,22 @@
 """A path -> what of the lab is there, built, with the commands that start it."""
 
+import io
 import os
 import re
 import sys
 import tempfile
+import tokenize
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
-from xml.etree import ElementTree
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
 
 import yaml
 
 from ..errors import GradingError
 from ..hosting import workspace
 from ..hosting.compat import compat_environment
+from ..hosting.files import read_text, read_xml
 from ..hosting.package import NODES, Package, find_package
 from ..hosting.workspace import Environment, alone, sourced
 from . import building
@@ -23,7 +25,8 @@ from .skeleton import make
 
 LAB = "aro_robocop_goto_as"
 PARTS = dict(zip((script for script, _ in NODES), ("server", "bridge")))
-IS_SERVER, IS_BRIDGE = re.compile(r"\b\w*ActionServer\b"), re.compile(r"move_base_simple|\bSimpleActionClient\b")
+SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
+CLICKS = "move_base_simple"
 LAUNCH_PATIENCE = 30.0  # [s, wall]
 MOST_PARAMETERS = 100_000  # bytes of roslaunch's listing
 
@@ -84,7 +87,7 @@ def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission
     return Submission(
         top.stem if top.is_file() else top.name,
         top,
-        [*paths, state / "grade" / "lab"],
+        [top, state / "grade" / "lab"],  # helper modules beside them included
         lab_environment(share, state),
         scripts,
     )
@@ -98,8 +101,22 @@ def _part_of(path: Path) -> str:
     """server, bridge, or nothing for a file that is neither."""
     if path.name in PARTS:
         return PARTS[path.name]
-    text = path.read_text(errors="replace")
-    return "server" if IS_SERVER.search(text) else "bridge" if IS_BRIDGE.search(text) else ""
+    words = _names_in(read_text(path))
+    if words & SERVERS:
+        return "server"
+    return "bridge" if words & CLIENTS or any(CLICKS in word for word in words) else ""
+
+
+def _names_in(code: str) -> Set[str]:
+    """Names and strings of a program, without its comments; of one that is broken, whatever comes before that."""
+    found: Set[str] = set()
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(code).readline):
+            if token.type in (tokenize.NAME, tokenize.STRING):
+                found.add(token.string)
+    except (tokenize.TokenError, SyntaxError):
+        pass
+    return found
 
 
 def lab_environment(share: Path, state: Path) -> Environment:
@@ -160,11 +177,7 @@ def _launched(copy: Path) -> Dict[str, Dict[str, str]]:
     """Script -> attributes of its <node> in the package's launch files."""
     found: Dict[str, Dict[str, str]] = {}
     for path in sorted(copy.rglob("*.launch")):
-        try:
-            nodes = ElementTree.parse(path).getroot().iter("node")
-        except ElementTree.ParseError as error:
-            raise GradingError(f"{path.name}: {error}") from error
-        for node in nodes:
+        for node in read_xml(path).iter("node"):
             found.setdefault(node.get("type", ""), dict(node.attrib))
     return found
 

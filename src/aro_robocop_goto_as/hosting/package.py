@@ -5,9 +5,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterator, List, Optional, Tuple
-from xml.etree import ElementTree
 
 from ..errors import HostingError
+from .files import read_text, read_xml
 
 NODES = (("robocop_goto_as.py", "aro_robocop_goto_as_node"),  # the handout's scripts, and the names of their nodes
          ("robocop_rviz_goto_ac.py", "robocop_rviz_goto_ac_node"))
@@ -29,7 +29,7 @@ class Package:
     def starts_simulator(self) -> bool:
         """Whether its own launch files bring the lab's simulator up."""
         return self.launch_file is not None and any(
-            SIMULATOR.search(path.read_text(errors="replace")) for path in self.path.rglob("*.launch"))
+            SIMULATOR.search(read_text(path)) for path in self.path.rglob("*.launch"))
 
     def launch_arguments(self) -> List[str]:
         """Names of the arguments that its launch file takes."""
@@ -38,11 +38,7 @@ class Package:
 
 def arguments_of(launch_file: Path) -> List[str]:
     """Names of the arguments that a launch file takes."""
-    try:
-        root = ElementTree.parse(launch_file).getroot()
-    except ElementTree.ParseError as error:
-        raise HostingError(f"{launch_file}: not a launch file: {error}") from error
-    return [entry.get("name", "") for entry in root.iter("arg") if entry.get("value") is None]
+    return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
 
 
 def find_package(path: str, launch: str = "") -> Package:
@@ -80,10 +76,7 @@ def _manifests(top: Path) -> Iterator[Path]:
 
 
 def _name(manifest: Path) -> str:
-    try:
-        name = ElementTree.parse(manifest).getroot().findtext("name")
-    except ElementTree.ParseError as error:
-        raise HostingError(f"{manifest}: {error}") from error
+    name = read_xml(manifest).findtext("name")
     if not name or not name.strip():
         raise HostingError(f"{manifest}: expected a <name>")
     return name.strip()

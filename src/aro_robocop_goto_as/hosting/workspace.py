@@ -55,6 +55,8 @@ def copy_sources(sources: Mapping[str, Path], folder: Path, follow_links: bool =
     source.mkdir(parents=True)
     for name, path in sources.items():
         shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
+        for place, _, _ in os.walk(source / name):
+            os.chmod(place, os.stat(place).st_mode | 0o700)  # else a copy of what can only be read can't be removed
 
 
 def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:

@@ -36,7 +36,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
             _why_nothing(record),
         )
     goal = goals[-1]
-    if _off(goal, click.x, click.y) > NEAR:
+    if not _off(goal, click.x, click.y) <= NEAR:  # which NaN is not either
         return Failed(
             f"x {click.x:g} y {click.y:g}",
             f"x {goal.x:.2f} y {goal.y:.2f}",
@@ -70,7 +70,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         f"{limits.status_reports} reports within {limits.status_span:g} s",
         f"{len(reports)}",
         start,
-        "create a rospy.Timer whose callback logs the client's state; a report has to come while a goal is "
+        "create a rospy.Timer whose callback logs or prints the client's state; a report has to come while a goal is "
         "being pursued, again and again",
     )
 
@@ -154,7 +154,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             return Failed(
                 f"a goal for the click in {click.frame}", "no goal", click.time, "the click was not forwarded"
             )
-        if _off(goals[-1], click.odom_x, click.odom_y) > FRAME_NEAR:
+        if not _off(goals[-1], click.odom_x, click.odom_y) <= FRAME_NEAR:
             raw = _off(goals[-1], click.x, click.y) < NEAR
             return Failed(
                 f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom",

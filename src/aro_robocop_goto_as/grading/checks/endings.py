@@ -15,6 +15,7 @@ from ..record import (
     end_of,
     errors_at,
     samples_between,
+    status_name,
 )
 from .verdict import Failed, NotReached, Passed, Verdict, check
 
@@ -32,7 +33,7 @@ def _text(record: Record) -> str:
 def ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
     """None when a goal ended as it should; else what happened instead."""
     ends = end_of(record, goal)
-    name = STATUS_NAMES[wanted]
+    name = status_name(wanted)
     if not ends:
         last = record.samples[-1].time if record.samples else goal.time
         cause = record.problem or "the goal got no terminal state and no result"
@@ -42,7 +43,7 @@ def ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[
         return None
     hit = _hit(record, goal, end.time)
     why = (GONE_ON if hit and (wanted, end.status) == (ABORTED, SUCCEEDED) else _why(record, end.status, wanted))
-    return Failed(name, f"{STATUS_NAMES[end.status]}{': ' + end.message if end.message else ''}", end.time, hit + why)
+    return Failed(name, f"{status_name(end.status)}{': ' + end.message if end.message else ''}", end.time, hit + why)
 
 
 def _hit(record: Record, goal: Goal, end: float) -> str:
@@ -103,7 +104,7 @@ def failure_result(record: Record, limits: Limits) -> Verdict:
 def _result(record: Record, status: int, success: bool) -> Verdict:
     ends = [end for goal in record.goals[:1] for end in end_of(record, goal)[:1] if end.status == status]
     if not ends:
-        return NotReached(f"the goal did not end as {STATUS_NAMES[status]}")
+        return NotReached(f"the goal did not end as {status_name(status)}")
     for end in ends:
         if end.success != success:
             return Failed(f"success {success}", f"success {end.success}", end.time,
@@ -132,6 +133,8 @@ def _abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
     around = samples_between(record, end.time - 0.25, end.time + limits.stop_within)
     if any(sample.touching for sample in around):
         return Failed("standing before the obstacle", "the robot touches it", end.time, "it was seen too late")
+    if any(words in _text(record) for words in EXCEPTION):
+        return Failed("an abort when 0.3 m are left", "an exception", end.time, _why(record, end.status, ABORTED))
     at_end = [sample.ahead for sample in samples_between(record, end.time - 0.25, end.time)]
     if at_end and min(at_end) > limits.abort_farthest:
         return Failed("an abort when 0.3 m are left", f"aborted with {min(at_end):.2f} m left", end.time,
@@ -218,7 +221,7 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return Passed()
     return Failed(problem.expected, problem.seen, problem.time,
-                  f"after {STATUS_NAMES[end_of(record, record.goals[0])[0].status]} the second goal fails: "
+                  f"after {status_name(end_of(record, record.goals[0])[0].status)} the second goal fails: "
                   f"{problem.cause}; is all that the first one left behind set back?")
 
 
@@ -236,7 +239,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
             moving = [s for s in after if abs(s.v) > limits.standing_v or abs(s.w) > limits.standing_w]
             if moving:
                 return Failed("the robot stands", f"{moving[0].v:.2f} m/s and {moving[0].w:.2f} rad/s", moving[0].time,
-                              f"robot kept driving after the result ({STATUS_NAMES[end.status]}): publish a zero Twist "
+                              f"robot kept driving after the result ({status_name(end.status)}): publish a zero Twist "
                               "at every ending; /cmd_vel is held")
     return Passed() if judged else NotReached("no goal ended")
 
@@ -262,6 +265,6 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
     for goal in record.goals:
         states = [it for it in changes if it.id == goal.id]
         if len({it.status for it in states}) > 1:
-            return Failed("one terminal state", " then ".join(STATUS_NAMES[it.status] for it in states), states[1].time,
+            return Failed("one terminal state", " then ".join(status_name(it.status) for it in states), states[1].time,
                           "goal got two terminal states")
     return Passed() if judged else NotReached("no goal ended")

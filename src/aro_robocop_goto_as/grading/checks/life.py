@@ -10,8 +10,8 @@ from .verdict import Failed, NotReached, Passed, Verdict, check, named
 
 NAME = "/robocop_goto_as"
 TYPE = "aro_robocop_goto_as/GoToPositionAction"
-THREAD_DIED = re.compile(r"Exception in thread|bad callback|Traceback \(most recent call last\)|"
-                         r"xception in your execute callback")
+THREAD_DIED = re.compile(r"^(Syntax|Indentation|Tab)Error|Exception in thread|bad callback|"
+                         r"Traceback \(most recent call last\)|xception in your execute callback")
 
 
 @check("states")

@@ -35,7 +35,7 @@ def collect(folder: Path) -> Tuple[List[HandIn], List[str]]:
     for path in sorted(folder.iterdir()):
         if path.name.startswith("."):
             continue
-        if path.is_symlink() or not (path.is_dir() or path.suffix in (".py", ZIP) and path.is_file()):
+        if path.is_symlink() or not (path.is_dir() or path.suffix.lower() in (".py", ZIP) and path.is_file()):
             others.append(path.name)
         else:
             found.append(_packed(path))
@@ -58,10 +58,10 @@ def _packed(path: Path) -> HandIn:
                              else tarfile.REGTYPE)
                 archive.addfile(info, io.BytesIO(content))
                 sums.update(repr((name, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
-    except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError) as error:  # the last: it has a password
-        return HandIn(path.name, problem=f"can't be read: {error}")
     except GradingError as error:
         return HandIn(path.name, problem=str(error))
+    except Exception as error:  # zipfile and tarfile don't say what a broken or clever file makes them raise
+        return HandIn(path.name, problem=f"can't be read: {error}")
     return HandIn(path.name, buffer.getvalue(), sums.hexdigest())
 
 
@@ -69,9 +69,9 @@ def _entries(path: Path) -> Iterator[Entry]:
     """Itself and all below it, in an order of their own. A folder with nothing but a zip in it is that zip."""
     if path.is_dir():
         inside = [it for it in path.iterdir() if not it.name.startswith(".")]
-        if len(inside) == 1 and inside[0].suffix == ZIP and inside[0].is_file() and not inside[0].is_symlink():
+        if len(inside) == 1 and inside[0].suffix.lower() == ZIP and inside[0].is_file() and not inside[0].is_symlink():
             path = inside[0]
-    return _zipped(path) if path.suffix == ZIP and path.is_file() else _on_disk(path)
+    return _zipped(path) if path.suffix.lower() == ZIP and path.is_file() else _on_disk(path)
 
 
 def _on_disk(path: Path) -> Iterator[Entry]:
@@ -102,8 +102,8 @@ def _zipped(path: Path) -> Iterator[Entry]:
     yield "", stat.S_IFDIR | 0o755, b"", ""
     with zipfile.ZipFile(path) as archive:
         for entry in sorted(archive.infolist(), key=lambda it: it.filename):
-            parts = PurePosixPath(entry.filename).parts
-            if entry.is_dir() or LEFT_OUT.intersection(parts):
+            parts = PurePosixPath(entry.filename.replace("\\", "/")).parts  # Windows' own zips have backslashes
+            if entry.is_dir() or not parts or LEFT_OUT.intersection(parts):
                 continue
             if ".." in parts or parts[:1] == ("/",):
                 raise GradingError(f"{entry.filename}: expected a path within the zip")

@@ -74,6 +74,8 @@ def main() -> None:
         plan = load(plan_path)
         text = plan_path.read_text()
         hand_ins, others = collect(folder)
+        for taken in {it.name for it in hand_ins} & {CSV, HTML}:
+            raise GradingError(f"{folder / taken}: the results have a file of that name; rename the hand-in")
         for name in others:
             print(f"left aside: {shown(name)}, which is neither a folder nor a zip nor a Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
@@ -98,7 +100,11 @@ def _grade(group: Class, tasks: List[Task], scheduler: str, workers: int, unsafe
             from .cluster import connected, grade_all  # dask takes half a second to come up
             with connected(scheduler, min(workers, len(tasks)), unsafe) as client:
                 for name, outcome in grade_all(client, tasks):
-                    print(group.take(name, outcome), flush=True)
+                    try:
+                        line = group.take(name, outcome)
+                    except OSError as error:
+                        line = group.take(name, f"its results can't be kept: {error}")
+                    print(line, flush=True)
     except KeyboardInterrupt:
         print(f"\ninterrupted: {len(group.done)} of {group.count} graded; the same command goes on from there",
               file=sys.stderr)

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import shutil
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
@@ -76,9 +77,8 @@ class Results:
 
     def keep(self, done: Done) -> None:
         """Put a report in its place; who looks meanwhile sees the old one or the new one."""
-        new, place = self.folder / f".new-{done.name}", self.folder / done.name
-        shutil.rmtree(new, ignore_errors=True)
-        new.mkdir()
+        new, place = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / done.name
+        new.chmod(0o755)
         for name, content in done.files.items():
             (new / name).write_bytes(content)
         stamp = {"made_from": self._from(done.digest), "seconds": round(done.seconds, 1), "worker": done.worker}

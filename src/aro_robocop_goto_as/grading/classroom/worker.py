@@ -3,6 +3,7 @@
 import dataclasses
 import os
 import socket
+import tarfile
 import tempfile
 import time
 from dataclasses import dataclass, field
@@ -51,7 +52,7 @@ def work(task: Task) -> Done:
         try:
             if task.hand_in.problem:
                 raise HandInRefused(task.hand_in.problem)
-            path = unpack(task.hand_in, top / "hand_in")
+            path = _unpacked(task.hand_in, top / "hand_in")
             submission = take(str(path), share, state, top / "workshop", around)
             submission = dataclasses.replace(submission, name=name)
             examine(submission, plan, folder, state, around)
@@ -62,6 +63,13 @@ def work(task: Task) -> Done:
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
     return Done(task.hand_in.name, task.hand_in.digest, files, time.monotonic() - started,
                 f"{socket.gethostname()}:{os.getpid()}")
+
+
+def _unpacked(hand_in: HandIn, folder: Path) -> Path:
+    try:
+        return unpack(hand_in, folder)
+    except (OSError, tarfile.TarError) as error:  # such as a name that is a file's and a folder's
+        raise HandInRefused(f"can't be unpacked: {error}") from error
 
 
 class HandInRefused(RobocopError):

@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 
 from .. import record as rec
-from ..plan import load
+from ..plan import BRIDGE_SCENARIOS, load
 from .bridge import BridgeRun
 from .nodes import Node
 from .run import GraderLost, Run
@@ -22,7 +22,6 @@ from .stage import Stage
 from .watch import Watch, WatchError
 
 MASTER_PATIENCE = 20.0  # [s, wall]
-BRIDGE = ("no_server", "click", "replace", "frame")
 
 
 class Job:
@@ -91,7 +90,7 @@ def _server(job: Job, stage: Stage) -> None:
 def _bridge(job: Job, stage: Stage) -> None:
     it = BridgeRun(job.plan, job.launch, stage)
     try:
-        for name in BRIDGE:
+        for name in BRIDGE_SCENARIOS:
             drive = getattr(it, name)
             job.begin(name, drive.__doc__)
             job.keep(drive(job.bag(name)))

@@ -5,6 +5,7 @@ import time
 from dataclasses import replace
 from typing import Any, Callable, Optional, Tuple
 
+import genpy
 import numpy as np
 import rosbag
 import rospkg
@@ -21,6 +22,7 @@ from ...nodes.publishing import publisher
 from ...nodes.robot_topics import RobotTopics
 from ...params import SimParams
 from ...simulator import JOINTS, Observations, RobotSpec, Simulator
+from .. import record as rec
 from ..plan import Plan, site, world_of
 from ..record import Sample
 from .watch import Watch
@@ -34,7 +36,24 @@ STEPS_PER_TICK = PARAMS.physics_rate // PARAMS.control_rate
 DIGEST = 0.003
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
+MOST_WAITING = 20_000  # messages
+MOST_BAG = 32 * 1024 ** 2  # bytes
+MOST_LISTED = 100  # entries of a message's list
+
 Event = Tuple[str, Any]
+
+
+def trimmed(message: Any) -> Any:
+    """The message, its texts and lists cut to what is of use to anybody."""
+    for name in message.__slots__:
+        value = getattr(message, name)
+        if isinstance(value, str):
+            setattr(message, name, value[:rec.MOST_TEXT])
+        elif isinstance(value, (list, tuple)):
+            setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MOST_LISTED]])
+        elif isinstance(value, genpy.Message):
+            trimmed(value)
+    return message
 
 
 class Stage:
@@ -74,7 +93,8 @@ class Stage:
         """Put what comes on a topic into the inbox, under a name."""
 
         def take(message: Any) -> None:
-            self.inbox.put((name, message))
+            if self.inbox.qsize() < MOST_WAITING:  # who floods us is heard as far as we can follow
+                self.inbox.put((name, trimmed(message)))
 
         return rospy.Subscriber(topic, kind, take, tcp_nodelay=True)
 
@@ -162,7 +182,7 @@ class Stage:
 
     def keep(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
         """Into the scenario's bag."""
-        if self.bag is not None:
+        if self.bag is not None and self.bag.size < MOST_BAG:
             self.bag.write(topic, message, stamp or max(self.stamp, rospy.Time(0, 1)))
 
     def _send_static(self) -> None:
