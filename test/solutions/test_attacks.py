@@ -72,9 +72,10 @@ def test_of_a_flood_of_messages_only_what_is_of_use_is_kept(tmp_path):
 def test_a_cage_that_is_not_roots_has_no_other_place_to_write_to(tmp_path):
     tmp_path.chmod(0o755)
     code = ("import subprocess, sys\nfrom pathlib import Path\nfrom aro_robocop_goto_as.grading.sandbox import Cage\n"
+            "cage = Cage(())\n"
             "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
             "touch /tmp/here && echo fine']\n"
-            "sys.exit(subprocess.call(Cage(()).around_probe(Cage(()).around_node(command, {}, (), Path('/tmp/home')))))")
+            "sys.exit(subprocess.call(cage.around_probe(cage.around_node(command, {}, (), Path('/tmp/home')))))")
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     done = subprocess.run([*nobody, "/usr/bin/python3", "-c", code], env={**os.environ, "HOME": "/tmp"},
                           capture_output=True, text=True, timeout=BUDGET, cwd="/tmp")
