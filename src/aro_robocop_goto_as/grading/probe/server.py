@@ -115,7 +115,7 @@ class ServerRun:
         """One line of a script; what went wrong, or nothing."""
         run = self.run
         if step.place:
-            self.stage.place(index, Pose2D(*step.place))
+            self.stage.set_down(index, Pose2D(*step.place))
             run.settle(WARM_UP)
             return ""
         if step.goal:

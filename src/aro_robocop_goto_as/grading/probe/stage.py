@@ -13,7 +13,7 @@ import rospy
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from ...errors import CommandError
+from ...errors import CommandError, WorldError
 from ...geometry import Pose2D, Twist2D, compose, inverse
 from ...goto import clearance_ahead
 from ...models import load_model
@@ -71,8 +71,8 @@ class Stage:
         self.odd_scan = False
         self.bag: Optional[rosbag.Bag] = None
         self.tick_number = 0
-        self.p = PARAMS  # this and `control` for GazeboServices
-        self.control = _Untouched()
+        self.p = PARAMS  # this and the controls for GazeboServices
+        self.control = self.world_control = _Untouched()
         self.watch: Optional[Watch] = None  # who is to be shown the run
 
     def wall(self) -> float:
@@ -105,7 +105,7 @@ class Stage:
         self.sim.place(site(index))
         self._send_static()
 
-    def place(self, index: int, odom_from_base: Pose2D) -> None:
+    def set_down(self, index: int, odom_from_base: Pose2D) -> None:
         """Set the robot down elsewhere on its site; its odometry goes on as if nothing had happened."""
         self.sim.place(compose(site(index), odom_from_base))
         self._send_static()
@@ -219,6 +219,10 @@ class Stage:
 
     # -- for GazeboServices, which takes its node to be a SimNode --
 
+    def place(self, *what: Any) -> None:
+        """Nobody but the grader sets the robot down."""
+        self.control.refuse(*what)
+
     def in_loop(self, action: Callable[[], Any]) -> Any:
         """Have the main thread do something, and wait for what it returns."""
         answer: queue.Queue[Tuple[Any, Optional[Exception]]] = queue.Queue()
@@ -244,6 +248,12 @@ class _Untouched:
         return "time goes on: this is a grader"
 
     reset = set_paused
+
+    def refuse(self, *_what: Any) -> str:
+        """Gazebo's ways to move, make and remove models."""
+        raise WorldError("the world and the robot's place in it are the grader's")
+
+    set_down = spawn = delete = refuse
 
 
 def _odd(ranges: np.ndarray) -> np.ndarray:
