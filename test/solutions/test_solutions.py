@@ -13,7 +13,7 @@ from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading import sandbox
 from aro_robocop_goto_as.grading.judge import Outcome
 
-SOME_RIGHT = ("base_server", "base_bridge", "timer_driven_class")
+SOME_RIGHT = ("base_server", "base_bridge", "functions_bang_bang")
 SOME_WRONG = ("misspelt_name", "not_wrapped", "handouts_double_state", "bridge_never_cancels")
 
 
