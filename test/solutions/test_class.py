@@ -12,10 +12,10 @@ import subprocess
 import sys
 import time
 
+import distributed
 import pytest
 from graded import RIGHT, SWITCHES
 
-distributed = pytest.importorskip("distributed", reason="deb-packages/class.txt has it")
 PATIENCE = 60.0  # [s, wall]
 PLAN = """
 limits: {}

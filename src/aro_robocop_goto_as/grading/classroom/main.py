@@ -9,6 +9,7 @@ from typing import Dict, List, Union
 from xml.etree import ElementTree
 
 from ...errors import GradingError, RobocopError
+from ...hosting.workspace import alone
 from ..plan import Plan, load
 from .hand_ins import HandIn, collect
 from .overview import page
@@ -79,16 +80,17 @@ def main() -> None:
         for name in others:
             print(f"left aside: {shown(name)}, which is neither a folder nor a zip nor a Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
-        results = Results(Path(args.report) if args.report else state / "classes" / folder.name,
-                          {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
-        group = Class(folder, results, plan, hand_ins, args.again)
-        print(f"{group.count} handed in, {len(group.done)} of them graded already", flush=True)
-        tasks = [Task(it, text, args.unsafe) for it in group.waiting]
-        _grade(group, tasks, args.scheduler, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
+        out = Path(args.report) if args.report else state / "classes" / folder.name
+        with alone(out / ".run"):
+            results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
+            group = Class(folder, results, plan, hand_ins, args.again)
+            print(f"{group.count} handed in, {len(group.done)} of them graded already", flush=True)
+            tasks = [Task(it, text, args.unsafe) for it in group.waiting]
+            _grade(group, tasks, args.scheduler, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
     except RobocopError as error:
         print(f"robocop grade-class: {error}", file=sys.stderr)
         sys.exit(1)
-    print(f"table: {results.folder / CSV}\noverview: {results.folder / HTML}")
+    print(f"table: {out / CSV}\noverview: {out / HTML}")
     sys.exit(1 if group.problems else 0)
 
 
