@@ -1,11 +1,13 @@
 """Solutions kept as text, graded as a student's file would be."""
 
+import multiprocessing
 import os
 import sys
+import tempfile
 from pathlib import Path
 from typing import Dict, Sequence
 
-from wrong_solutions import WRONG
+from wrong_solutions import WRONG, Wrong
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading import judge, runner
@@ -48,20 +50,25 @@ def graded(name: str, text: str, folder: Path) -> Grade:
     return judge.judge(name, load(PLAN), {part: it.records}, {part: it.problem})
 
 
+def row(wrong: Wrong) -> str:
+    """A wrong solution against all checks: a row for docs/grading.md."""
+    with tempfile.TemporaryDirectory() as folder:
+        grade = graded(wrong.name, wrong.text(), Path(folder))
+    line = next(line for line in grade.lines if line.name == wrong.check)
+    found, said = line.failure is not None, wrong.words in line.words()
+    others = ", ".join(name for name in grade.failed() if name != wrong.check)
+    return (f"| {wrong.name} | {wrong.check if found else 'NO'} | {'yes' if said else 'NO'} | {others} | {grade.points:g} "
+            "|")
+
+
 def main() -> None:
-    """Print wrong solutions against checks as a table for docs/grading.md; arguments: names, all of them without."""
-    import tempfile
+    """Print the rows of wrong solutions, three at a time; arguments: names, all of them without."""
     print("| mistake | found by the check meant for it | with the right words | failed besides | points |\n"
           "| --- | --- | --- | --- | --- |")
-    for wrong in WRONG:
-        if len(sys.argv) == 1 or wrong.name in sys.argv[1:]:
-            with tempfile.TemporaryDirectory() as folder:
-                grade = graded(wrong.name, wrong.text(), Path(folder))
-            line = next(line for line in grade.lines if line.name == wrong.check)
-            found, said = line.failure is not None, wrong.words in line.words()
-            others = ", ".join(name for name in grade.failed() if name != wrong.check)
-            print(f"| {wrong.name} | {wrong.check if found else 'NO'} | {'yes' if said else 'NO'} | {others} "
-                  f"| {grade.points:g} |", flush=True)
+    chosen = [wrong for wrong in WRONG if len(sys.argv) == 1 or wrong.name in sys.argv[1:]]
+    with multiprocessing.get_context("spawn").Pool(3, maxtasksperchild=1) as pool:
+        for words in pool.imap(row, chosen):
+            print(words, flush=True)
 
 
 if __name__ == "__main__":
