@@ -57,8 +57,8 @@ def row(wrong: Wrong) -> str:
     line = next(line for line in grade.lines if line.name == wrong.check)
     found, said = line.failure is not None, wrong.words in line.words()
     others = ", ".join(name for name in grade.failed() if name != wrong.check)
-    return (f"| {wrong.name} | {wrong.check if found else 'NO'} | {'yes' if said else 'NO'} | {others} | {grade.points:g} "
-            "|")
+    cells = (wrong.name, wrong.check if found else "NO", "yes" if said else "NO", others, f"{grade.points:g}")
+    return f"| {' | '.join(cells)} |"
 
 
 def main() -> None:
