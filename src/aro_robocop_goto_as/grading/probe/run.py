@@ -50,6 +50,7 @@ class Run:
         self.known: Dict[str, int] = {}  # goal -> status
         self.heard: Set[str] = set()  # streams, since the last tick
         self.said_death = False
+        self.takes_up_late = False  # this node takes a goal up when time goes on, as one driven by a timer does
         self.fell_silent = False  # since the goal was sent, or known to answer more seldom than the ticks come
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
@@ -237,7 +238,9 @@ class Run:
         self.fell_silent = self.lockstep.slower_than_ticks()
         self.heard.clear()
         self.lockstep = Lockstep(self.stage.tick_number)
-        self.drain(lambda: goal in self.known or goal in self.ended, SETTLE if busy else SILENCE)
+        soon = self.drain(lambda: goal in self.known or goal in self.ended,
+                          SETTLE if busy or self.takes_up_late else SILENCE)
+        self.takes_up_late = not (soon or busy)
         self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
         for stream in STREAMS:
             self.lockstep.commanded(stream)

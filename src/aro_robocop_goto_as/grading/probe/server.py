@@ -48,7 +48,7 @@ class ServerRun:
 
     def _bring_up(self) -> bool:
         run = self.run
-        run.said_death, run.known = False, {}
+        run.said_death, run.takes_up_late, run.known = False, False, {}
         run.node = self.launch(run)
         log = run.subscribers["log"]
         run.wait_for(lambda: log.get_num_connections() > 0, START_PATIENCE)
