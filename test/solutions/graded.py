@@ -5,7 +5,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
-from typing import Dict, Sequence
+from typing import Dict, Optional, Sequence
 
 from wrong_solutions import WRONG, Wrong
 
@@ -13,7 +13,7 @@ from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading import judge, runner
 from aro_robocop_goto_as.grading.judge import Grade
 from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.sandbox import cage
+from aro_robocop_goto_as.grading.sandbox import Cage, cage
 from aro_robocop_goto_as.grading.submission import take
 
 HERE = Path(__file__).resolve().parent
@@ -34,11 +34,16 @@ CAGED = _can_be_caged()  # these solutions are ours: where bubblewrap can't run 
 SWITCHES = [] if CAGED else ["--unsafe"]
 
 
+def the_cage() -> Optional[Cage]:
+    """What these solutions run in here."""
+    return cage(not CAGED, [STATE / "venv", STATE / "compat"])
+
+
 def recorded(text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET) -> runner.Recorded:
     """A solution driven through the scenarios of its part, or some of them, in the cage."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
-    around = cage(not CAGED, [STATE / "venv", STATE / "compat"])
+    around = the_cage()
     submission = take(str(folder / "solution.py"), SHARE, STATE, folder, around)
     return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE, around, only, budget=budget)
 

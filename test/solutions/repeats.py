@@ -16,14 +16,13 @@ import time
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
-from graded import CAGED, PLAN, RIGHT, SHARE, STATE, graded, recorded
+from graded import PLAN, RIGHT, SHARE, STATE, graded, recorded, the_cage
 from wrong_solutions import WRONG, Wrong
 
 from aro_robocop_goto_as.grading import judge
 from aro_robocop_goto_as.grading.exam import examine
 from aro_robocop_goto_as.grading.judge import Outcome
 from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.sandbox import cage
 from aro_robocop_goto_as.grading.submission import take
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
@@ -57,7 +56,7 @@ def _wrong(wrong: Wrong, folder: Path) -> List[str]:
 def _right(name: str, folder: Path) -> List[str]:
     """Whatever is not passed, extra checks too."""
     if name == REFERENCE:
-        around = cage(not CAGED, [STATE / "venv", STATE / "compat"])
+        around = the_cage()
         grade = examine(take(str(SHARE), SHARE, STATE, folder, around), PLAN, folder / "report", STATE, around)
     else:
         grade = graded(name, RIGHT[name].read_text(), folder)

@@ -6,11 +6,10 @@ import subprocess
 
 import attacks
 import pytest
-from graded import CAGED, PLAN, RIGHT, SHARE, STATE, recorded
+from graded import PLAN, RIGHT, SHARE, STATE, recorded, the_cage
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
 from aro_robocop_goto_as.grading import skeleton
-from aro_robocop_goto_as.grading.sandbox import cage
 from aro_robocop_goto_as.grading.submission import take
 
 BUDGET = 60.0  # [s, wall] for an attack's two scenarios
@@ -91,7 +90,7 @@ def package(tmp_path):
 
 def taken(package, workshop):
     """Build and read a package as the judge does."""
-    return take(str(package), SHARE, STATE, workshop, cage(not CAGED, [STATE / "venv", STATE / "compat"]))
+    return take(str(package), SHARE, STATE, workshop, the_cage())
 
 
 def test_building_a_package_and_reading_its_launch_file_reach_nothing_outside(package, tmp_path, monkeypatch):

@@ -40,11 +40,16 @@ class Guard:
             elif self._folder is not None and size(self._folder) > self._disk:
                 self.reason = f"it wrote more than {self._disk / 1024 ** 2:g} MB"
             if self.reason:
-                try:
-                    os.killpg(self._pid, signal.SIGKILL)
-                except ProcessLookupError:
-                    pass
+                kill_group(self._pid)
                 return
+
+
+def kill_group(leader: int) -> None:
+    """End a process group at once, if there still is one."""
+    try:
+        os.killpg(leader, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
 
 
 def together(pid: int, enough: int) -> int:

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Tuple, Type
 
+from ..geometry import wrap_angle
+
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 STATUS_NAMES = ("PENDING", "ACTIVE", "PREEMPTED", "SUCCEEDED", "ABORTED", "REJECTED", "PREEMPTING", "RECALLING",
                 "RECALLED", "LOST")  # actionlib_msgs/GoalStatus
@@ -184,7 +186,7 @@ def samples_between(record: Record, start: float, end: float) -> List[Sample]:
 
 def wrapped(angle: float) -> float:
     """The same angle [rad] within +-pi; NaN and infinity as they are."""
-    return math.remainder(angle, 2.0 * math.pi) if math.isfinite(angle) else angle
+    return wrap_angle(angle) if math.isfinite(angle) else angle
 
 
 def errors_at(sample: Sample, goal: Goal) -> Tuple[float, float]:

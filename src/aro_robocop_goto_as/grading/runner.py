@@ -3,7 +3,6 @@
 import json
 import os
 import queue
-import signal
 import subprocess
 import sys
 import threading
@@ -16,7 +15,7 @@ from ..errors import GradingError
 from ..loopback import free_port
 from . import building
 from . import record as rec
-from .guard import MEMORY, Guard
+from .guard import MEMORY, Guard, kill_group
 from .sandbox import OWN_ENVIRONMENT, Cage
 from .submission import Script, Submission
 
@@ -168,10 +167,7 @@ def _end(process: "subprocess.Popen[bytes]", patience: float) -> None:
         process.wait(patience)
     except subprocess.TimeoutExpired:
         pass
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+    kill_group(process.pid)
     process.wait()
 
 

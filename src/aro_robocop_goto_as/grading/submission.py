@@ -75,15 +75,17 @@ def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cag
 
 def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission:
     """Loose files in `top`, run where they are, with the skeleton's package around them."""
+    scripts: List[Script] = []
     for path in paths:
         if not path.is_file() or top not in (path.resolve(), *path.resolve().parents):
             raise GradingError(f"{path}: expected a file, and no link to one elsewhere")
-        if not _part_of(path):
+        part = _part_of(path)
+        if not part:
             raise GradingError(
                 f"{path}: neither a server nor a bridge: no ActionServer in it, and neither a client nor "
                 "/move_base_simple/goal"
             )
-    scripts = [Script(_part_of(path), path, dict(NODES)[_script(_part_of(path))]) for path in paths]
+        scripts.append(Script(part, path, dict(NODES)[_script(part)]))
     return Submission(
         top.stem if top.is_file() else top.name,
         top,

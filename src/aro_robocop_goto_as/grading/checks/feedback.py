@@ -86,19 +86,8 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
         return NotReached("there was no feedback")
     if len(wrong) <= MOST_WRONG * len(pairs):
         return Passed()
-    it, around, goal = wrong[0]
-    return Failed(
-        f"{errors_at(around[-1], goal)[0]:.2f} m",
-        f"position_error is {it.position_error:.2f}",
-        it.time,
-        _likely(
-            [pair[0].position_error for pair in wrong],
-            [(pair[1][-1], pair[2]) for pair in wrong],
-            POSITION_CAUSES,
-            "position_error is not the distance from /odom's position to the goal",
-            False,
-        ),
-    )
+    otherwise = "position_error is not the distance from /odom's position to the goal"
+    return _failed(wrong, 0, "m", POSITION_CAUSES, otherwise)
 
 
 @check("errors")
@@ -121,19 +110,8 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
     wrong = [pair for pair in pairs if _angle_off(pair) > limits.angle_tolerance]
     if len(wrong) <= MOST_WRONG * len(pairs):
         return Passed()
-    it, around, goal = wrong[0]
-    return Failed(
-        f"{errors_at(around[-1], goal)[1]:.2f} rad",
-        f"angle_error is {it.angle_error:.2f}",
-        it.time,
-        _likely(
-            [pair[0].angle_error for pair in wrong],
-            [(pair[1][-1], pair[2]) for pair in wrong],
-            ANGLE_CAUSES,
-            "angle_error is not the goal's direction minus the heading, both in odom",
-            True,
-        ),
-    )
+    otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
+    return _failed(wrong, 1, "rad", ANGLE_CAUSES, otherwise)
 
 
 def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
@@ -187,6 +165,15 @@ ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
     ("it is always zero: angle_error is never filled", lambda s, g: 0.0),
     ("it holds the distance: the two are swapped", lambda s, g: errors_at(s, g)[0]),
 )
+
+
+def _failed(wrong: Sequence[Pair], which: int, unit: str, causes: Sequence[Hypothesis], otherwise: str) -> Failed:
+    """The first wrong value, with what explains them all best; `which`: as in errors_at."""
+    name = ("position_error", "angle_error")[which]
+    values = [getattr(pair[0], name) for pair in wrong]
+    it, around, goal = wrong[0]
+    return Failed(f"{errors_at(around[-1], goal)[which]:.2f} {unit}", f"{name} is {values[0]:.2f}", it.time,
+                  _likely(values, [(pair[1][-1], pair[2]) for pair in wrong], causes, otherwise, which == 1))
 
 
 def _likely(

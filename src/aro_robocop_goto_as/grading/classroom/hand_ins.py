@@ -11,9 +11,10 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Iterator, List, Tuple
 
 from ...errors import GradingError
+from ...hosting.package import LEFT_OUT as NOT_WRITTEN
 
 MOST = 64 * 1024 ** 2  # bytes of a hand-in
-LEFT_OUT = {".git", "__pycache__", "build", "devel", "install", "logs", ".robocop", "__MACOSX"}
+LEFT_OUT = {*NOT_WRITTEN, ".git", ".robocop", "__MACOSX"}
 ZIP = ".zip"
 
 

@@ -1,12 +1,10 @@
 """Somebody's node as a process: started, listened to, ended to its last child."""
 
-import os
-import signal
 import subprocess
 import threading
 from typing import Any, Callable, Dict, List, Optional
 
-from ..guard import Guard
+from ..guard import Guard, kill_group
 
 MOST_OUTPUT = 200_000  # bytes of a node's output that are kept; what a node writes beyond it is read and dropped
 LONGEST_LINE = 2_000
@@ -41,8 +39,5 @@ class Node:
     def end(self) -> None:
         """End the node and its children at once: what it would say of being interrupted is not its author's fault."""
         self.guard.stop()
-        try:
-            os.killpg(self.process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
+        kill_group(self.process.pid)
         self.process.wait()
