@@ -16,7 +16,7 @@ from .. import record as rec
 from ..plan import BRIDGE_SCENARIOS, load
 from .bridge import BridgeRun
 from .nodes import Node
-from .run import GraderLost, Run
+from .run import NODE_LOST, GraderLost, Run
 from .server import ServerRun
 from .stage import Stage
 from .watch import Watch, WatchError
@@ -129,6 +129,11 @@ def main() -> None:
         (_server if job.part == "server" else _bridge)(job, stage)
     except GraderLost as error:
         print(error, file=sys.stderr)
+        status = 1
+    except rospy.ROSException:  # a shutdown closes topics at any moment, in the middle of a tick too
+        if not rospy.core.is_shutdown_requested():
+            raise
+        print(NODE_LOST, file=sys.stderr)
         status = 1
     except WatchError as error:
         print(f"error {error}")

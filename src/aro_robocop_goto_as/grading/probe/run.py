@@ -33,6 +33,9 @@ STREAMS = ("command", "feedback")
 MOST_ENTRIES = 20_000  # of a kind in one record
 
 
+NODE_LOST = "the grader's ROS node was shut down while the submission ran"
+
+
 class GraderLost(Exception):
     """The submission has ended the ROS master or the grader's own node: nothing that follows can be judged."""
 
@@ -195,8 +198,8 @@ class Run:
 
         Who watches sees it at real time, if it is to be.
         """
-        if rospy.is_shutdown():
-            raise GraderLost("the grader's ROS node was shut down while the submission ran")
+        if rospy.core.is_shutdown_requested():
+            raise GraderLost(NODE_LOST)
         self.heard.clear()
         started = self.stage.wall()
         sample = self.stage.tick(real_time)
