@@ -1,6 +1,10 @@
 #!/usr/bin/env python3
 """Somebody's package against this simulator."""
-from aro_robocop_goto_as.nodes.launch import main_with
+import signal
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # until main() takes over: imports are long, and Ctrl-C is no traceback
+
+from aro_robocop_goto_as.nodes.launch import main_with  # noqa: E402
 
 if __name__ == "__main__":
     main_with()

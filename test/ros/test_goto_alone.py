@@ -71,7 +71,7 @@ def test_goal_is_reached_in_a_system_of_its_own(goto):
     assert "SUCCEEDED: REACHED: " in command.output.read_text()
 
 
-@pytest.mark.parametrize("word", ["roslaunch", "rosmaster", "robocop_sim.py"])
+@pytest.mark.parametrize("word", ["robocop_launch.py", "rosmaster", "robocop_sim.py"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, number):
     command = goto("5", "0", "--world", "empty")

@@ -1,4 +1,4 @@
-"""robocop_launch.py, which is roslaunch but for its exit status: that tells how the simulator ended."""
+"""robocop_launch.py, which is roslaunch but for how it ends: with a status that tells, at any moment, and with all."""
 
 import os
 import signal
@@ -30,15 +30,29 @@ class Launch:
 
     def simulator(self):
         """Its process id once it has begun to simulate."""
-        end = time.monotonic() + DEADLINE
-        while READY not in self.output.read_text():
-            assert self.process.poll() is None and time.monotonic() < end, self.output.read_text()
-            time.sleep(0.01)
+        self._wait_until(lambda: READY in self.output.read_text())
+        return self.runs("robocop_sim.py")
+
+    def runs(self, program):
+        """The id, once there is one, of a process of the launch with this word on its command line."""
+        found = []
+        self._wait_until(lambda: found.extend(self._processes(program)) or found)
+        return found[0]
+
+    def _processes(self, program):
         for process in processes_with(self.setting):
-            with open(f"/proc/{process}/cmdline") as stream:
-                if "robocop_sim.py" in stream.read():
-                    return process
-        raise AssertionError("no simulator")
+            try:
+                with open(f"/proc/{process}/cmdline") as stream:
+                    if program in stream.read():
+                        yield process
+            except OSError:  # ended meanwhile
+                continue
+
+    def _wait_until(self, condition):
+        end = time.monotonic() + DEADLINE
+        while not condition():
+            assert self.process.poll() is None and time.monotonic() < end, self.output.read_text()
+            time.sleep(0.001)
 
     def ends(self):
         """Its exit status; by then nothing that it started may be there."""
@@ -86,3 +100,12 @@ def test_launch_that_is_interrupted_ends_all_and_is_no_failure(launch):
     launched.process.send_signal(signal.SIGINT)
     assert launched.ends() == 0
     assert "Traceback" not in launched.output.read_text()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("program", ["/rosmaster", "/rosout", "robocop_sim.py", "/robot_state_publisher"])
+def test_launch_that_is_interrupted_while_it_starts_a_process_loses_none(launch, program, number):
+    launched = launch("world:=empty")
+    launched.runs(program)
+    launched.process.send_signal(number)
+    assert launched.ends() == 0

@@ -1,7 +1,8 @@
-"""roslaunch with an exit status that tells how the simulator ended.
+"""roslaunch with an exit status that tells how the simulator ended, and with an end at whatever moment it is told to.
 
-roslaunch itself ends with 0 whatever became of its nodes, of a required one too. This is the same program in the same
-process, so signals, output and options are its own.
+roslaunch itself ends with 0 whatever became of its nodes, of a required one too; and a signal that comes while it
+starts a process makes it wait for itself, give up after 20 s and leave master and nodes running. This is the same
+program in the same process, so output and options are its own.
 """
 
 import os
@@ -9,9 +10,11 @@ import sys
 from typing import Any, List, Optional
 
 import roslaunch
+import roslaunch.parent
 import roslaunch.pmon
 
 from ..hosting.main import prepare
+from ..interruption import Deferred
 
 PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # of the simulator, and of what starts it for other people's packages
 FAILED = 1  # exit status: a required node of these ended by an error. RViz' crashes on closing are no failure of a run
@@ -31,22 +34,30 @@ class RequiredNodes(roslaunch.pmon.ProcessListener):
             self.failed = True
 
 
+class Parent(roslaunch.parent.ROSLaunchParent):
+    """Starts all processes before a signal ends them, and listens from the first one on.
+
+    (roslaunch's own way of adding listeners does so when all nodes are up: one may have died by then.)
+    """
+
+    listeners: List[RequiredNodes] = []
+
+    def start(self, auto_terminate: bool = True) -> None:
+        roslaunch.pmon._init_signal_handlers()  # as its child mode does; it would be with the first process
+        with Deferred():
+            super().start(auto_terminate)
+
+    def _start_pm(self) -> None:
+        super()._start_pm()
+        self.listeners.append(RequiredNodes(self.pm))
+        self.pm.add_process_listener(self.listeners[-1])
+
+
 def main(arguments: Optional[List[str]] = None) -> None:
     """Run roslaunch with these arguments, or with this program's; exit status as roslaunch's, or FAILED."""
-    heard = []
-    start_process_monitor = roslaunch.pmon.start_process_monitor
-
-    def start_and_listen() -> Any:
-        monitor = start_process_monitor()
-        if monitor is not None:  # not where a signal has come meanwhile
-            heard.append(RequiredNodes(monitor))
-            monitor.add_process_listener(heard[-1])
-        return monitor
-
-    # ROSLaunchParent takes listeners too, but adds them when all nodes are up: one may have died by then.
-    roslaunch.pmon.start_process_monitor = start_and_listen
+    roslaunch.parent.ROSLaunchParent = Parent
     roslaunch.main(["roslaunch", *(sys.argv[1:] if arguments is None else arguments)])
-    sys.exit(FAILED if any(listener.failed for listener in heard) else 0)
+    sys.exit(FAILED if any(listener.failed for listener in Parent.listeners) else 0)
 
 
 def main_with() -> None:

@@ -5,21 +5,19 @@ import os
 import signal
 import subprocess
 import time
-import uuid
-from pathlib import Path
 from typing import Iterator, List
 
 import rosgraph
 import rospy
 
+from .. import descendants
+from ..interruption import ENDING_SIGNALS, Deferred
 from ..loopback import free_port
 
 PACKAGE = "aro_robocop_goto_as"
-MARK = "ROBOCOP_SYSTEM"  # environment variable that tells such a system's processes from all others
 START_PATIENCE = 60.0  # [s, wall] for its master to answer, on a slow machine too
 END_PATIENCE = 30.0  # [s, wall] for all of it to end; roslaunch kills by itself what has not ended in 17 s
 POLL = 0.05  # [s, wall]
-ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @contextlib.contextmanager
@@ -28,19 +26,35 @@ def own_system(launch_file: str, arguments: List[str], log: str) -> Iterator[boo
 
     Sets ROS_MASTER_URI of this process. Whatever ends the block, a signal included, ends the system.
     """
-    port, mark = free_port(), f"{MARK}={uuid.uuid4().hex}"
+    port = free_port()
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     os.makedirs(os.path.dirname(log), exist_ok=True)
-    name, _, value = mark.partition("=")
-    with open(log, "w") as output:
-        system = subprocess.Popen(["roslaunch", "-p", str(port), PACKAGE, launch_file, *arguments], stdout=output,
-                                  stderr=subprocess.STDOUT, start_new_session=True, env={**os.environ, name: value})
+    descendants.adopt()
+    system = None
     try:
+        with Deferred():
+            system = _launch(port, launch_file, arguments, log)
         yield _wait_for_master(system)
     finally:
         with _ctrl_c_ignored():
             rospy.signal_shutdown("the system ends")
-            _end(system, mark.encode())
+            if system is not None:
+                _end(system)
+
+
+def _launch(port: int, launch_file: str, arguments: List[str], log: str) -> "subprocess.Popen[bytes]":
+    """In a session of its own, so that Ctrl-C in a terminal reaches this process alone."""
+    with open(log, "w") as output:
+        return subprocess.Popen(["rosrun", PACKAGE, "robocop_launch.py", "-p", str(port), PACKAGE, launch_file,
+                                 *arguments], stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def _end(system: "subprocess.Popen[bytes]") -> None:
+    """roslaunch ends its nodes and its master; what it leaves behind all the same is killed."""
+    system.terminate()
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        system.wait(END_PATIENCE)
+    descendants.kill()
 
 
 @contextlib.contextmanager
@@ -52,29 +66,6 @@ def _ctrl_c_ignored() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def _end(system: "subprocess.Popen[bytes]", mark: bytes) -> None:
-    """roslaunch ends its nodes and its master; what it has lost sight of, as when it was still starting, is killed."""
-    system.terminate()
-    try:
-        system.wait(END_PATIENCE)
-    except subprocess.TimeoutExpired:
-        system.kill()
-        system.wait()
-    for process in _processes_with(mark):
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(process, signal.SIGKILL)
-
-
-def _processes_with(setting: bytes) -> List[int]:
-    """Ids of processes with `setting`, NAME=value, in their environment: roslaunch gives nodes their own session."""
-    found = []
-    for environment in Path("/proc").glob("[0-9]*/environ"):
-        with contextlib.suppress(OSError):  # ended meanwhile, or somebody else's
-            if setting in environment.read_bytes().split(b"\0"):
-                found.append(int(environment.parent.name))
-    return found
 
 
 def _wait_for_master(system: "subprocess.Popen[bytes]") -> bool:

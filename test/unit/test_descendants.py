@@ -1,0 +1,36 @@
+"""What a process has started is ended to the last one, wherever it hides."""
+
+import subprocess
+import sys
+
+import pytest
+
+DEADLINE = 30.0  # [s, wall]
+# Every descendant holds the pipe open: at its end there is nobody left.
+ENDED = """
+import os, subprocess
+from aro_robocop_goto_as import descendants
+descendants.adopt()
+ended, alive = os.pipe()
+subprocess.Popen(["sh", "-c", {family!r}], pass_fds=[alive], env={{"PATH": os.environ["PATH"], "SLEEP": "sleep 600"}})
+os.close(alive)
+descendants.kill()
+assert os.read(ended, 1) == b""
+"""
+
+
+@pytest.mark.parametrize("family", [
+    "$SLEEP >&2",
+    "trap '' TERM INT HUP; $SLEEP & wait; $SLEEP",
+    "$SLEEP & $SLEEP & exit",
+    "setsid -f $SLEEP",
+    "setsid -f env -i sh -c 'sleep 600 & setsid -f sleep 600; sleep 600'",
+    "for i in 1 2 3 4 5 6 7 8; do setsid -f sh -c '(setsid -f sleep 600) & sleep 600'; done",
+])
+def test_no_descendant_is_left(family):
+    assert subprocess.run([sys.executable, "-c", ENDED.format(family=family)], timeout=DEADLINE).returncode == 0
+
+
+def test_who_never_had_a_child_is_not_kept_waiting():
+    code = "from aro_robocop_goto_as import descendants; descendants.adopt(); descendants.kill()"
+    assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0
