@@ -7,6 +7,12 @@ from typing import Any, Dict, List
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
+def as_ctrl_c() -> None:
+    """All of these signals raise KeyboardInterrupt: what was begun is cleaned up, whoever ends the program."""
+    for number in ENDING_SIGNALS:
+        signal.signal(number, signal.default_int_handler)
+
+
 class Deferred:
     """A block whose end such a signal waits for, unless a second one comes. For the main thread.
 

@@ -6,7 +6,7 @@ import subprocess
 import time
 
 import pytest
-from test_rostests import processes_with
+from processes import processes_with
 
 from aro_robocop_goto_as.loopback import free_port
 
@@ -35,14 +35,7 @@ class Goto:
 
     def runs(self, program):
         """Whether one of its processes has this word on its command line."""
-        found = []
-        for process in processes_with(self.setting):
-            try:
-                with open(f"/proc/{process}/cmdline") as stream:
-                    found.append(stream.read())
-            except OSError:  # ended meanwhile
-                continue
-        return any(program in line for line in found)
+        return bool(processes_with(self.setting, program.encode()))
 
     def ends(self):
         """Its exit status; by then nothing that it started may be there."""

@@ -4,9 +4,10 @@ import os
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
-from test_rostests import processes_with
+from processes import processes_with
 
 from aro_robocop_goto_as.loopback import free_port
 
@@ -23,36 +24,42 @@ class Launch:
         environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",
                        "ROS_LOG_DIR": str(folder / "log")}
         environment.pop("ROS_IP", None)
-        command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", "-p", str(free_port()), "aro_robocop_goto_as",
+        self.port = free_port()
+        command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", "-p", str(self.port), "aro_robocop_goto_as",
                    "robocop_sim.launch", "drive:=kinematic", *arguments]
         with open(self.output, "wb") as stream:
             self.process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
 
     def simulator(self):
         """Its process id once it has begun to simulate."""
-        self._wait_until(lambda: READY in self.output.read_text())
+        self.wait_until(lambda: READY in self.output.read_text())
         return self.runs("robocop_sim.py")
 
     def runs(self, program):
         """The id, once there is one, of a process of the launch with this word on its command line."""
         found = []
-        self._wait_until(lambda: found.extend(self._processes(program)) or found)
+        self.wait_until(lambda: found.extend(processes_with(self.setting, program.encode())) or found)
         return found[0]
 
-    def _processes(self, program):
-        for process in processes_with(self.setting):
-            try:
-                with open(f"/proc/{process}/cmdline") as stream:
-                    if program in stream.read():
-                        yield process
-            except OSError:  # ended meanwhile
-                continue
-
-    def _wait_until(self, condition):
+    def wait_until(self, condition):
+        """Wait for a condition, as long as the launch lives."""
         end = time.monotonic() + DEADLINE
         while not condition():
             assert self.process.poll() is None and time.monotonic() < end, self.output.read_text()
             time.sleep(0.001)
+
+    def has_handlers(self, process):
+        """Whether a process has come so far that it handles SIGTERM itself."""
+        (line,) = [line for line in Path(f"/proc/{process}/status").read_text().splitlines() if "SigCgt" in line]
+        return bool(int(line.split()[1], 16) >> signal.SIGTERM - 1 & 1)
+
+    def asks_the_master(self, process):
+        """Whether a process has sent the master what that one has not read yet."""
+        sockets = {os.readlink(entry) for entry in Path(f"/proc/{process}/fd").iterdir()}
+        rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+        master = f"0100007F:{self.port:04X}"
+        mine = {row[1] for row in rows if row[2] == master and f"socket:[{row[9]}]" in sockets}
+        return any(row[1] == master and row[2] in mine and int(row[4].split(":")[1], 16) for row in rows)
 
     def ends(self):
         """Its exit status; by then nothing that it started may be there."""
@@ -100,6 +107,19 @@ def test_launch_that_is_interrupted_ends_all_and_is_no_failure(launch):
     launched.process.send_signal(signal.SIGINT)
     assert launched.ends() == 0
     assert "Traceback" not in launched.output.read_text()
+
+
+def test_simulator_that_is_told_to_end_while_it_waits_for_the_master_ends_when_that_answers(launch):
+    launched = launch("world:=empty")
+    simulator, (master,) = launched.runs("robocop_sim.py"), processes_with(launched.setting, b"/rosmaster")
+    launched.wait_until(lambda: launched.has_handlers(simulator))
+    os.kill(master, signal.SIGSTOP)
+    try:
+        launched.wait_until(lambda: launched.asks_the_master(simulator))
+        os.kill(simulator, signal.SIGINT)
+    finally:
+        os.kill(master, signal.SIGCONT)
+    assert launched.ends() == 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

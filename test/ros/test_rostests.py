@@ -7,22 +7,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from processes import processes_with
 
 DEADLINE = 180.0  # [s] for one .test file; each <test> in it should have a shorter time-limit of its own
 SHUTDOWN = 20.0  # [s] that rostest gets to end its nodes once the deadline has passed
 HERE = Path(__file__).resolve().parent
-
-
-def processes_with(setting):
-    """Process ids of all processes whose environment holds `setting`, as bytes NAME=value."""
-    found = []
-    for environment in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            if setting in environment.read_bytes().split(b"\0"):
-                found.append(int(environment.parent.name))
-        except OSError:  # ended meanwhile, or somebody else's
-            continue
-    return found
 
 
 def run_rostest(test_file, directory):

@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
+from processes import processes_with
 from students import contents, copy_of
-from test_rostests import processes_with
 
 from aro_robocop_goto_as.loopback import free_port
 

@@ -1,6 +1,5 @@
 """robocop_goto_as: GoToPosition goals -> the lab's loop -> cmd_vel, feedback, result."""
 
-import sys
 import threading
 import time
 import traceback
@@ -12,12 +11,12 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionGoal, GoToPositionResult, TickAnswer
 
-from ..errors import RobocopError
 from ..geometry import STANDSTILL, Twist2D
 from ..goto import Outcome
 from ..params import GotoParams
 from . import convert, markers, params
 from .goal_server import GoalServer
+from .lifetime import node
 from .pursuit import Ending, Pursuit
 from .senses import Senses
 from .ticker import Ticker
@@ -203,11 +202,6 @@ def _bumped_result() -> GoToPositionResult:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    rospy.init_node("aro_robocop_goto_as_node")
-    try:
-        p = params.load(GotoParams)
-    except RobocopError as error:
-        rospy.logfatal("%s: %s", error.code, error)
-        sys.exit(1)
-    GotoServer(p)
-    rospy.spin()
+    with node("aro_robocop_goto_as_node"):
+        GotoServer(params.load(GotoParams))
+        rospy.spin()

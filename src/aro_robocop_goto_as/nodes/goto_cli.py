@@ -4,7 +4,6 @@ import argparse
 import math
 import os
 import re
-import signal
 import sys
 import time
 from typing import List, Optional
@@ -19,6 +18,7 @@ from nav_msgs.msg import Odometry
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback
 
 from ..errors import FrameError
+from ..interruption import as_ctrl_c
 from . import action_servers
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
@@ -159,8 +159,7 @@ class _Standstill:
 def main() -> None:
     """Entry point; exit status 0 reached, 1 not, 2 for arguments of no sense."""
     args = _arguments(rospy.myargv()[1:])
-    for ending in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(ending, signal.default_int_handler)  # cancel, and end what was started
+    as_ctrl_c()  # cancel, and end what was started
     try:
         sys.exit(_run(args))
     except KeyboardInterrupt:

@@ -1,6 +1,5 @@
 """robocop_rviz_goto_ac: RViz's 2D Nav Goal -> tf2 -> GoToPosition goal, with a periodic report of the server."""
 
-import sys
 import threading
 import traceback
 from typing import Optional
@@ -13,11 +12,12 @@ from std_msgs.msg import String
 
 from aro_robocop_goto_as.msg import GoToPositionAction
 
-from ..errors import FrameError, RobocopError
+from ..errors import FrameError
 from ..params import BridgeParams
 from . import action_servers, params
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
+from .lifetime import node
 from .sent_goal import SentGoal
 from .ticker import wait_until
 from .timer import start_timer
@@ -138,10 +138,5 @@ class Bridge:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    rospy.init_node("robocop_rviz_goto_ac_node")
-    try:
-        p = params.load(BridgeParams)
-    except RobocopError as error:
-        rospy.logfatal("%s: %s", error.code, error)
-        sys.exit(1)
-    Bridge(p).run()
+    with node("robocop_rviz_goto_ac_node"):
+        Bridge(params.load(BridgeParams)).run()

@@ -1,7 +1,7 @@
 """robocop_sim: the simulator's loop, paced against the wall clock and, in lockstep, against the controllers."""
 
+import contextlib
 import queue
-import sys
 import time
 from typing import Any, Callable, Dict, List, Set, TypeVar
 
@@ -24,6 +24,7 @@ from ..simulator import Observations, Simulator
 from ..spawns import FARTHEST
 from . import convert, params
 from .building import build_simulator
+from .lifetime import node
 from .map_topics import MapTopics
 from .pacer import Pacer
 from .publishing import publisher
@@ -352,19 +353,7 @@ def _serve_gazebo(node: SimNode) -> None:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: rospy runs on the wall clock here.
-    rospy.init_node("robocop_sim", disable_rostime=True)
-    try:
+    with node("robocop_sim", disable_rostime=True):
         p = params.load(SimParams)
-        sim = build_simulator(p)
-        node = SimNode(p, sim)
-    except RobocopError as error:
-        rospy.logfatal("%s: %s", error.code, error)
-        sys.exit(1)
-    try:
-        node.run()
-    except rospy.ROSException as error:  # a topic closed under a publish: shutting down
-        if not rospy.is_shutdown():
-            raise
-        rospy.logdebug("%s", error)
-    finally:
-        sim.close()
+        with contextlib.closing(build_simulator(p)) as sim:
+            SimNode(p, sim).run()
