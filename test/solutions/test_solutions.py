@@ -3,15 +3,20 @@
 A selection of them; `./robocop test --all` has them all.
 """
 
+import os
+import signal
 import subprocess
+import time
 
 import pytest
 from graded import RIGHT, SHARE, STATE, SWITCHES, graded
+from processes import processes_with
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading import sandbox
 from aro_robocop_goto_as.grading.judge import Outcome
+from aro_robocop_goto_as.grading.main import INTERRUPTED
 
 SOME_RIGHT = ("base_server", "base_bridge", "functions_bang_bang")
 SOME_WRONG = ("misspelt_name", "not_wrapped", "handouts_double_state", "bridge_never_cancels")
@@ -59,6 +64,26 @@ def test_the_skeleton_builds_and_is_told_what_lacks_and_the_report_is_one_file(t
     assert "<svg" in html and "http" not in html and "src=" not in html
     assert {path.name for path in (tmp_path / "report").iterdir()} >= {"report.json", "junit.xml", "server-start.bag"}
     assert command("robocop_new.py", str(tmp_path / "lab")).returncode == 1
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_ended_on_its_way_it_leaves_neither_folders_nor_processes(number, tmp_path):
+    solution, scratch = tmp_path / "robocop_goto_as.py", tmp_path / "scratch"
+    solution.write_text(RIGHT["base_server"].read_text())
+    scratch.mkdir()
+    with open(tmp_path / "output", "w") as output:
+        grading = subprocess.Popen(
+            ["rosrun", "aro_robocop_goto_as", "robocop_grade.py", str(solution), *SWITCHES], stdout=output,
+            stderr=output, env={**os.environ, "TMPDIR": str(scratch)})
+    deadline = time.monotonic() + 60.0
+    while not list(scratch.glob("**/server-start.json")):  # the first scenario is over, the second has begun
+        assert grading.poll() is None and time.monotonic() < deadline, (tmp_path / "output").read_text()
+        time.sleep(0.01)
+    grading.send_signal(number)
+    assert grading.wait(60.0) == INTERRUPTED, (tmp_path / "output").read_text()
+    assert "Traceback" not in (tmp_path / "output").read_text()
+    assert list(scratch.iterdir()) == []
+    assert processes_with(b"TMPDIR=" + os.fsencode(scratch)) == []
 
 
 def test_without_bubblewrap_grading_is_refused_unless_it_is_asked_for(tmp_path, monkeypatch):

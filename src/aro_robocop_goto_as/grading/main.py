@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import RobocopError
 from ..hosting.workspace import alone
+from ..interruption import as_ctrl_c
 from . import display
 from .exam import examine
 from .judge import Grade, Outcome, printable
@@ -48,6 +49,7 @@ def main() -> None:
     parser.add_argument("--unsafe", action="store_true", help="run the code without bubblewrap around it")
     parser.add_argument("--watch", action="store_true", help="show the run in RViz, at real time")
     args = parser.parse_args()
+    as_ctrl_c()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     plan_path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
     try:

@@ -102,6 +102,7 @@ def _environment(out: Path, state: Path) -> Dict[str, str]:
         "ROS_HOSTNAME": "localhost",
         "ROS_HOME": str(out / "ros"),
         "ROS_LOG_DIR": str(out / "ros"),
+        "TMPDIR": str(out),
     }
     environment["PYTHONPATH"] = f"{environment.get('PYTHONPATH', '')}:{types}"
     environment.pop("ROS_IP", None)

@@ -70,8 +70,8 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         f"{limits.status_reports} reports within {limits.status_span:g} s",
         f"{len(reports)}",
         start,
-        "create a rospy.Timer whose callback logs or prints the client's state; a report has to come while a goal is "
-        "being pursued, again and again",
+        "create a rospy.Timer whose callback logs, prints or publishes the client's state; a report has to come while "
+        "a goal is being pursued, again and again",
     )
 
 

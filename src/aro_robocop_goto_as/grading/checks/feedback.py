@@ -125,7 +125,7 @@ POSITION_CAUSES: Tuple[Hypothesis, ...] = (
         lambda s, g: math.hypot(g.x - s.world_x, g.y - s.world_y),
     ),
     (
-        "it is the goal's distance from odom's origin: the robot's position is left out",
+        "it is the goal's distance from odom's origin: the robot's position is left out, or read only at the start",
         lambda s, g: math.hypot(g.x, g.y),
     ),
     ("it is the distance squared: the square root lacks", lambda s, g: sum(d * d for d in _deltas(s, g))),
@@ -140,7 +140,7 @@ ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
     ("it is in degrees; the handout wants radians", lambda s, g: math.degrees(errors_at(s, g)[1])),
     ("its sign is wrong: it has to be the goal's direction minus the heading", lambda s, g: -errors_at(s, g)[1]),
     (
-        "it is the goal's direction in odom: the robot's heading is left out",
+        "it is the goal's direction in odom: the robot's heading is left out, or read only at the start",
         lambda s, g: math.atan2(_deltas(s, g)[1], _deltas(s, g)[0]),
     ),
     ("the heading is added instead of subtracted", lambda s, g: math.atan2(*_deltas(s, g)[::-1]) + s.yaw),
@@ -197,5 +197,6 @@ def _likely(
         if middle / scale < least:
             best, least = words, middle / scale
     if len(set(seen)) == 1 and len(seen) > 5 and seen[0] != 0.0 and least > EXACT:
-        return f"it is always {seen[0]:.2f}: it is not calculated anew in each iteration"
+        return (f"it is always {seen[0]:.2f}: it is not calculated anew in each iteration, or from a pose that is not "
+                "read anew")
     return best

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 from ...errors import GradingError, RobocopError
 from ...hosting.workspace import alone
+from ...interruption import as_ctrl_c
 from ..plan import Plan, load
 from .hand_ins import HandIn, collect
 from .overview import page
@@ -66,6 +67,7 @@ def main() -> None:
     parser.add_argument("--again", action="store_true", help="grade all of them, also those that are done")
     parser.add_argument("--unsafe", action="store_true", help="run the code without bubblewrap around it")
     args = parser.parse_args()
+    as_ctrl_c()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     plan_path = Path(args.plan) if args.plan else share / "config" / "grading.yaml"
     folder = Path(args.folder).resolve()

@@ -1,8 +1,9 @@
 """The bridge's scenarios: clicks as RViz makes them, and a server of ours that does what it is told."""
 
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, Set
 
 import actionlib
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
@@ -26,6 +27,7 @@ START_PATIENCE = 20.0  # [s, wall] for the node to show itself
 CONNECT_PATIENCE = 10.0  # [s, wall] for its client to find the server
 REACT = 3.0  # [s] for a click to become a goal
 CLICKS = "/move_base_simple/goal"
+STATUS_TYPES = ("std_msgs/", "actionlib_msgs/GoalStatus", "diagnostic_msgs/")  # of what says how things stand
 FRAMES = ("base_footprint", "map")
 
 
@@ -41,6 +43,7 @@ class BridgeRun:
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}
         self.server: Any = None
+        self.reports: Set[str] = set()  # topics
 
     # -- the server that it talks to --
 
@@ -113,6 +116,16 @@ class BridgeRun:
             if len(self.run.parts["goals"]) > count:
                 return
 
+    def _hear_reports(self) -> None:
+        """A status that is published, not logged, is a line as well; its topic may be made at any moment."""
+        master = rosgraph.Master(rospy.get_name())
+        types = dict(master.getTopicTypes())
+        for topic, nodes in master.getSystemState()[0]:
+            others = set(nodes) - {rospy.get_name()}
+            if others and topic not in self.reports and types.get(topic, "").startswith(STATUS_TYPES):
+                self.reports.add(topic)
+                self.stage.listen(topic, rospy.AnyMsg, "line", lambda _, topic=topic: f"published on {topic}")
+
     def _go_on(self, seconds: float) -> None:
         for _ in range(int(seconds * 10)):
             self.run.tick()
@@ -149,7 +162,9 @@ class BridgeRun:
         self._click("odom", 1.2, -0.4)
         self._wait_for_goal()
         run.marks["watching"] = self.stage.now
-        self._go_on(self.plan.limits.status_span)
+        for _ in range(int(self.plan.limits.status_span)):
+            self._hear_reports()
+            self._go_on(1.0)
         return run.finish("click", up=up and not run.said_death)
 
     def _connected(self) -> bool:

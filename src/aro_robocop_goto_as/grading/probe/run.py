@@ -25,6 +25,7 @@ ACTION = "/robocop_goto_as"  # the handout's
 SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal
 SILENCE_AGAIN = 0.2  # [s, wall] for one that is due, once that was in vain
 SILENCE_LEARNING = 0.06  # [s, wall] likewise, for one that may not be due: a slow loop whose rhythm is not yet known
+SILENCE_OF_THE_MUTE = 0.5  # [s, wall] as SILENCE, for who did not say a word to the whole of an earlier goal
 TRAILING = 0.15  # [s, wall] for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback, but need not
 SETTLE = 0.15  # [s, wall] for what a node does at once, without time moving on
@@ -55,6 +56,7 @@ class Run:
         self.said_death = False
         self.takes_up_late = False  # this node takes a goal up when time goes on, as one driven by a timer does
         self.fell_silent = False  # since the goal was sent, or known to answer more seldom than the ticks come
+        self.mute = False  # not a word came to the last goal that it was given
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
         self.subscribers: Dict[str, rospy.Subscriber] = {}
@@ -145,6 +147,7 @@ class Run:
             self.handlers[name](payload)
 
     def _hear(self, stream: str) -> None:
+        self.mute = False
         self.heard.add(stream)
         if self.awaiting:
             self.lockstep.commanded(stream)
@@ -207,7 +210,7 @@ class Run:
         self.add("samples", sample)
         if self.stage.watch is not None:
             self.stage.watch.show(sample, self.parts["goals"], self.parts["clicks"])
-        if self.awaiting:
+        if self.awaiting and not (self.mute and self.fell_silent):
             self._await_answers()
         else:
             self.drain(lambda: False, max(1e-3, pace - (self.stage.wall() - started)))
@@ -222,7 +225,7 @@ class Run:
         def done() -> bool:
             return self.awaiting in self.ended or not self.lockstep.missing() or self._dead()
 
-        patience = SILENCE
+        patience = SILENCE_OF_THE_MUTE if self.mute else SILENCE
         if self.fell_silent:
             patience = SILENCE_AGAIN if self.lockstep.patience() >= SURE else SILENCE_LEARNING
         deadline = time.monotonic() + patience

@@ -89,6 +89,7 @@ class ServerRun:
                 if problem:
                     break
         if problem:
+            run.mute = not (run.parts["commands"] or run.parts["feedback"] or run.parts["results"])
             run.settle(AFTER)
         record = run.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
         if problem or self._unclean(record):

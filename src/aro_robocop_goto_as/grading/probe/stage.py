@@ -89,12 +89,12 @@ class Stage:
         """Simulated time, for messages."""
         return convert.to_time(self.sim.stamp_ns)
 
-    def listen(self, topic: str, kind: Any, name: str) -> rospy.Subscriber:
-        """Put what comes on a topic into the inbox, under a name."""
+    def listen(self, topic: str, kind: Any, name: str, of: Callable[[Any], Any] = trimmed) -> rospy.Subscriber:
+        """Put what comes on a topic into the inbox, under a name; `of` makes of a message what is kept of it."""
 
         def take(message: Any) -> None:
             if self.inbox.qsize() < MOST_WAITING:  # who floods us is heard as far as we can follow
-                self.inbox.put((name, trimmed(message)))
+                self.inbox.put((name, of(message)))
 
         return rospy.Subscriber(topic, kind, take, tcp_nodelay=True)
 
