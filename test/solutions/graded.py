@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Dict, Optional, Sequence
 
@@ -57,21 +58,24 @@ def graded(name: str, text: str, folder: Path) -> Grade:
 
 def row(wrong: Wrong) -> str:
     """A wrong solution against all checks: a row for docs/grading.md."""
+    started = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         grade = graded(wrong.name, wrong.text(), Path(folder))
+    seconds = time.monotonic() - started
     line = next(line for line in grade.lines if line.name == wrong.check)
     found, said = line.failure is not None, wrong.words in line.words()
     others = ", ".join(name for name in grade.failed() if name != wrong.check)
-    cells = (wrong.name, wrong.check if found else "NO", "yes" if said else "NO", others, f"{grade.points:g}")
+    cells = (wrong.name, wrong.check if found else "NO", "yes" if said else "NO", others, f"{grade.points:g}",
+             f"{seconds:.0f}")
     return f"| {' | '.join(cells)} |"
 
 
 def main() -> None:
-    """Print the rows of wrong solutions, three at a time; arguments: names, all of them without."""
-    print("| mistake | found by the check meant for it | with the right words | failed besides | points |\n"
-          "| --- | --- | --- | --- | --- |")
+    """Print the rows of wrong solutions, two at a time; arguments: names, all of them without."""
+    print("| mistake | found by the check meant for it | with the right words | failed besides | points | seconds |\n"
+          "| --- | --- | --- | --- | --- | --- |")
     chosen = [wrong for wrong in WRONG if len(sys.argv) == 1 or wrong.name in sys.argv[1:]]
-    with multiprocessing.get_context("spawn").Pool(3, maxtasksperchild=1) as pool:
+    with multiprocessing.get_context("spawn").Pool(2, maxtasksperchild=1) as pool:
         for words in pool.imap(row, chosen):
             print(words, flush=True)
 

@@ -107,6 +107,21 @@ WRONG = (
         "unpaced_loop", "feedback_rate", "not paced", ("            rate.sleep()\n", "            rospy.sleep(0)\n")
     ),
     _server(
+        "pose_read_once",
+        "feedback_angle",
+        "read only at the start",
+        ("            x, y, yaw = self.pose\n", ""),
+        ("        rate = rospy.Rate(10)\n", "        rate = rospy.Rate(10)\n        x, y, yaw = self.pose\n"),
+    ),
+    _server(
+        "scan_read_once",
+        "stops_at_obstacle",
+        "looked at in each iteration",
+        ("self.min_dist_ahead < 0.3", "ahead < 0.3"),
+        ("        rate = rospy.Rate(10)\n", "        rate = rospy.Rate(10)\n        ahead = self.min_dist_ahead\n"),
+    ),
+    _server("no_init_node", "action_server", "init_node", ("    rospy.init_node('aro_robocop_goto_as_node')\n", "")),
+    _server(
         "constant_feedback",
         "feedback_position",
         "not calculated anew",

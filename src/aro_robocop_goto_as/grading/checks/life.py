@@ -37,8 +37,9 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if close:
         return Failed(NAME[1:], close[0].lstrip("/"), 0.0,
                       f"action server is called {close[0].lstrip('/')}; the handout says {NAME[1:]}")
-    return Failed(NAME[1:], f"action servers: {seen}", 0.0,
-                  "no action server was created, or it was not started (server.start())")
+    raised = isinstance(no_exception(record, limits), Failed)
+    return Failed(NAME[1:], f"action servers: {seen}", 0.0, "an exception at its start: " + last_error(record) if raised
+                  else "no action server was created, or it was not started (server.start())")
 
 
 @check("states")
