@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import subprocess
 import time
 
@@ -17,11 +18,11 @@ class Goto:
     """The command on its own, with no master where it looks for one; its output and the processes it starts."""
 
     def __init__(self, folder, *arguments):
-        port = free_port()
+        self.port = free_port()
         self.setting = b"ROS_HOME=" + os.fsencode(folder)
         self.output = folder / "output"
         environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",
-                       "ROS_LOG_DIR": str(folder / "log"), "ROS_MASTER_URI": f"http://localhost:{port}"}
+                       "ROS_LOG_DIR": str(folder / "log"), "ROS_MASTER_URI": f"http://localhost:{self.port}"}
         environment.pop("ROS_IP", None)
         with open(self.output, "wb") as stream:
             self.process = subprocess.Popen(["rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments],
@@ -65,13 +66,26 @@ def test_goal_is_reached_in_a_system_of_its_own(goto):
 
 
 @pytest.mark.parametrize("word", ["robocop_launch.py", "rosmaster", "robocop_sim.py"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, number):
+@pytest.mark.parametrize("numbers", [[signal.SIGINT], [signal.SIGTERM, signal.SIGINT]])
+def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, numbers):
     command = goto("5", "0", "--world", "empty")
     command.wait_until(lambda: command.runs(word), f"{word} runs")
-    command.process.send_signal(number)
+    for number in numbers:
+        command.process.send_signal(number)
     assert command.ends() == 1
     assert "Traceback" not in command.output.read_text()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_while_it_asks_a_master_that_does_not_answer_it_starts_nothing(goto, number):
+    command = goto("1", "0")
+    with socket.create_server(("127.0.0.1", command.port)) as mute:
+        mute.settimeout(DEADLINE)
+        asked, _ = mute.accept()
+        assert asked.recv(1)
+        command.process.send_signal(number)
+        assert command.ends() == 1
+    assert command.output.read_text() == "robocop goto: interrupted\n"
 
 
 def test_terminated_on_its_way_it_tells_how_the_goal_ended(goto):

@@ -122,10 +122,11 @@ def test_simulator_that_is_told_to_end_while_it_waits_for_the_master_ends_when_t
     assert launched.ends() == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("numbers", [[signal.SIGINT], [signal.SIGTERM, signal.SIGINT]])
 @pytest.mark.parametrize("program", ["/rosmaster", "/rosout", "robocop_sim.py", "/robot_state_publisher"])
-def test_launch_that_is_interrupted_while_it_starts_a_process_loses_none(launch, program, number):
+def test_launch_that_is_interrupted_while_it_starts_a_process_loses_none(launch, program, numbers):
     launched = launch("world:=empty")
     launched.runs(program)
-    launched.process.send_signal(number)
+    for number in numbers:
+        launched.process.send_signal(number)
     assert launched.ends() == 0

@@ -62,7 +62,7 @@ def row(wrong: Wrong) -> str:
     with tempfile.TemporaryDirectory() as folder:
         grade = graded(wrong.name, wrong.text(), Path(folder))
     seconds = time.monotonic() - started
-    line = next(line for line in grade.lines if line.name == wrong.check)
+    line = {line.name: line for line in grade.lines}[wrong.check]
     found, said = line.failure is not None, wrong.words in line.words()
     others = ", ".join(name for name in grade.failed() if name != wrong.check)
     cells = (wrong.name, wrong.check if found else "NO", "yes" if said else "NO", others, f"{grade.points:g}",

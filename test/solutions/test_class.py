@@ -134,12 +134,16 @@ def test_a_killed_worker_loses_nothing_and_nobody_is_graded_twice(group, count, 
     assert {it["worker"].split(":")[1] for it in stamps(group).values()} <= {str(it.pid) for it in workers.values()}
 
 
-def test_interrupted_it_goes_on_where_it_was_and_does_nothing_twice(group, count, start):
+def test_interrupted_it_goes_on_where_it_was_and_does_nothing_twice(group, count, start, tmp_path, monkeypatch):
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
     first = grade_class(start, group)
     wait_for(lambda: len(stamps(group)) >= 1, "a first result")
     os.killpg(first.pid, signal.SIGINT)
     output, _ = first.communicate(timeout=PATIENCE)
     assert first.returncode == 130, output
+    assert list(scratch.iterdir()) == []
     done = stamps(group)
     assert f"interrupted: {len(done)} of {count} graded; the same command goes on from there" in output
     assert 1 <= len(rows(group)) == len(done) < count

@@ -66,8 +66,8 @@ def test_the_skeleton_builds_and_is_told_what_lacks_and_the_report_is_one_file(t
     assert command("robocop_new.py", str(tmp_path / "lab")).returncode == 1
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_ended_on_its_way_it_leaves_neither_folders_nor_processes(number, tmp_path):
+@pytest.mark.parametrize("numbers", [[signal.SIGINT], [signal.SIGTERM, signal.SIGTERM], [signal.SIGHUP, signal.SIGINT]])
+def test_ended_on_its_way_it_leaves_neither_folders_nor_processes(numbers, tmp_path):
     solution, scratch = tmp_path / "robocop_goto_as.py", tmp_path / "scratch"
     solution.write_text(RIGHT["base_server"].read_text())
     scratch.mkdir()
@@ -79,7 +79,8 @@ def test_ended_on_its_way_it_leaves_neither_folders_nor_processes(number, tmp_pa
     while not list(scratch.glob("**/server-start.json")):  # the first scenario is over, the second has begun
         assert grading.poll() is None and time.monotonic() < deadline, (tmp_path / "output").read_text()
         time.sleep(0.01)
-    grading.send_signal(number)
+    for number in numbers:
+        grading.send_signal(number)
     assert grading.wait(60.0) == INTERRUPTED, (tmp_path / "output").read_text()
     assert "Traceback" not in (tmp_path / "output").read_text()
     assert list(scratch.iterdir()) == []

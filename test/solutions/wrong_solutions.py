@@ -333,6 +333,15 @@ WRONG = (
         "again and again",
         ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
     ),
+    _bridge(
+        "bridge_publishes_figures",
+        "reports_status",
+        "rospy.Timer",
+        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n",
+         "        from nav_msgs.msg import Odometry\n        from std_msgs.msg import Float32\n"
+         "        self.pub = rospy.Publisher('x', Float32, queue_size=1)\n"
+         "        rospy.Subscriber('/odom', Odometry, lambda msg: self.pub.publish(msg.pose.pose.position.x))\n"),
+    ),
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
     _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
     _bridge(

@@ -23,15 +23,18 @@ def examine(
     around: Optional[Cage],
     on_progress: Progress = lambda _part, _scenario: None,
     watched: bool = False,
+    scratch: Optional[Path] = None,
 ) -> Grade:
     """Run and judge all parts of a submission; the report, with the bags of what failed, goes to `folder`.
+
+    What is made on the way is in a folder that is gone at the end, within `scratch` if that is given.
 
     Watched, all of it is shown in RViz at real time.
     """
     plan: Plan = load(plan_path)
     records: Dict[str, Dict[str, record.Record]] = {}
     problems: Dict[str, str] = {}
-    with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
+    with tempfile.TemporaryDirectory(prefix="robocop-grade-", dir=scratch) as work:
         for script in submission.scripts:
             recorded = runner.run(submission, script, plan_path, Path(work, script.part), state, around,
                                   on_progress=partial(on_progress, script.part), watched=watched)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import RobocopError
 from ..hosting.workspace import alone
-from ..interruption import as_ctrl_c
+from ..interruption import as_ctrl_c, check, the_end
 from . import display
 from .exam import examine
 from .judge import Grade, Outcome, printable
@@ -21,6 +21,7 @@ SIGNS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED
 
 
 def _progress(part: str, scenario: str) -> None:
+    check()
     if sys.stderr.isatty():
         print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
 
@@ -65,6 +66,7 @@ def main() -> None:
         print(f"robocop grade: {error}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
+        the_end()
         sys.exit(INTERRUPTED)
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -9,7 +9,6 @@ import time
 from typing import List, Optional
 
 import actionlib
-import rosgraph
 import rospkg
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
@@ -18,11 +17,11 @@ from nav_msgs.msg import Odometry
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback
 
 from ..errors import FrameError
-from ..interruption import as_ctrl_c
+from ..interruption import Deferred, as_ctrl_c, check
 from . import action_servers
 from .goal_frame import GoalTransformer
 from .goto_as import ACTION
-from .own_system import own_system
+from .own_system import master_answers, own_system
 from .sent_goal import SentGoal
 from .ticker import wait_until
 
@@ -91,6 +90,7 @@ def _pursue(args: argparse.Namespace, patience: float) -> int:
     action = _of(args.robot, ACTION)
     client = actionlib.ActionClient(action, GoToPositionAction)
     missing = action_servers.wait_or_explain(client, action, patience)
+    check()  # rospy takes any exception for a failure of its own at times
     if missing:
         print(f"robocop goto: {missing}", file=sys.stderr)
         return NOT_REACHED
@@ -100,6 +100,7 @@ def _pursue(args: argparse.Namespace, patience: float) -> int:
     try:
         position = transformer.resolve(pose)
     except FrameError as error:
+        check()
         print(f"robocop goto: {error}", file=sys.stderr)
         if rospy.get_rostime() == started:
             print(f"robocop goto: {STANDING}", file=sys.stderr)
@@ -121,16 +122,21 @@ def _follow(client: actionlib.ActionClient, position: Point) -> int:
     """Send a position in odom, show feedback, cancel on Ctrl-C."""
     progress = _Progress()
     ending: List[str] = []
-    goal = SentGoal(client, position, ending.append, progress.show)
+    goal: Optional[SentGoal] = None
     standstill = _Standstill()
     try:
+        with Deferred():  # what is sent can be cancelled
+            goal = SentGoal(client, position, ending.append, progress.show)
         while not goal.done.wait(0.1):
+            check()
             standstill.look()
             if not action_servers.is_up(client):
                 progress.close()
                 print("robocop goto: the server is gone", file=sys.stderr)
                 return NOT_REACHED
     except KeyboardInterrupt:
+        if goal is None:
+            raise
         goal.cancel()
         wait_until(goal.done.is_set, SERVER_PATIENCE)
     progress.close()
@@ -169,7 +175,7 @@ def main() -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    if rosgraph.is_master_online():
+    if master_answers():
         if args.world:
             print("robocop goto: --world is left out, for a system runs already", file=sys.stderr)
         return _pursue(args, SERVER_PATIENCE)

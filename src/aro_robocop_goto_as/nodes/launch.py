@@ -14,7 +14,7 @@ import roslaunch.parent
 import roslaunch.pmon
 
 from ..hosting.main import prepare
-from ..interruption import Deferred
+from ..interruption import Deferred, the_end
 
 PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # of the simulator, and of what starts it for other people's packages
 FAILED = 1  # exit status: a required node of these ended by an error. RViz' crashes on closing are no failure of a run
@@ -56,7 +56,10 @@ class Parent(roslaunch.parent.ROSLaunchParent):
 def main(arguments: Optional[List[str]] = None) -> None:
     """Run roslaunch with these arguments, or with this program's; exit status as roslaunch's, or FAILED."""
     roslaunch.parent.ROSLaunchParent = Parent
-    roslaunch.main(["roslaunch", *(sys.argv[1:] if arguments is None else arguments)])
+    try:
+        roslaunch.main(["roslaunch", *(sys.argv[1:] if arguments is None else arguments)])
+    finally:
+        the_end()
     sys.exit(FAILED if any(listener.failed for listener in Parent.listeners) else 0)
 
 

@@ -9,6 +9,7 @@ from typing import Any, Iterator
 import rospy
 
 from ..errors import RobocopError
+from ..interruption import heeded
 
 
 @contextlib.contextmanager
@@ -18,7 +19,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
     rospy shuts down inside its signal handler. Where that interrupts a call to the master, it waits for the lock that
     the interrupted call holds, for ever; so here a thread shuts down, and the call comes to its end.
     """
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in heeded():
         signal.signal(number, _shut_down)
     try:
         rospy.init_node(name, disable_signals=True, **options)

@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import signal
 import subprocess
 import time
 from typing import Iterator, List
@@ -10,14 +9,21 @@ from typing import Iterator, List
 import rosgraph
 import rospy
 
-from .. import descendants
-from ..interruption import ENDING_SIGNALS, Deferred
+from .. import descendants, interruption
+from ..interruption import Deferred
 from ..loopback import free_port
 
 PACKAGE = "aro_robocop_goto_as"
 START_PATIENCE = 60.0  # [s, wall] for its master to answer, on a slow machine too
 END_PATIENCE = 30.0  # [s, wall] for all of it to end; roslaunch kills by itself what has not ended in 17 s
 POLL = 0.05  # [s, wall]
+
+
+def master_answers() -> bool:
+    """Whether a ROS master answers where this process looks for one."""
+    online = bool(rosgraph.is_master_online())
+    interruption.check()  # rosgraph takes any exception for a no
+    return online
 
 
 @contextlib.contextmanager
@@ -36,10 +42,10 @@ def own_system(launch_file: str, arguments: List[str], log: str) -> Iterator[boo
             system = _launch(port, launch_file, arguments, log)
         yield _wait_for_master(system)
     finally:
-        with _ctrl_c_ignored():
-            rospy.signal_shutdown("the system ends")
-            if system is not None:
-                _end(system)
+        interruption.clean_up()  # an impatient second Ctrl-C must not leave half of a system behind
+        rospy.signal_shutdown("the system ends")
+        if system is not None:
+            _end(system)
 
 
 def _launch(port: int, launch_file: str, arguments: List[str], log: str) -> "subprocess.Popen[bytes]":
@@ -57,21 +63,10 @@ def _end(system: "subprocess.Popen[bytes]") -> None:
     descendants.kill()
 
 
-@contextlib.contextmanager
-def _ctrl_c_ignored() -> Iterator[None]:
-    """An impatient second Ctrl-C must not leave half of a system behind."""
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in ENDING_SIGNALS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
 def _wait_for_master(system: "subprocess.Popen[bytes]") -> bool:
     deadline = time.monotonic() + START_PATIENCE
     while time.monotonic() < deadline and system.poll() is None:
-        if rosgraph.is_master_online():
+        if master_answers():
             return True
         time.sleep(POLL)
     return False

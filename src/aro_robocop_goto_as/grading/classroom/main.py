@@ -1,6 +1,7 @@
 """robocop grade-class: a folder of hand-ins -> a table, an overview, a report each; it goes on where it ended."""
 
 import argparse
+import contextlib
 import hashlib
 import os
 import sys
@@ -10,7 +11,7 @@ from xml.etree import ElementTree
 
 from ...errors import GradingError, RobocopError
 from ...hosting.workspace import alone
-from ...interruption import as_ctrl_c
+from ...interruption import as_ctrl_c, check, the_end
 from ..plan import Plan, load
 from .hand_ins import HandIn, collect
 from .overview import page
@@ -104,14 +105,17 @@ def _grade(group: Class, tasks: List[Task], scheduler: str, workers: int, unsafe
             from .cluster import connected, grade_all  # dask takes half a second to come up
             with connected(scheduler, min(workers, len(tasks)), unsafe) as client:
                 for name, outcome in grade_all(client, tasks):
+                    check()
                     try:
                         line = group.take(name, outcome)
                     except OSError as error:
                         line = group.take(name, f"its results can't be kept: {error}")
                     print(line, flush=True)
     except KeyboardInterrupt:
-        print(f"\ninterrupted: {len(group.done)} of {group.count} graded; the same command goes on from there",
-              file=sys.stderr)
+        with contextlib.suppress(OSError):  # its terminal may be gone
+            print(f"\ninterrupted: {len(group.done)} of {group.count} graded; the same command goes on from there",
+                  file=sys.stderr)
         sys.exit(130)
     finally:
         group.write(running=False)
+        the_end()

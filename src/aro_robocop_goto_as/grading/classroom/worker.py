@@ -8,7 +8,7 @@ import tempfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict
+from typing import Dict, Optional
 
 from ...errors import RobocopError
 from ..exam import examine
@@ -44,7 +44,7 @@ def work(task: Task) -> Done:
     """Grade one hand-in. What is wrong with it is in its report; errors of this machine are raised."""
     started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
-    with tempfile.TemporaryDirectory(prefix="robocop-class-") as made:
+    with tempfile.TemporaryDirectory(prefix="robocop-class-", dir=_scratch()) as made:
         top, folder = Path(made), Path(made, "report")
         plan = top / "plan.yaml"
         plan.write_text(task.plan, encoding="utf-8")
@@ -55,7 +55,7 @@ def work(task: Task) -> Done:
             path = _unpacked(task.hand_in, top / "hand_in")
             submission = take(str(path), share, state, top / "workshop", around)
             submission = dataclasses.replace(submission, name=name)
-            examine(submission, plan, folder, state, around)
+            examine(submission, plan, folder, state, around, scratch=top)
         except RobocopError as error:
             folder.mkdir(exist_ok=True)
             words = str(error).replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")
@@ -63,6 +63,15 @@ def work(task: Task) -> Done:
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
     return Done(task.hand_in.name, task.hand_in.digest, files, time.monotonic() - started,
                 f"{socket.gethostname()}:{os.getpid()}")
+
+
+def _scratch() -> Optional[str]:
+    """The folder of this process as a dask worker, which is cleaned up even when the worker was killed."""
+    from distributed import get_worker  # half a second
+    try:
+        return str(get_worker().local_directory)
+    except ValueError:  # it is none
+        return None
 
 
 def _unpacked(hand_in: HandIn, folder: Path) -> Path:

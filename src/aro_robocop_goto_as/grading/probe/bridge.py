@@ -1,6 +1,6 @@
 """The bridge's scenarios: clicks as RViz makes them, and a server of ours that does what it is told."""
 
-from typing import Any, Callable, Dict, Set
+from typing import Any, Callable, Dict
 
 import actionlib
 import rosgraph
@@ -27,7 +27,10 @@ START_PATIENCE = 20.0  # [s, wall] for the node to show itself
 CONNECT_PATIENCE = 10.0  # [s, wall] for its client to find the server
 REACT = 3.0  # [s] for a click to become a goal
 CLICKS = "/move_base_simple/goal"
-STATUS_TYPES = ("std_msgs/", "actionlib_msgs/GoalStatus", "diagnostic_msgs/")  # of what says how things stand
+# What says how things stand: words, actionlib's states and their numbers. Not its GoalStatusArray, which any action
+# server sends by itself, nor figures, which may be of anything.
+STATUS_TYPES = {"actionlib_msgs/GoalStatus", "diagnostic_msgs/DiagnosticArray", "diagnostic_msgs/DiagnosticStatus",
+                *(f"std_msgs/{name}" for name in ("String", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32"))}
 FRAMES = ("base_footprint", "map")
 
 
@@ -43,7 +46,7 @@ class BridgeRun:
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}
         self.server: Any = None
-        self.reports: Set[str] = set()  # topics
+        self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
 
     # -- the server that it talks to --
 
@@ -122,9 +125,9 @@ class BridgeRun:
         types = dict(master.getTopicTypes())
         for topic, nodes in master.getSystemState()[0]:
             others = set(nodes) - {rospy.get_name()}
-            if others and topic not in self.reports and types.get(topic, "").startswith(STATUS_TYPES):
-                self.reports.add(topic)
-                self.stage.listen(topic, rospy.AnyMsg, "line", lambda _, topic=topic: f"published on {topic}")
+            if others and topic not in self.reports and types.get(topic) in STATUS_TYPES:
+                self.reports[topic] = self.stage.listen(
+                    topic, rospy.AnyMsg, "line", lambda _, topic=topic: f"published on {topic}")
 
     def _go_on(self, seconds: float) -> None:
         for _ in range(int(seconds * 10)):
@@ -165,6 +168,8 @@ class BridgeRun:
         for _ in range(int(self.plan.limits.status_span)):
             self._hear_reports()
             self._go_on(1.0)
+        for subscriber in self.reports.values():
+            subscriber.unregister()
         return run.finish("click", up=up and not run.said_death)
 
     def _connected(self) -> bool:

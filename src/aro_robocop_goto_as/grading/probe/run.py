@@ -25,7 +25,7 @@ ACTION = "/robocop_goto_as"  # the handout's
 SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal
 SILENCE_AGAIN = 0.2  # [s, wall] for one that is due, once that was in vain
 SILENCE_LEARNING = 0.06  # [s, wall] likewise, for one that may not be due: a slow loop whose rhythm is not yet known
-SILENCE_OF_THE_MUTE = 0.5  # [s, wall] as SILENCE, for who did not say a word to the whole of an earlier goal
+SILENCE_OF_THE_MUTE = 0.5  # [s, wall] as SILENCE, for who said nothing in all of a scenario; no tick waits after that
 TRAILING = 0.15  # [s, wall] for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback, but need not
 SETTLE = 0.15  # [s, wall] for what a node does at once, without time moving on
@@ -56,7 +56,7 @@ class Run:
         self.said_death = False
         self.takes_up_late = False  # this node takes a goal up when time goes on, as one driven by a timer does
         self.fell_silent = False  # since the goal was sent, or known to answer more seldom than the ticks come
-        self.mute = False  # not a word came to the last goal that it was given
+        self.mute = False  # goals were given in an earlier scenario, and no word has come since
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
         self.subscribers: Dict[str, rospy.Subscriber] = {}

@@ -89,7 +89,8 @@ class ServerRun:
                 if problem:
                     break
         if problem:
-            run.mute = not (run.parts["commands"] or run.parts["feedback"] or run.parts["results"])
+            said = run.parts["commands"] or run.parts["feedback"] or run.parts["results"]
+            run.mute = bool(run.parts["goals"]) and not said
             run.settle(AFTER)
         record = run.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
         if problem or self._unclean(record):
