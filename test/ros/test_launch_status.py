@@ -1,5 +1,6 @@
 """robocop_launch.py, which is roslaunch but for how it ends: with a status that tells, at any moment, and with all."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -55,7 +56,10 @@ class Launch:
 
     def asks_the_master(self, process):
         """Whether a process has sent the master what that one has not read yet."""
-        sockets = {os.readlink(entry) for entry in Path(f"/proc/{process}/fd").iterdir()}
+        sockets = set()
+        for entry in Path(f"/proc/{process}/fd").iterdir():
+            with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+                sockets.add(os.readlink(entry))
         rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
         master = f"0100007F:{self.port:04X}"
         mine = {row[1] for row in rows if row[2] == master and f"socket:[{row[9]}]" in sockets}
