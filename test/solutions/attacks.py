@@ -100,6 +100,7 @@ for _ in range(12):
         taken = bytearray(400 * 2 ** 20)
         time.sleep(60.0)
         os._exit(0)
+os.wait()  # or the node would be done with its goals before all of it is taken
 """
 BUILD = """
 import os, socket

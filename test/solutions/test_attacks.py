@@ -1,7 +1,6 @@
 """Submissions that attack the judge come to nothing; run by `./robocop test --all`, where bubblewrap can run."""
 
 import os
-import re
 import socket
 import subprocess
 
@@ -58,10 +57,8 @@ def test_who_kills_the_master_and_the_grader_loses_and_the_reason_is_said(tmp_pa
 @pytest.mark.parametrize("name", ["MEMORY", "MEMFD"])
 def test_who_takes_all_memory_in_many_pieces_is_ended_and_the_reason_is_said(name, tmp_path):
     it, _ = attacked(getattr(attacks, name), tmp_path / "mine")
-    # The guard of the node, at 2048 MB, or, for who was faster than that, the one of all that belongs to the run.
-    reasons = {death.reason for record in it.records.values() for death in record.deaths} or {it.problem}
-    assert len(reasons) == 1
-    assert re.fullmatch(r"its processes together took more than (2048|3072) MB of memory", reasons.pop())
+    reasons = {death.reason for record in it.records.values() for death in record.deaths}
+    assert reasons == {"its processes together took more than 2048 MB of memory"}, it.problem
 
 
 def test_of_a_flood_of_messages_only_what_is_of_use_is_kept(tmp_path):
