@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How fast the simulator is, as one table."""
+"""Measure the simulator's speed and print a table."""
+
 from aro_robocop_goto_as.bench.main import main
 
 if __name__ == "__main__":

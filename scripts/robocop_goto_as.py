@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The go-to action server."""
+
 import signal
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # until main() takes over: imports are long, and Ctrl-C is no traceback
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
 
-from aro_robocop_goto_as.nodes.goto_as import main  # noqa: E402
+from aro_robocop_goto_as.ros.server.node import main  # noqa: E402
 
 if __name__ == "__main__":
     main()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Somebody's server and bridge, judged."""
+"""Grade one submission: its action server and its bridge."""
+
 from aro_robocop_goto_as.grading.main import main
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Everybody's server and bridge, judged."""
+"""Grade the submissions of a class."""
+
 from aro_robocop_goto_as.grading.classroom.main import main
 
 if __name__ == "__main__":

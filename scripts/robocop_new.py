@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The lab's package with its TODOs."""
+"""Create the lab's skeleton package, with its TODOs."""
+
 from aro_robocop_goto_as.grading.skeleton import main
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The bridge from RViz's 2D Nav Goal to the go-to action server."""
+
 import signal
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # until main() takes over: imports are long, and Ctrl-C is no traceback
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
 
-from aro_robocop_goto_as.nodes.rviz_goto_ac import main  # noqa: E402
+from aro_robocop_goto_as.ros.client.rviz_bridge import main  # noqa: E402
 
 if __name__ == "__main__":
     main()

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Somebody's package against this simulator."""
+"""Run another package with this simulator."""
+
 import signal
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # until main() takes over: imports are long, and Ctrl-C is no traceback
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
 
-from aro_robocop_goto_as.nodes.launch import main_with  # noqa: E402
+from aro_robocop_goto_as.ros.cli.launch import main_with  # noqa: E402
 
 if __name__ == "__main__":
     main_with()

@@ -1,13 +1,34 @@
-"""For all tests: what they start can be interrupted, even where the shell that started the tests ignores it."""
+"""For all tests: the slow ones run only with --all, and SIGINT ends what they start."""
 
 import signal
+
+from hypothesis import settings
 
 # A shell without job control starts background jobs with SIGINT ignored, and ignored signals are inherited.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Always the same examples, and no limit on their time: a busy machine must not make a test fail.
+settings.register_profile("all", derandomize=True, deadline=None, max_examples=200)
+settings.register_profile("selection", settings.get_profile("all"), max_examples=30)
+
 
 def pytest_addoption(parser):
     """./robocop test --all"""
-    parser.addoption(
-        "--all", action="store_true", help="also what takes long: every solution that the judge is tried on"
-    )
+    parser.addoption("--all", action="store_true", help="also the tests marked slow, and more examples of properties")
+
+
+def pytest_configure(config):
+    settings.load_profile("all" if config.getoption("--all") else "selection")
+
+
+def pytest_report_header(config):
+    return None if config.getoption("--all") else "tests marked slow are left out; --all runs them too"
+
+
+def pytest_collection_modifyitems(config, items):
+    if config.getoption("--all"):
+        return
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    if slow:
+        config.hook.pytest_deselected(items=slow)
+        items[:] = [item for item in items if item not in slow]

@@ -1,16 +1,48 @@
-"""Processes, found by what they were started with: this machine's own account of what is left running."""
+"""Operating-system processes in tests: what is still running, and a load to run beside a test."""
 
-from pathlib import Path
+import contextlib
+import os
+import subprocess
+import sys
+
+import psutil
+
+LOAD = 8  # busy processes
+BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass"  # ends with the process that started it
 
 
 def processes_with(setting, word=b""):
     """Ids of processes with `setting`, bytes NAME=value, in their environment, and `word` on their command line."""
-    found = []
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            settings, command = (process / "environ").read_bytes().split(b"\0"), (process / "cmdline").read_bytes()
-            if setting in settings and word in command:
-                found.append(int(process.name))
-        except OSError:  # ended meanwhile, or somebody else's
-            continue
-    return found
+    name, _, value = os.fsdecode(setting).partition("=")
+    processes = []
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):  # ended meanwhile, or another user's
+            if process.environ().get(name) == value and word in os.fsencode("\0".join(process.cmdline())):
+                processes.append(process.pid)
+    return processes
+
+
+def processes_mentioning(folder):
+    """Ids of processes with this folder's path in their environment or on their command line."""
+    processes = []
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):
+            if any(str(folder) in word for word in (*process.cmdline(), *process.environ().values())):
+                processes.append(process.pid)
+    return [pid for pid in processes if pid != os.getpid()]
+
+
+@contextlib.contextmanager
+def busy_processes(count=LOAD):
+    """Keep the machine busy with `count` endless loops while the block runs."""
+    command = [sys.executable, "-c", BUSY, str(os.getpid())]
+    running = []
+    try:
+        for _ in range(count):
+            running.append(subprocess.Popen(command, stdin=subprocess.DEVNULL))
+        yield
+    finally:
+        for process in running:
+            process.kill()
+        for process in running:
+            process.wait()

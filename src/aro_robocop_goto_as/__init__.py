@@ -1,20 +1,36 @@
 """TurtleBot go-to lab: a pybullet simulator, a go-to action server, an RViz bridge.
 
-Data flows through the core in this order; no core module imports rospy:
+From a velocity command to odometry, scan, tf and clock:
 
-    world       world file -> World: sdf* Gazebo's, map_file and maps map_server's, random_world; shapes what it is of
-    robot       URDF -> RobotModel; models its figures
-    simtime     steps -> stamps and schedules
-    physics     World + wheel speeds -> RobotState, by Bullet     bullet_shapes its shapes
-    kinematics  the same, as ideal drives                         sweep how far a disc comes
-    slice       World -> segments and circles at one height       tiles those near a place
-    raycast     slice + poses -> exact distances along beams
-    sensors/    RobotState + distances -> scan, odometry, imu, ...     one sensor a file; renderer draws for cameras
-    goto        pose, clearance ahead, goal -> velocity, or an outcome     the lab's loop
-    drive       velocity command -> limits, time-out -> wheel speeds
-    simulator   drive -> physics -> sensors, step by step, in simulated time
-    lockstep    whom simulated time waits for
+    ros.sim.robot_inputs          cmd_vel -> ros.sim.node, which posts a job to the loop
+    simulation.loop               applies it, in lockstep at the end of the control tick; makes the steps
+    simulation.simulator          one step: advance, then measure what is due and subscribed to
+        robot.base_controller     command -> limits, command timeout -> wheel speeds
+        physics.engine            wheel speeds + world -> robot states, by bullet or kinematic
+        sensors                   states, distances -> measurements
+    simulation.observations       what the step yielded
+    ros.sim.node                  -> robot_topics, transform_topics, and the clock last
 
-`params` holds one frozen dataclass per node, `nodes/` all of rospy. Around them: `hosting/` builds and runs other
-people's packages, `grading/` judges them, `bench/` measures the simulator.
+From a goal to its result:
+
+    ros.server.goal_server        goal -> the control loop in ros.server.node
+    ros.server.inputs             newest odom and scan -> pose, clearance ahead
+    ros.server.goal_execution     one control period of the goal, decided by
+    goto                          the handout's rule: rotate, move forward or end
+    ros.server.node               -> cmd_vel, feedback, in the end result and terminal state
+
+    A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2), goal_handle.
+
+From a world file to a scan:
+
+    world.load                    by world.sdf or world.grid_map -> world.model.World
+    raycast.cross_section         the world at a scanner's height: segments and circles
+    raycast.scene                 the cross-sections and all robots, laid out for caster.c, which library loads
+    raycast.fleet                 + robot poses -> exact distances along all beams
+    sensors.lidar                 noise, range limits -> ranges
+
+Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component gets
+its own small set from `component_params`. `process` is about operating system processes, `bootstrap` runs before
+anything is installed, `hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the
+simulator.
 """

@@ -1,10 +1,13 @@
-"""Every error this package raises, each with a code that scripts may rely on."""
+"""Errors shown to users. Subclasses differ by what the caller can do; programming errors: ValueError or TypeError."""
 
 
 class RobocopError(Exception):
-    """Base of all errors a user can meet; `code` stays the same from release to release."""
+    """Base of all errors that a user can meet; `code` stays the same from release to release."""
 
     code = "ROBOCOP"
+
+
+# -- The input is wrong: correct the file or parameter that the message names. --
 
 
 class ParameterError(RobocopError):
@@ -14,7 +17,7 @@ class ParameterError(RobocopError):
 
 
 class WorldError(RobocopError):
-    """A world file is missing, malformed, or asks for something that can't be honoured."""
+    """A world, map or model file is missing, malformed, or contains something that is not supported."""
 
     code = "WORLD"
 
@@ -25,16 +28,49 @@ class RobotModelError(RobocopError):
     code = "ROBOT_MODEL"
 
 
+# -- A request is refused and nothing has changed: send another request. --
+
+
 class FrameError(RobocopError):
-    """A pose can't be expressed in the frame that is asked for."""
+    """A pose can't be transformed into the frame that is needed."""
 
     code = "FRAME"
 
 
+class PlaceError(RobocopError):
+    """A robot can't be placed at a pose, because something is there."""
+
+    code = "PLACE"
+
+
 class CommandError(RobocopError):
-    """A velocity command holds NaN or infinity."""
+    """A velocity command contains NaN or infinity."""
 
     code = "COMMAND"
+
+
+# -- The system is ending, or the machine lacks something: nothing to correct in the request. --
+
+
+class ShutdownError(RobocopError):
+    """The simulation ended before a request was carried out."""
+
+    code = "SHUTDOWN"
+
+
+class InstallationError(RobocopError):
+    """A part of this package is missing or of another version; the message says what to run."""
+
+    code = "INSTALLATION"
+
+
+class MasterError(RobocopError):
+    """The port of the ROS master is taken by something that does not answer as a master does."""
+
+    code = "MASTER"
+
+
+# -- Measurements: name a case that exists, or look at the process that the message names. --
 
 
 class BenchError(RobocopError):
@@ -43,13 +79,36 @@ class BenchError(RobocopError):
     code = "BENCH"
 
 
+# -- Other people's packages. --
+
+
 class HostingError(RobocopError):
-    """Somebody's package can't be found, built or started."""
+    """A package can't be found, built or started."""
 
     code = "HOSTING"
 
 
 class GradingError(RobocopError):
-    """A submission can't be graded, or the plan of the grading is malformed."""
+    """A submission can't be graded; the subclasses say who can correct that."""
 
     code = "GRADING"
+
+
+class PlanError(GradingError):
+    """The grading plan is malformed; its author has to correct the file."""
+
+
+class SubmissionError(GradingError):
+    """A submission can't be read or built; its author has to correct it."""
+
+
+class GradingSetupError(GradingError):
+    """Something that grading needs is not installed or not running here; whoever grades has to provide it."""
+
+
+class WatchError(GradingSetupError):
+    """RViz can't show the run; the message says why."""
+
+
+class GraderLostError(GradingError):
+    """The submission ended the ROS master or the grader's node, so nothing that follows can be judged."""

@@ -1,4 +1,4 @@
-"""Poses and twists on the plane and in space, in REP-103 units and axes."""
+"""Poses and twists in the plane and in space, in the units and axes of REP-103."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from typing import Tuple
 import numpy as np
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
+FARTHEST = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
 
 Vector3 = Tuple[float, float, float]
 Quaternion = Tuple[float, float, float, float]  # x, y, z, w, as in geometry_msgs
@@ -28,7 +29,7 @@ class Pose2D:
 
 @dataclass(frozen=True)
 class Twist2D:
-    """Velocity of a differential drive in its own frame: forward v [m/s], counter-clockwise w [rad/s]."""
+    """Velocity of a differential drive in its own frame: v forward [m/s], w counter-clockwise [rad/s]."""
 
     v: float = 0.0
     w: float = 0.0
@@ -38,7 +39,7 @@ STANDSTILL = Twist2D()
 
 
 def compose(a_from_b: Pose2D, b_from_c: Pose2D) -> Pose2D:
-    """a_from_c: the pose of c seen in a."""
+    """a_from_c, the pose of c in a."""
     c, s = math.cos(a_from_b.yaw), math.sin(a_from_b.yaw)
     return Pose2D(
         a_from_b.x + c * b_from_c.x - s * b_from_c.y,
@@ -58,14 +59,14 @@ def inverse(a_from_b: Pose2D) -> Pose2D:
 
 
 def arc(yaw: float, distance: float, turn: float) -> Tuple[float, float]:
-    """Displacement [m] along a circular arc of this length [m] that starts at heading yaw and turns by turn [rad]."""
+    """Displacement (x, y) [m] along an arc of length `distance` [m] from heading `yaw` [rad] to `yaw + turn`."""
     half = turn / 2.0
     chord = distance * (math.sin(half) / half if half else 1.0)
     return chord * math.cos(yaw + half), chord * math.sin(yaw + half)
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Fixed-axis roll, pitch, yaw [rad] (as in SDF and URDF) as a unit quaternion x, y, z, w."""
+    """The unit quaternion x, y, z, w of fixed-axis roll, pitch, yaw [rad], as in SDF and URDF."""
     cr, sr = math.cos(roll / 2.0), math.sin(roll / 2.0)
     cp, sp = math.cos(pitch / 2.0), math.sin(pitch / 2.0)
     cy, sy = math.cos(yaw / 2.0), math.sin(yaw / 2.0)
@@ -116,16 +117,16 @@ class Pose3D:
 
     @staticmethod
     def from_xyz_rpy(xyz: Vector3, rpy: Vector3) -> "Pose3D":
-        """From SDF's and URDF's six numbers: position [m], then roll, pitch, yaw [rad]."""
+        """The pose of SDF's and URDF's six numbers: position [m], then roll, pitch, yaw [rad]."""
         return Pose3D(xyz, quaternion_from_rpy(*rpy))
 
     def on_plane(self) -> Pose2D:
-        """The pose with height, roll and pitch left out."""
+        """The pose without height, roll and pitch."""
         return Pose2D(self.position[0], self.position[1], yaw_of(self.orientation))
 
 
 def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
-    """a_from_c: the pose of c seen in a, in space."""
+    """a_from_c in space."""
     x, y, z = rotation_matrix(a_from_b.orientation) @ np.array(b_from_c.position)
     ax, ay, az = a_from_b.position
     return Pose3D(
@@ -135,7 +136,7 @@ def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
 
 
 def inverse3(a_from_b: Pose3D) -> Pose3D:
-    """b_from_a, in space."""
+    """b_from_a in space."""
     x, y, z, w = a_from_b.orientation
     back = (-x, -y, -z, w)
     bx, by, bz = rotation_matrix(back) @ np.array(a_from_b.position)
@@ -143,5 +144,5 @@ def inverse3(a_from_b: Pose3D) -> Pose3D:
 
 
 def lifted(pose: Pose2D, z: float = 0.0) -> Pose3D:
-    """A pose on the plane as one in space at height z [m]."""
+    """A planar pose as a level pose in space at height z [m]."""
     return Pose3D((pose.x, pose.y, z), quaternion_from_rpy(0.0, 0.0, pose.yaw))

@@ -1,4 +1,4 @@
-"""The lab's loop: pose, clearance ahead and goal -> a velocity with feedback, or an outcome."""
+"""The lab's control law: pose, clearance ahead and goal -> a velocity, or an outcome."""
 
 import enum
 import math
@@ -7,13 +7,13 @@ from typing import Optional, Sequence, Union
 
 import numpy as np
 
-from .drive import approach
 from .geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
 from .params import GotoParams
+from .robot.base_controller import approach
 
 
 class Outcome(enum.Enum):
-    """Every way a goal can end; the value starts the result's message."""
+    """Every way a goal can end; the result's message begins with the value."""
 
     REACHED = "REACHED"
     OBSTACLE = "OBSTACLE"
@@ -29,7 +29,7 @@ class Outcome(enum.Enum):
 
 @dataclass(frozen=True)
 class Goal:
-    """Where to drive [m], in the frame of the odometry."""
+    """A goal position [m] in the odometry's frame."""
 
     x: float
     y: float
@@ -37,7 +37,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Errors:
-    """Distance to the goal [m] and from the robot's heading to the goal's direction [rad] within +-pi."""
+    """Distance to the goal [m]; angle from the robot's heading to the goal's direction [rad], within +-pi."""
 
     position: float
     angle: float
@@ -52,8 +52,8 @@ class Rotate:
 
 
 @dataclass(frozen=True)
-class Drive:
-    """Drive straight ahead at this velocity."""
+class MoveForward:
+    """Move straight ahead at this velocity."""
 
     errors: Errors
     twist: Twist2D
@@ -68,11 +68,11 @@ class End:
     twist: Twist2D = STANDSTILL
 
 
-Decision = Union[Rotate, Drive, End]
+Decision = Union[Rotate, MoveForward, End]
 
 
 def errors_to(goal: Goal, pose: Pose2D) -> Errors:
-    """Both errors of the handout; on the goal itself the angle is zero."""
+    """The handout's position and angle errors; at the goal itself the angle error is zero."""
     dx, dy = goal.x - pose.x, goal.y - pose.y
     distance = math.hypot(dx, dy)
     angle = wrap_angle(math.atan2(dy, dx) - pose.yaw) if distance > 0.0 else 0.0
@@ -82,28 +82,28 @@ def errors_to(goal: Goal, pose: Pose2D) -> Errors:
 def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams) -> Decision:
     """The handout's rule; `clearance` [m] is the distance to the nearest obstacle ahead, +inf for none.
 
-    Reached within position_tolerance. Otherwise turn in place while the heading is off by more than angle_tolerance,
-    else drive straight, unless an obstacle ahead is nearer than obstacle_distance.
+    The goal is reached within position_tolerance. Otherwise rotate in place while the angle error exceeds
+    angle_tolerance, then move forward, unless an obstacle ahead is nearer than obstacle_distance.
     """
     errors = errors_to(goal, pose)
     if errors.position < params.position_tolerance:
         return End(errors, Outcome.REACHED)
     if abs(errors.angle) > params.angle_tolerance:
-        speed = _proportional(params.angular_gain * abs(errors.angle), params.min_angular_velocity,
-                              params.max_angular_velocity)
+        gain = params.angular_gain
+        speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, params.max_angular_velocity)
         return Rotate(errors, Twist2D(0.0, math.copysign(speed, errors.angle)))
     if clearance < params.obstacle_distance:
         return End(errors, Outcome.OBSTACLE)
-    return Drive(errors, Twist2D(_proportional(params.linear_gain * errors.position, params.min_linear_velocity,
-                                               params.max_linear_velocity), 0.0))
+    speed = _clamp(params.linear_gain * errors.position, params.min_linear_velocity, params.max_linear_velocity)
+    return MoveForward(errors, Twist2D(speed, 0.0))
 
 
-def _proportional(speed: float, low: float, high: float) -> float:
+def _clamp(speed: float, low: float, high: float) -> float:
     return max(low, min(high, speed))
 
 
-def smoothed(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
-    """The velocity to command now, `dt` [s] after `previous`: acceleration-limited, never both turning and driving."""
+def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
+    """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular."""
     if isinstance(decision, End):
         return STANDSTILL
     if isinstance(decision, Rotate):
@@ -113,14 +113,14 @@ def smoothed(previous: Twist2D, decision: Decision, dt: float, params: GotoParam
 
 @dataclass(frozen=True)
 class Progress:
-    """The errors when the robot last got somewhere, and when that was [s]."""
+    """The errors when the robot last made progress, and the time of that [s]."""
 
     errors: Errors
     since: float
 
 
-def watch(progress: Optional[Progress], errors: Errors, now: float, params: GotoParams) -> Progress:
-    """Progress is getting nearer by stuck_distance, or turning towards the goal by stuck_angle."""
+def track_progress(progress: Optional[Progress], errors: Errors, now: float, params: GotoParams) -> Progress:
+    """The newest progress: nearer to the goal by stuck_distance, or turned towards it by stuck_angle."""
     if progress is None:
         return Progress(errors, now)
     nearer = errors.position < progress.errors.position - params.stuck_distance
@@ -128,21 +128,27 @@ def watch(progress: Optional[Progress], errors: Errors, now: float, params: Goto
     return Progress(errors, now) if nearer or turned else progress
 
 
-def clearance_ahead(ranges: Sequence[float], angle_min: float, increment: float, range_min: float, range_max: float,
-                    half_angle: float) -> Optional[float]:
+def clearance_ahead(
+    ranges: Sequence[float], angle_min: float, increment: float, range_min: float, range_max: float, half_angle: float
+) -> Optional[float]:
     """Nearest obstacle [m] within half_angle [rad] of straight ahead, in the scanner's frame; +inf for none.
 
-    `ranges` (n_beams,) [m], counter-clockwise from angle_min for a positive increment [rad], any layout: 0 to 2 pi as
-    Gazebo's, -pi to pi, or part of a turn. A return counts where range_min < range < range_max, the handout's rule;
-    -inf is REP-117's "too near to measure" and counts as 0. Zero, NaN and +inf are no return.
-    None where no beam points ahead, so nothing can be said.
+    `ranges` (n_beams,) [m], counter-clockwise from angle_min for a positive increment [rad]; 0 to 2 pi as Gazebo's,
+    -pi to pi, or part of a turn. A return counts where range_min < range < range_max, the handout's rule. -inf means
+    "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that there is nothing to return the
+    beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a scanner that sends only zeros
+    can't be told from one in an open space.
+    None when no beam points ahead. NaN when no beam ahead is valid: all are NaN (REP-117), or a range limit is.
     """
     distances = np.asarray(ranges, dtype=float)
-    angles = angle_min + increment * np.arange(len(distances))
-    ahead = np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) <= half_angle + 1e-9
+    with np.errstate(invalid="ignore", over="ignore"):  # angles that are not numbers do not point ahead
+        angles = angle_min + increment * np.arange(len(distances))
+        ahead = np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) <= half_angle + 1e-9
     if not ahead.any():
         return None
     distances = distances[ahead]
+    if np.isnan(distances).all() or math.isnan(range_min) or math.isnan(range_max):
+        return math.nan
     if np.isneginf(distances).any():
         return 0.0
     valid = distances[(distances > range_min) & (distances < range_max)]

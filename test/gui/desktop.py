@@ -1,7 +1,6 @@
-"""What a test with real windows needs: an X server and a ROS system of its own, eyes, a mouse and a keyboard.
+"""For tests with real windows: an X server and a ROS system of their own, screen contents, mouse and keyboard.
 
-Every wait is for a condition and has a deadline, long enough for a machine that is busy with other work: reaching it
-always means a failure.
+Every wait is for a condition and has a deadline, long enough for a busy machine: reaching it always means a failure.
 """
 
 import os
@@ -16,9 +15,9 @@ import numpy as np
 import rosgraph
 import yaml
 
-DEADLINE = 120.0  # [s] for anything to come up or to happen
-END = 40.0  # [s] for a process to end; roslaunch needs 17 s to kill a node that doesn't
-POLL = 0.1  # [s]
+DEADLINE = 120.0  # [s, wall] for any one condition
+END = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to kill a node that does not end
+POLL = 0.1  # [s, wall]
 CALLER = "/gui_test"
 
 
@@ -34,7 +33,7 @@ def wait_for(condition, what, deadline=DEADLINE):
 
 
 def end(process, *signals):
-    """Send one signal after the other until the process has ended; the last one is always SIGKILL."""
+    """Send one signal after the other, SIGKILL last, until the process has ended; its exit status."""
     for number in (*signals, signal.SIGKILL):
         if process.poll() is None:
             process.send_signal(number)
@@ -56,7 +55,7 @@ class Desktop:
     def __enter__(self):
         log = self.directory / "xvfb.log"
         from_server, to_us = os.pipe()
-        # -noreset: else the server starts anew whenever its last client goes, and drops who comes at that moment.
+        # Without -noreset the server restarts when its last client leaves, and drops a client that connects meanwhile.
         command = ["Xvfb", "-displayfd", str(to_us), "-screen", "0", self.screen, "-fbdir", self.directory, "-noreset"]
         with open(log, "wb") as output:
             self.server = subprocess.Popen(command, pass_fds=[to_us], stdout=output, stderr=output)
@@ -71,25 +70,26 @@ class Desktop:
         end(self.server, signal.SIGTERM)
 
     def _run(self, *command):
-        """Output of an X tool; empty when it fails, as on a window that has just gone."""
-        return subprocess.run(command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                              timeout=DEADLINE).stdout
+        """Output of an X tool; empty when it fails, as for a window that was just closed."""
+        return subprocess.run(
+            command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=DEADLINE
+        ).stdout
 
     def save_picture(self):
-        """The whole screen to screenshot.png."""
+        """Save the whole screen as screenshot.png."""
         self._run("convert", f"xwd:{self.frame_buffer}", self.directory / "screenshot.png")
 
-    def hand(self, *actions):
-        """Mouse and keyboard in xdotool's words; the X server keeps their order, so they need no pauses."""
+    def input(self, *actions):
+        """Mouse and keyboard actions, as xdotool's arguments. The X server keeps their order: no pauses are needed."""
         subprocess.run(["xdotool", *map(str, actions)], env=self.environment, check=True, timeout=DEADLINE)
 
     def window(self, title):
-        """Id of the visible window whose title matches; None while there is none."""
+        """Id of a visible window by its title, a regular expression; None if there is none."""
         found = self._run("xdotool", "search", "--onlyvisible", "--name", title).split()
         return int(found[0]) if found else None
 
     def canvas(self, window):
-        """Id of the largest nameless window within a window, that is what OpenGL draws in; None while there is none."""
+        """Id of the largest unnamed child of a window, which is the one OpenGL draws in; None if there is none."""
         sizes = {}
         for line in self._run("xwininfo", "-tree", "-id", str(window)).decode(errors="replace").splitlines():
             # as in "   0x600004 (has no name): ()  820x689+0+0  +404+102"
@@ -98,30 +98,30 @@ class Desktop:
                 sizes[int(found[1], 16)] = int(found[2]) * int(found[3])
         return max(sizes, key=sizes.get, default=None)
 
-    def place(self, window):
-        """x, y of the upper left corner on the screen, width and height of a window [pixel]."""
+    def geometry(self, window):
+        """A window's x, y of the upper left corner on the screen, width and height [pixel]."""
         lines = self._run("xdotool", "getwindowgeometry", "--shell", str(window)).decode().split()
         values = dict(line.split("=") for line in lines)
         return tuple(int(values[name]) for name in ("X", "Y", "WIDTH", "HEIGHT"))
 
     def pixels(self, window):
-        """What the screen shows where a window is: (height, width, 3) red, green, blue from 0 to 255.
+        """The part of the screen that a window covers: (height, width, 3) red, green, blue from 0 to 255.
 
-        Read from the X server's frame buffer, a file in xwd's format: that asks nothing of the window, so it can
-        neither disturb nor wait for a program that is busy.
+        Read from the X server's frame buffer, a file in xwd's format, so it neither disturbs nor waits for the
+        window's program.
         """
         data = self.frame_buffer.read_bytes()
-        header = np.frombuffer(data, dtype=">u4", count=25).tolist()  # X11/XWDFile.h names its fields
+        header = np.frombuffer(data, dtype=">u4", count=25).tolist()  # fields as in X11/XWDFile.h
         start, rows, stride = header[0] + 12 * header[19], header[5], header[12]
         screen = np.frombuffer(data, np.uint8, rows * stride, start).reshape(rows, stride // 4, 4)
-        x, y, wide, high = self.place(window)
-        return screen[y:y + high, x:x + wide, 2::-1].astype(int)
+        x, y, wide, high = self.geometry(window)
+        return screen[y : y + high, x : x + wide, 2::-1].astype(int)
 
 
 class Ros:
     """The whole lab by roslaunch on a master of its own: `with Ros(directory, desktop, "rviz:=true") as ros`.
 
-    A failure leaves a picture of the desktop behind, taken while the windows are still there.
+    After a failure a screenshot is saved before the windows are closed.
     """
 
     def __init__(self, directory, desktop, *arguments):
@@ -133,14 +133,20 @@ class Ros:
             probe.bind(("localhost", 0))
             self.port = probe.getsockname()[1]
         uri = f"http://localhost:{self.port}"
-        self.environment = {**desktop.environment, "ROS_MASTER_URI": uri, "ROS_HOSTNAME": "localhost",
-                            "ROS_HOME": str(directory / "ros"), "ROS_LOG_DIR": str(directory / "ros" / "log")}
+        self.environment = {
+            **desktop.environment,
+            "ROS_MASTER_URI": uri,
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(directory / "ros"),
+            "ROS_LOG_DIR": str(directory / "ros" / "log"),
+        }
         self.environment.pop("ROS_IP", None)
         self.master = rosgraph.Master(CALLER, uri)
 
     def __enter__(self):
-        launch = self.start("roslaunch", "roslaunch", "-p", self.port, "aro_robocop_goto_as", "robocop_goto_as.launch",
-                            *self.arguments)
+        launch = self.start(
+            "roslaunch", "roslaunch", "-p", self.port, "aro_robocop_goto_as", "robocop_goto_as.launch", *self.arguments
+        )
         try:
             wait_for(lambda: launch.poll() is not None or self.master.is_online(), "a ROS master")
             assert launch.poll() is None, f"roslaunch ended: {(self.directory / 'roslaunch.err').read_text()}"
@@ -161,23 +167,28 @@ class Ros:
             end(process, *signals)
 
     def start(self, name, *command, signals=(signal.SIGINT, signal.SIGTERM)):
-        """Start a process that ends with this system, by these signals; its output goes to NAME.log and NAME.err."""
+        """Start a process that is ended with this system by these signals; its output goes to NAME.log and NAME.err."""
         with open(self.directory / f"{name}.log", "wb") as log, open(self.directory / f"{name}.err", "wb") as errors:
             process = subprocess.Popen(list(map(str, command)), env=self.environment, stdout=log, stderr=errors)
         self.running.append((process, signals))
         return process
 
     def latest(self, topic):
-        """One message of a topic, as the real `rostopic echo` prints it."""
-        done = subprocess.run(["rostopic", "echo", "-n", "1", topic], env=self.environment, stdout=subprocess.PIPE,
-                              check=True, timeout=DEADLINE)
+        """One message of a topic by `rostopic echo`."""
+        done = subprocess.run(
+            ["rostopic", "echo", "-n", "1", topic],
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            check=True,
+            timeout=DEADLINE,
+        )
         return next(yaml.safe_load_all(done.stdout))
 
     def linked(self, node, partner, topic):
-        """Whether a node has a connection with a partner on a topic, to send or to receive.
+        """Whether a node has a connection with a partner on a topic, in either direction.
 
-        The node has to be a Python one. A C++ one, such as RViz, now and then corrupts its heap when it is asked while
-        it makes connections: ask its partner about it.
+        Only for Python nodes: a C++ node, such as RViz, sometimes corrupts its heap when it is asked while it makes
+        connections. Ask its partner instead.
         """
         try:
             with xmlrpc.client.ServerProxy(self.master.lookupNode(node)) as proxy:
@@ -188,14 +199,14 @@ class Ros:
         return code == 1 and any(link[1] in names and link[4] == topic and link[5] for link in links)
 
     def subscriber(self, topic, prefix):
-        """Name of the node that subscribes to a topic, by the name's beginning; None while there is none."""
+        """Name of a node that subscribes to a topic, by its prefix; None if there is none."""
         _, subscribers, _ = self.master.getSystemState()
         nodes = dict(subscribers).get(topic, [])
         return next((node for node in nodes if node.startswith(prefix)), None)
 
 
 class Recorder:
-    """All messages of a topic from a publisher, by the real `rostopic echo`."""
+    """All messages of a topic from a publisher, by `rostopic echo`."""
 
     def __init__(self, ros, publisher, topic):
         self.ros, self.publisher, self.topic = ros, publisher, topic
@@ -204,10 +215,10 @@ class Recorder:
         self.process = ros.start(name, "rostopic", "echo", topic)
 
     def connected(self):
-        """Whether it hears the publisher already."""
+        """Whether the publisher is connected."""
         node = self.ros.subscriber(self.topic, f"/rostopic_{self.process.pid}_")
         return node is not None and self.ros.linked(node, self.publisher, self.topic)
 
     def messages(self):
-        """What came so far, as dictionaries."""
+        """The messages received so far, as dictionaries."""
         return [yaml.safe_load(text) for text in self.log.read_text().split("\n---\n")[:-1]]

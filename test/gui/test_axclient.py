@@ -1,4 +1,4 @@
-"""A person with actionlib's graphical client: a goal typed and sent by its button."""
+"""A goal typed into actionlib's graphical client and sent by its button is reached."""
 
 import math
 import signal
@@ -21,7 +21,7 @@ def rows(pixels, color):
 
 
 def layout(pixels):
-    """Heights [pixel] of the goal's text and of the button SEND GOAL; None until the button can be pressed.
+    """Rows [pixel] of the goal's text and of the button SEND GOAL; None until the button is enabled.
 
     From the top: three text fields for goal, feedback and result; the buttons SEND GOAL and CANCEL GOAL, of the same
     height; a line for the goal's state; a line for the server's.
@@ -32,19 +32,35 @@ def layout(pixels):
     return fields[0] + 10, fields[-1] + (state[0] - fields[-1]) // 4
 
 
-def test_goal_sent_by_axclients_button_is_reached(tmp_path):
+def test_goal_sent_from_axclient_is_reached(tmp_path):
     with Desktop(tmp_path, "800x600x24") as desktop, Ros(tmp_path, desktop, "rviz:=false") as ros:
         results = Recorder(ros, SERVER, "/robocop_goto_as/result")
         wait_for(results.connected, "results recorded")
-        axclient = ros.start("axclient", "rosrun", "actionlib_tools", "axclient.py", "/robocop_goto_as",
-                             "aro_robocop_goto_as/GoToPositionAction", signals=())  # nothing but SIGKILL ends it
+        axclient = ros.start(
+            "axclient",
+            "rosrun",
+            "actionlib_tools",
+            "axclient.py",
+            "/robocop_goto_as",
+            "aro_robocop_goto_as/GoToPositionAction",
+            signals=(),
+        )  # only SIGKILL ends it
         window = wait_for(lambda: desktop.window("GUI Client$"), "axclient's window")
         text, button = wait_for(lambda: layout(desktop.pixels(window)), "axclient connected to the server")
 
-        x, y, width, _ = desktop.place(window)
-        desktop.hand("mousemove", x + width // 2, y + text, "click", 1, "key", "ctrl+a",
-                     "type", "position: {{x: {}, y: {}, z: 0.0}}".format(*GOAL))
-        desktop.hand("mousemove", x + width // 2, y + button, "click", 1)
+        x, y, width, _ = desktop.geometry(window)
+        desktop.input(
+            "mousemove",
+            x + width // 2,
+            y + text,
+            "click",
+            1,
+            "key",
+            "ctrl+a",
+            "type",
+            "position: {{x: {}, y: {}, z: 0.0}}".format(*GOAL),
+        )
+        desktop.input("mousemove", x + width // 2, y + button, "click", 1)
 
         result = wait_for(results.messages, "the goal's result")[0]
         assert result["status"]["status"] == SUCCEEDED, result

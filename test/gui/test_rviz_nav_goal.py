@@ -1,4 +1,4 @@
-"""A person's click in RViz: the robot drives there."""
+"""The robot drives to a 2D Nav Goal clicked in RViz."""
 
 import math
 
@@ -11,11 +11,12 @@ TOLERANCE = 0.1  # [m] config/goto_as.yaml, position_tolerance
 ODOMETRY_ERROR = 0.02  # [m] of wheel encoders on the 0.7 m to the goal
 SIMULATOR, SERVER, BRIDGE = "/robocop_sim", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node"
 SEEN = [(SIMULATOR, topic) for topic in ("/tf", "/tf_static", "/scan", "/odom", "/robocop_sim/world")] + [
-    (SERVER, "/aro_robocop_goto_as_node/markers")]  # what RViz displays, with its publisher
+    (SERVER, "/aro_robocop_goto_as_node/markers")
+]  # the topics that RViz displays, with their publishers
 
 
 def displays_the_robot(pixels):
-    """Whether RViz's view shows the scan, in red, with the green cone of a robot that has a free way."""
+    """Whether RViz's view shows the red scan and the green safety cone of a robot without an obstacle ahead."""
     red, green, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
     scan = (red > 140) & (2 * green < red) & (2 * blue < red)
     cone = (green > 70) & (2 * red < green) & (1.5 * blue < green)
@@ -23,16 +24,16 @@ def displays_the_robot(pixels):
 
 
 def click_and_drag_up(desktop, canvas):
-    """What the toolbar's 2D Nav Goal asks for: press where the robot shall stand, drag to where it shall look."""
-    x, y, width, height = desktop.place(canvas)
+    """Use the tool 2D Nav Goal: press the button at the position, drag in the direction to face."""
+    x, y, width, height = desktop.geometry(canvas)
     x, y = x + width // 2, y + height // 2
-    desktop.hand("mousemove", x, y, "key", "g", "mousedown", 1)
+    desktop.input("mousemove", x, y, "key", "g", "mousedown", 1)
     for up in range(10, 101, 10):
-        desktop.hand("mousemove", x, y - up)
-    desktop.hand("mouseup", 1)
+        desktop.input("mousemove", x, y - up)
+    desktop.input("mouseup", 1)
 
 
-def test_robot_drives_to_where_2d_nav_goal_is_clicked(tmp_path):
+def test_robot_drives_to_a_2d_nav_goal_clicked_in_rviz(tmp_path):
     with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=true") as ros:
         clicks = Recorder(ros, "/rviz", "/move_base_simple/goal")
         results = Recorder(ros, SERVER, "/robocop_goto_as/result")
@@ -40,7 +41,7 @@ def test_robot_drives_to_where_2d_nav_goal_is_clicked(tmp_path):
         canvas = wait_for(lambda: desktop.canvas(window), "RViz's view")
         wait_for(lambda: all(ros.linked(node, "/rviz", topic) for node, topic in SEEN), "RViz subscribed to its topics")
         wait_for(lambda: displays_the_robot(desktop.pixels(canvas)), "scan and safety cone drawn in RViz")
-        wait_for(lambda: ros.linked(BRIDGE, "/rviz", "/move_base_simple/goal"), "the bridge hears RViz")
+        wait_for(lambda: ros.linked(BRIDGE, "/rviz", "/move_base_simple/goal"), "the bridge connected to RViz")
         wait_for(clicks.connected, "clicks recorded")
         wait_for(results.connected, "results recorded")
 

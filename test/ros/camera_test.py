@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Images, calibration and points of a camera, in its own optical frame, agree with each other and with the scan."""
+"""Images, calibration and points of a camera are of one step and match each other, TF and the world."""
 
 import unittest
 
@@ -11,7 +11,7 @@ from harness import Recorder, run, wait_for
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 
 FRAME = "red/camera_rgb_optical_frame"
-WALL = 1.85  # [m] in x, the inner side of stage_1's
+WALL = 1.85  # [m] x of the inner face of stage_1's wall
 
 
 class Camera(unittest.TestCase):
@@ -20,54 +20,65 @@ class Camera(unittest.TestCase):
         cls.buffer = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.buffer)
         wait_for(lambda: cls.buffer.can_transform("world", FRAME, rospy.Time()), f"{FRAME} in world on /tf")
-        topics = {"rgb/image_raw": Image, "rgb/camera_info": CameraInfo, "depth/image_raw": Image,
-                  "depth/camera_info": CameraInfo, "depth/points": PointCloud2}
+        topics = {
+            "rgb/image_raw": Image,
+            "rgb/camera_info": CameraInfo,
+            "depth/image_raw": Image,
+            "depth/camera_info": CameraInfo,
+            "depth/points": PointCloud2,
+        }
         recorders = {name: Recorder(f"red/camera/{name}", kind) for name, kind in topics.items()}
         start = max(recorder.newest().header.stamp for recorder in recorders.values())
-        cls.of_one_step = {name: recorder.wait_for(lambda m: m.header.stamp > start, "an image of when all are there")
-                           for name, recorder in recorders.items()}
+        cls.of_one_step = {
+            name: recorder.wait_for(lambda m: m.header.stamp > start, "a message from after all topics had one")
+            for name, recorder in recorders.items()
+        }
 
-    def test_all_are_of_one_step_and_in_the_optical_frame(self):
+    def test_all_messages_are_of_one_step_and_in_the_optical_frame(self):
         headers = [message.header for message in self.of_one_step.values()]
         self.assertEqual({header.frame_id for header in headers}, {FRAME})
         self.assertEqual(len({header.stamp for header in headers}), 1)
 
-    def test_colour_is_what_its_encoding_says(self):
+    def test_colours_are_in_the_order_of_the_encoding(self):
         image = self.of_one_step["rgb/image_raw"]
         self.assertEqual((image.encoding, image.width, image.height, image.step), ("rgb8", 160, 120, 480))
         rgb = ros_numpy.numpify(image).astype(int)
         red, blue = rgb[..., 0], rgb[..., 2]
-        self.assertGreater((blue - red)[:40].mean(), 20)  # sky, or wall, bluish
+        self.assertGreater((blue - red)[:40].mean(), 20)  # sky or wall, which are bluish
         self.assertLess((blue - red)[-10:].mean(), 5)  # floor
 
-    def test_depth_calibration_and_points_agree(self):
+    def test_points_match_depth_colour_and_calibration(self):
         depth = ros_numpy.numpify(self.of_one_step["depth/image_raw"])
         self.assertEqual(self.of_one_step["depth/image_raw"].encoding, "32FC1")
         self.assertEqual(depth.shape, (120, 160))
         info, cloud = self.of_one_step["rgb/camera_info"], self.of_one_step["depth/points"]
-        self.assertEqual((info.K, info.P), (self.of_one_step["depth/camera_info"].K,
-                                            self.of_one_step["depth/camera_info"].P))
+        self.assertEqual(
+            (info.K, info.P), (self.of_one_step["depth/camera_info"].K, self.of_one_step["depth/camera_info"].P)
+        )
         points = ros_numpy.numpify(cloud)
         self.assertEqual(points.shape, depth.shape)
         rows, columns = np.nonzero(np.isfinite(depth))
         for axis, pixels, scale, centre in (("x", columns, info.K[0], info.K[2]), ("y", rows, info.K[4], info.K[5])):
-            np.testing.assert_allclose(points[axis][rows, columns],
-                                       depth[rows, columns] * (pixels - centre) / scale, atol=1e-5)
+            np.testing.assert_allclose(
+                points[axis][rows, columns], depth[rows, columns] * (pixels - centre) / scale, atol=1e-5
+            )
         np.testing.assert_array_equal(points["z"][rows, columns], depth[rows, columns])
         packed = points["rgb"].view(np.uint32)
         rgb = ros_numpy.numpify(self.of_one_step["rgb/image_raw"])
         np.testing.assert_array_equal(np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=-1), rgb)
 
-    def test_straight_ahead_is_the_wall_that_tf_puts_there(self):
+    def test_depth_straight_ahead_is_the_distance_of_the_wall_by_tf(self):
         stamp = self.of_one_step["depth/image_raw"].header.stamp
-        wait_for(lambda: self.buffer.can_transform("world", FRAME, stamp), "the transform of that time")
+        wait_for(lambda: self.buffer.can_transform("world", FRAME, stamp), "the transform at that stamp")
         at = self.buffer.lookup_transform("world", FRAME, stamp).transform
         rotation = np.array([at.rotation.x, at.rotation.y, at.rotation.z, at.rotation.w])
-        np.testing.assert_allclose(rotation / rotation[3], [-1, 1, -1, 1], atol=1e-3)  # x to the right, y down, z ahead
+        np.testing.assert_allclose(
+            rotation / rotation[3], [-1, 1, -1, 1], atol=1e-3
+        )  # x to the right, y down, z forward
         depth = ros_numpy.numpify(self.of_one_step["depth/image_raw"])
         self.assertAlmostEqual(float(depth[59:61, 79:81].mean()), WALL - at.translation.x, delta=0.005)
 
-    def test_robot_without_a_camera_has_no_such_topics(self):
+    def test_robot_without_a_camera_has_no_camera_topics(self):
         names = [name for name, _ in rospy.get_published_topics()]
         self.assertFalse([name for name in names if name.startswith("/blue/camera")])
 

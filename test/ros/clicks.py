@@ -1,4 +1,4 @@
-"""2D Nav Goals without RViz: the same message on the same topic, and what the bridge says about it."""
+"""2D Nav Goals without RViz: the same message on the same topic, and the bridge's status."""
 
 import rospy
 from geometry_msgs.msg import PoseStamped
@@ -7,7 +7,7 @@ from std_msgs.msg import String
 
 
 class Clicks:
-    """Publishes 2D Nav Goals to the bridge in a namespace; `status` records what it tells of the server."""
+    """Publishes 2D Nav Goals to the bridge in a namespace; `status` records the bridge's status topic."""
 
     def __init__(self, namespace=""):
         bridge = namespace + BRIDGE
@@ -16,7 +16,7 @@ class Clicks:
         wait_for_subscriber(self._topic, bridge)
 
     def click(self, x, y, frame, stamp=None):
-        """A click at x, y [m] in a frame, now unless told otherwise."""
+        """A 2D Nav Goal at x, y [m] in a frame, by default stamped with the time of now."""
         message = PoseStamped()
         message.header.frame_id = frame
         message.header.stamp = rospy.Time.now() if stamp is None else stamp
@@ -25,5 +25,5 @@ class Clicks:
         self._topic.publish(message)
 
     def wait_for_status(self, text):
-        """Until the bridge's status holds a text."""
+        """Wait for a status that contains a text."""
         return self.status.wait_for(lambda m: text in m.data, f"a status with {text!r}").data

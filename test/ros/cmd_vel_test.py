@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The simulated robot obeys the newest sensible command, and brakes when none comes any more."""
+"""The simulated robot follows the newest valid command, and brakes after the command timeout."""
 
 import math
 import socket
@@ -20,53 +20,63 @@ class CmdVel(unittest.TestCase):
     def setUp(self):
         self.robot.reset()
         self.robot.wait_for_standstill()
-        self.log.forget()
+        self.log.clear()
 
     def test_single_command_times_out_after_half_a_second(self):
-        self.robot.truth.forget()
+        self.robot.truth.clear()
         self.commands.once(0.2)
         self.robot.wait_until_it_drives(0.15)
         self.robot.wait_for_standstill()
         stamps = [m.header.stamp.to_sec() for m in self.robot.truth.messages if m.twist.twist.linear.x > 0.1]
-        # Above half the speed from 0.04 s after the command to 0.04 s after its time-out, seen 30 times a second.
+        # Faster than half the speed from 0.04 s after the command to 0.04 s after its timeout, sampled at 30 Hz.
         self.assertAlmostEqual(stamps[-1] - stamps[0], 0.5, delta=0.07)
 
-    def test_commands_are_not_held_back_on_their_way_to_be_sent_together(self):
-        """For a publisher that does not ask for it itself."""
+    def test_commands_are_received_without_nagles_delay(self):
+        """Also from a publisher that does not set TCP_NODELAY itself."""
         option = self.commands.to_simulator().getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
         self.assertEqual(option, 1)
 
     def test_newest_command_wins(self):
         for i in range(20):
             self.commands.once(0.0, 0.1 * i)
-        with self.commands.held(-0.1):
+        with self.commands.repeated(-0.1):
             start = len(self.robot.truth)
-            self.robot.truth.wait_for(lambda m: m.twist.twist.linear.x < -0.09 and abs(m.twist.twist.angular.z) < 0.05,
-                                      "a robot that drives back", start)
+            self.robot.truth.wait_for(
+                lambda m: m.twist.twist.linear.x < -0.09 and abs(m.twist.twist.angular.z) < 0.05,
+                "a robot that drives backwards",
+                start,
+            )
         self.robot.wait_for_standstill()
 
-    def test_command_beyond_the_limits_is_clamped_to_them(self):
-        with self.commands.held(5.0):
+    def test_a_command_beyond_the_limits_is_clamped(self):
+        with self.commands.repeated(5.0):
             self.robot.wait_until_it_drives(0.2)
-            fast = self.robot.truth.take(15)
+            fast = self.robot.truth.next(15)
         self.assertLess(max(m.twist.twist.linear.x for m in fast), 0.23)
         self.robot.wait_for_standstill()
 
-    def test_command_of_nan_or_infinity_is_refused_and_the_one_before_stays_in_force(self):
+    def test_a_command_of_nan_or_infinity_is_refused_and_the_one_before_stays_in_force(self):
         bad = ((math.nan, 0.0), (0.0, math.nan), (math.inf, 0.0), (0.0, -math.inf))
-        with self.commands.held(0.1):
+        with self.commands.repeated(0.1):
             self.robot.wait_until_it_drives(0.09)
             for v, w in bad * 5:
                 self.commands.once(v, w)
-                for m in self.robot.truth.take(2):
+                for m in self.robot.truth.next(2):
                     self.assertAlmostEqual(m.twist.twist.linear.x, 0.1, delta=0.02)
                     self.assertAlmostEqual(m.twist.twist.angular.z, 0.0, delta=0.05)
         self.robot.wait_for_standstill()
         for v, w in bad:
             self.commands.once(v, w)
-            self.assertFalse([m for m in self.robot.truth.take(3) if moves(m)])
-        self.log.wait_for(lambda m: m.name == SIMULATOR and m.level == Log.WARN and "nan m/s" in m.msg
-                          and "expected finite numbers" in m.msg, "a warning")
+            self.assertFalse([m for m in self.robot.truth.next(3) if moves(m)])
+        self.log.wait_for(
+            lambda m: (
+                m.name == SIMULATOR
+                and m.level == Log.WARN
+                and "nan m/s" in m.msg
+                and "expected finite numbers" in m.msg
+            ),
+            "a warning",
+        )
         refusals = [m for m in self.log.messages if "velocity command refused" in m.msg]
         self.assertLess(len(refusals), 10)  # of 24: the warning is throttled
 

@@ -1,4 +1,4 @@
-"""Velocity commands from a test."""
+"""Publishing velocity commands from a test."""
 
 import threading
 
@@ -10,28 +10,28 @@ PERIOD = 0.05  # [s, wall]
 
 
 class Commands:
-    """Publishes cmd_vel: once, or as a context manager again and again as a teleoperation does."""
+    """Publishes cmd_vel: a single command, or one repeated as by teleoperation."""
 
     def __init__(self, topic="cmd_vel"):
         self._topic = rospy.Publisher(topic, Twist, queue_size=10)
         wait_for_subscriber(self._topic, SIMULATOR)
 
     def to_simulator(self):
-        """The socket on which they go to the simulator."""
+        """The socket of the connection to the simulator."""
         return next(c.socket for c in self._topic.impl.connections if c.endpoint_id == SIMULATOR)
 
     def once(self, v, w=0.0):
-        """One command [m/s, rad/s]."""
+        """Publish one command [m/s, rad/s]."""
         twist = Twist()
         twist.linear.x, twist.angular.z = v, w
         self._topic.publish(twist)
 
-    def held(self, v, w=0.0):
-        """The same command, repeated for as long as the context lasts."""
-        return _Held(self, v, w)
+    def repeated(self, v, w=0.0):
+        """A context in which one command [m/s, rad/s] is published every PERIOD."""
+        return _Repeated(self, v, w)
 
 
-class _Held:
+class _Repeated:
     def __init__(self, commands, v, w):
         self._commands, self._twist = commands, (v, w)
         self._stop = threading.Event()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts what comes on some topics. Usage: count_messages.py COUNTS.json TOPIC..."""
+"""Counts the messages of some topics. Usage: count_messages.py COUNTS.json TOPIC..."""
 
 import json
 import os

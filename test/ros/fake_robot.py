@@ -1,8 +1,9 @@
-"""A robot of nothing but messages: its clock stands still unless a test lets time pass, step by step with the server.
+"""A robot made of messages only. Its clock advances only when a test lets it, in step with the server.
 
-With it a test knows at which simulated moment the server did what, however busy the machine is.
+So a test knows at which simulated time the server did something, however busy the machine is.
 """
 
+import contextlib
 import io
 import math
 import xmlrpc.client
@@ -16,17 +17,18 @@ from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.nodes.convert import to_quaternion
+from aro_robocop_goto_as.ros.convert import to_quaternion
 
 PERIOD_NS = 100000000  # of the server's control loop
 PERIOD = 0.1  # [s]
+PATIENCE = 0.2  # [s, wall] for an answer before more time passes; twice the period, so half of real time
 RANGE_MIN, RANGE_MAX = 0.12, 10.0  # [m]
 BEAMS = 360
 INCREMENT = 2.0 * math.pi / BEAMS
 
 
 class FakeRobot:
-    """Publishes clock, odom and scan; `pose` follows cmd_vel exactly, unless `obeys` is False."""
+    """Publishes clock, odom and scan. `pose` follows cmd_vel exactly while `obeys` is True."""
 
     def __init__(self):
         self.goals = Goals()
@@ -45,33 +47,35 @@ class FakeRobot:
         self._server = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(SERVER))
         self._bytes = 0
         self.pass_time(1.0)
-        wait_for(lambda: [messages for _, _, messages, *_ in self._connections()] == [1, 1, 1],
-                 "the first of each topic at the server, and nothing more from another robot before this one")
-        self._bytes = self._received()  # that the server will have received once all that was sent has arrived
+        wait_for(
+            lambda: [messages for _, _, messages, *_ in self._connections()] == [1, 1, 1],
+            "one message of each topic at the server, and none from an earlier fake robot",
+        )
+        self._bytes = self._received()  # received by the server once everything published has arrived
 
-    # -- what the robot is and sees --
+    # -- pose and scan --
 
     def renew(self):
-        """Odom's origin, nothing in sight, no past."""
+        """Return to the origin of odom with an empty scan, and drop what was recorded."""
         self.pose, self.obeys = Pose2D(), True
         self.ranges = [math.inf] * BEAMS
         self.pass_time(PERIOD)
         self.settle()
-        self.goals.forget()
+        self.goals.clear()
 
     def see(self, distance, degrees):
-        """Put a return [m] (or anything else that a scan may hold) into the beams at these angles, 0 = ahead."""
+        """Set the ranges at these angles, 0 = straight ahead, to a distance [m] or a special value."""
         for angle in degrees:
             self.ranges[angle % BEAMS] = distance
         self.settle()
 
     def stand_at(self, pose):
-        """Be somewhere else."""
+        """Move to a pose."""
         self.pose = pose
         self.settle()
 
     def settle(self):
-        """Publish what there is to measure now, and wait until the server has received it."""
+        """Publish odometry and scan, and wait until the server has received them."""
         self._wait_for_server()
         self._publish_odom()
         self._publish_scan()
@@ -85,7 +89,7 @@ class FakeRobot:
         return rospy.Time(self.now_ns // 1000000000, self.now_ns % 1000000000)
 
     def pass_time(self, seconds, odom=True, scan=True):
-        """Let this much time pass in one go, and measure at its end; wait until this node itself has heard of it."""
+        """Advance the clock at once, publish odometry and scan, and wait until this node has received the clock."""
         self.now_ns += int(round(seconds / PERIOD)) * PERIOD_NS
         if odom:
             self._publish_odom()
@@ -94,29 +98,42 @@ class FakeRobot:
         self._publish(self._clock, Clock(self.now))
         wait_for(lambda: rospy.get_rostime() == self.now, "the clock")
 
+    def pass_time_until(self, condition, what):
+        """Let control periods pass until a condition holds, slowly enough for a server on a busy machine."""
+
+        def one_more_period():
+            self.pass_time(PERIOD)
+            with contextlib.suppress(AssertionError):
+                wait_for(condition, what, PATIENCE)
+            return condition()
+
+        wait_for(one_more_period, what)
+
     # -- goals --
 
     def send(self, x, y, z=0.0):
-        """A goal in odom [m]; what was commanded and logged before is forgotten."""
-        self.commands.forget()
-        self.log.forget()
+        """Send a goal in odom [m], and drop the commands and logs recorded before."""
+        self.commands.clear()
+        self.log.clear()
         return self.goals.send(x, y, z)
 
     def start(self, x, y, z=0.0):
-        """A goal that the server pursues: the next tick of the clock is its first."""
+        """Send a goal and wait until it is accepted: the next clock tick is its first control period."""
         goal = self.send(x, y, z)
         self.wait_for_acceptance(goal)
         return goal
 
     def wait_for_acceptance(self, goal):
-        """Until the server pursues it."""
-        wait_for(lambda: any(m.name == SERVER and m.msg.startswith("goal accepted") for m in self.log.messages),
-                 f"goal {goal.id} accepted by {ACTION}")
+        """Wait until the server has accepted a goal."""
+        wait_for(
+            lambda: any(m.name == SERVER and m.msg.startswith("goal accepted") for m in self.log.messages),
+            f"goal {goal.id} accepted by {ACTION}",
+        )
 
     def tick(self, goal, **silent):
-        """One control period: measure, let the server answer, move as commanded; False once the goal has ended.
+        """One control period: publish, wait for the command, follow it; False once the goal has ended.
 
-        The last feedback comes just before the result, so the end may show only on the tick after it.
+        The last feedback is published just before the result, so the end may be seen only at the next tick.
         """
         self.pass_time(PERIOD, **silent)
         wait_for(lambda: goal.results() or self._answered(goal), f"an answer for goal {goal.id} at {self.now.to_sec()}")
@@ -124,8 +141,9 @@ class FakeRobot:
             return False
         if self.obeys:
             twist = self.commands.messages[-1]
-            self.pose = compose(compose(self.pose, Pose2D(yaw=twist.angular.z * PERIOD)),
-                                Pose2D(twist.linear.x * PERIOD))
+            self.pose = compose(
+                compose(self.pose, Pose2D(yaw=twist.angular.z * PERIOD)), Pose2D(twist.linear.x * PERIOD)
+            )
         return True
 
     def _answered(self, goal):
@@ -133,17 +151,17 @@ class FakeRobot:
         return feedback and feedback[-1].header.stamp == self.now and len(self.commands) == len(feedback)
 
     def follow(self, goal, seconds=60.0, **silent):
-        """Tick until a goal has ended, for this long at the most; how long it took [s]."""
+        """Tick until a goal has ended; the simulated time it took [s], at most `seconds`."""
         start = self.now
         while self.tick(goal, **silent):
             passed = (self.now - start).to_sec()
-            assert passed < seconds, f"goal {goal.id} goes on after {passed} s: {goal.feedback()[-1].feedback}"
+            assert passed < seconds, f"goal {goal.id} is still active after {passed} s: {goal.feedback()[-1].feedback}"
         return (self.now - start).to_sec()
 
     def end(self, goal, word):
-        """Wait for the goal's end, as this word says, and for the command to stand that comes with it; the result."""
+        """Wait for the end of a goal with this outcome and for its command of zero; the result."""
         result = goal.result(word)
-        wait_for(lambda: self.commands.messages[-1:] == [Twist()], "the last command is to stand")
+        wait_for(lambda: self.commands.messages[-1:] == [Twist()], "a last command of zero")
         return result
 
     # -- messages --
@@ -156,8 +174,14 @@ class FakeRobot:
         self._publish(self._odom, message)
 
     def _publish_scan(self):
-        message = LaserScan(angle_min=0.0, angle_max=INCREMENT * (BEAMS - 1), angle_increment=INCREMENT,
-                            range_min=RANGE_MIN, range_max=RANGE_MAX, ranges=list(self.ranges))
+        message = LaserScan(
+            angle_min=0.0,
+            angle_max=INCREMENT * (BEAMS - 1),
+            angle_increment=INCREMENT,
+            range_min=RANGE_MIN,
+            range_max=RANGE_MAX,
+            ranges=list(self.ranges),
+        )
         message.header.stamp, message.header.frame_id = self.now, "base_scan"
         self._publish(self._scan, message)
 
@@ -165,17 +189,21 @@ class FakeRobot:
         publisher.publish(message)
         content = io.BytesIO()
         message.serialize(content)
-        self._bytes += 4 + content.tell()  # TCPROS puts the length before each message
+        self._bytes += 4 + content.tell()  # TCPROS sends the length before each message
 
     def _wait_for_server(self):
-        wait_for(lambda: self._received() == self._bytes, "all that was published at the server")
+        wait_for(lambda: self._received() == self._bytes, "everything published at the server")
 
     def _connections(self):
-        """The server's connections for clock, odom and scan: id, bytes and messages received, ..."""
+        """The server's connections on clock, odom and scan: id, bytes received, messages received, ..."""
         _, _, (_, subscriptions, _) = self._server.getBusStats(rospy.get_name())
-        return [connection for topic, connections in subscriptions for connection in connections
-                if topic in ("/clock", "/odom", "/scan")]
+        return [
+            connection
+            for topic, connections in subscriptions
+            for connection in connections
+            if topic in ("/clock", "/odom", "/scan")
+        ]
 
     def _received(self):
-        """Bytes of clock, odom and scan that the server has received so far."""
+        """Bytes that the server has received on clock, odom and scan."""
         return sum(connection[1] for connection in self._connections())

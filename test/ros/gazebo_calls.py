@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Calls Gazebo's services on a running simulator as lab code does, and prints what they answer, as JSON."""
+"""Calls Gazebo's services of a running simulator as lab code does, and prints the responses as JSON."""
 
 import json
 
@@ -39,34 +39,34 @@ def spawn(name, xml, x):
 
 def main():
     rospy.init_node("gazebo_calls")
-    said = {"light": call("delete_light", DeleteLight, "sun").success}
+    answers = {"light": call("delete_light", DeleteLight, "sun").success}
     world = call("get_world_properties", GetWorldProperties)
-    said["models"] = world.model_names
+    answers["models"] = world.model_names
     call("pause_physics", Empty)
     before = sim_time()
-    said["set"] = set_position(0.5, -0.25)
-    said["position"] = position()
-    said["relative"] = position(relative_to=ROBOT)
-    said["paused"] = sim_time() == before
+    answers["set"] = set_position(0.5, -0.25)
+    answers["position"] = position()
+    answers["relative"] = position(relative_to=ROBOT)
+    answers["paused"] = sim_time() == before
     call("unpause_physics", Empty)
     while sim_time() == before:
         rospy.rostime.wallsleep(0.01)
-    said["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT)
-    said["then"] = position()
-    said["spawned"] = spawn("table", BOX, 2.0).success
-    said["spawned twice"] = spawn("table", BOX, 2.0).success
-    said["spawned nonsense"] = spawn("chair", "<sdf", 2.0).status_message[:12]
-    said["table"] = position("table")
-    said["table moved"] = set_position(1.0, 1.0, name="table") and position("table")
-    said["deleted"] = call("delete_model", DeleteModel, "table").success
-    said["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
-    said["unknown"] = position("table")
-    said["unknown set"] = set_position(0.0, 0.0, name="table")
+    answers["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT)
+    answers["then"] = position()
+    answers["spawned"] = spawn("table", BOX, 2.0).success
+    answers["spawned twice"] = spawn("table", BOX, 2.0).success
+    answers["spawned nonsense"] = spawn("chair", "<sdf", 2.0).status_message[:12]
+    answers["table"] = position("table")
+    answers["table moved"] = set_position(1.0, 1.0, name="table") and position("table")
+    answers["deleted"] = call("delete_model", DeleteModel, "table").success
+    answers["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
+    answers["unknown"] = position("table")
+    answers["unknown set"] = set_position(0.0, 0.0, name="table")
     for name in ("reset_world", "reset_simulation"):
         call(name, Empty)
-        said[name] = position()
-    said["time"] = sim_time() >= before
-    print(json.dumps(said))
+        answers[name] = position()
+    answers["time"] = sim_time() >= before
+    print(json.dumps(answers))
 
 
 if __name__ == "__main__":

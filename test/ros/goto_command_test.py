@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""robocop_goto.py against a running system: what `./robocop goto X Y` does."""
+"""`./robocop goto X Y` in a running system: progress, result and exit status."""
 
 import signal
 
@@ -19,12 +19,12 @@ class GotoCommand(SystemTest):
         self.assertRegex(command.output, r"(?m)^SUCCEEDED: REACHED: ")
         self.assertLess(distance(self.robot.wait_until_it_stands(), target), 0.12)
 
-    def test_goal_behind_an_obstacle_is_told_and_exit_status_is_1(self):
+    def test_goal_behind_an_obstacle_is_reported_with_exit_status_1(self):
         with Process(COMMAND, 1.6, 0.73) as command:  # behind pillar_1
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: something is ")
 
-    def test_unknown_frame_is_told_and_nothing_is_sent(self):
+    def test_unknown_frame_is_reported_and_nothing_is_sent(self):
         with Process(COMMAND, "0.5", "0.0", "--frame", "kitchen") as command:
             self.assertNotEqual(command.wait_for_exit(), 0)
         self.assertIn("no transform from 'kitchen' to 'odom'", command.output)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""RViz's 2D Pose Estimate puts the robot there; odometry goes on, so map -> odom takes up the jump."""
+"""RViz's 2D Pose Estimate moves the robot; odometry continues, so map -> odom changes by the jump."""
 
 import math
 
@@ -10,7 +10,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from harness import SIMULATOR, SystemTest, distance, run, wait_for, wait_for_subscriber
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.nodes.convert import from_pose_msg, to_quaternion
+from aro_robocop_goto_as.ros.convert import from_pose_msg, to_quaternion
 
 SPAWN = Pose2D(-0.7, 0.2, 0.5)  # of the launch file
 
@@ -25,8 +25,8 @@ class Initialpose(SystemTest):
         cls.topic = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
         wait_for_subscriber(cls.topic, SIMULATOR)
 
-    def put(self, pose, frame="map"):
-        """A 2D Pose Estimate."""
+    def send(self, pose, frame="map"):
+        """Publish a 2D Pose Estimate."""
         message = PoseWithCovarianceStamped()
         message.header.frame_id = frame
         message.pose.pose.position.x, message.pose.pose.position.y = pose.x, pose.y
@@ -34,50 +34,64 @@ class Initialpose(SystemTest):
         self.topic.publish(message)
 
     def wait_until_it_is_at(self, pose):
-        """Until the robot is there, and looks as it should."""
+        """Wait until the robot is at a pose."""
         start = len(self.robot.truth)
-        there = from_pose_msg(self.robot.truth.wait_for(
-            lambda m: distance(from_pose_msg(m.pose.pose), pose) < 0.005, f"the robot at {pose}", start).pose.pose)
+        there = from_pose_msg(
+            self.robot.truth.wait_for(
+                lambda m: distance(from_pose_msg(m.pose.pose), pose) < 0.005, f"the robot at {pose}", start
+            ).pose.pose
+        )
         self.assertAlmostEqual(there.yaw, pose.yaw, delta=0.01)
 
     def map_from_base(self):
-        """As TF has it."""
+        """The pose of base_footprint in map, by TF."""
         t = self.buffer.lookup_transform("map", "base_footprint", rospy.Time(0)).transform
         return Pose2D(t.translation.x, t.translation.y, 2.0 * math.atan2(t.rotation.z, t.rotation.w))
 
-    def test_robot_is_put_there_and_map_to_odom_takes_up_the_jump(self):
+    def test_robot_is_moved_and_map_to_odom_changes_by_the_jump(self):
         self.goals.send(0.3, 0.0).result("REACHED")
         self.robot.wait_until_it_stands()
         odom = self.robot.odom_pose()
         there = Pose2D(1.8, 0.0, 2.0)
-        self.put(there)
+        self.send(there)
         self.wait_until_it_is_at(there)
         self.assertLess(distance(self.robot.odom_pose(), odom), 0.005)
-        wait_for(lambda: distance(self.map_from_base(), there) < 0.005, "TF at the new place")
+        wait_for(lambda: distance(self.map_from_base(), there) < 0.005, "TF at the new pose")
         self.assertAlmostEqual(self.map_from_base().yaw, there.yaw, delta=0.01)
 
-    def test_goal_in_map_is_reached_from_the_new_place(self):
+    def test_goal_in_map_is_reached_from_the_new_pose(self):
         there, goal = Pose2D(1.8, 0.0, 2.0), Pose2D(1.6, 0.2)
-        self.put(there)
+        self.send(there)
         self.wait_until_it_is_at(there)
-        wait_for(lambda: distance(self.map_from_base(), there) < 0.005, "TF at the new place")
+        wait_for(lambda: distance(self.map_from_base(), there) < 0.005, "TF at the new pose")
         self.clicks.click(goal.x, goal.y, "map")
         wait_for(self.goals.of_others, "a goal from the bridge")[0].result("REACHED")
         self.assertLess(distance(self.robot.wait_until_it_stands(), goal), 0.12)
 
-    def test_pose_in_odom_is_understood(self):
-        self.put(Pose2D(0.2, 0.0), "odom")
+    def test_pose_in_odom_is_transformed(self):
+        self.send(Pose2D(0.2, 0.0), "odom")
         self.wait_until_it_is_at(compose(SPAWN, Pose2D(0.2, 0.0)))
 
-    def test_pose_in_a_wall_is_taken_and_said(self):
-        self.put(Pose2D(2.42, 0.0))  # its inner face is at 2.425
-        self.goals.log.wait_for(lambda m: "robot is set down in contact with an obstacle" in m.msg, "a warning")
-
-    def test_pose_in_another_frame_or_not_a_number_is_refused(self):
+    def test_pose_in_a_wall_or_pillar_is_refused_with_what_is_there_and_the_robot_does_not_move(self):
         here = self.robot.pose()
-        for pose, frame, text in ((Pose2D(1.0, 0.0), "base_scan", "its frame is 'base_scan'; expected 'map'"),
-                                  (Pose2D(math.nan, 0.0), "map", "expected finite numbers")):
-            self.put(pose, frame)
+        for pose, text in (
+            (Pose2D(2.3, 0.0), "x 2.300 y 0.000 is 0.050 m from 'walls/link/east'"),  # its inner face is at 2.35
+            (Pose2D(0.4, 0.5), "x 0.400 y 0.500 is 0.000 m from '"),
+        ):
+            self.send(pose)
+            self.goals.log.wait_for(
+                lambda m, text=text: "initialpose refused" in m.msg and text in m.msg and "radius of 0.105 m" in m.msg,
+                "a refusal",
+            )
+        self.assertLess(distance(self.robot.pose(), here), 0.001)
+
+    def test_pose_in_another_frame_or_of_nan_is_refused(self):
+        here = self.robot.pose()
+        for pose, frame, text in (
+            (Pose2D(1.0, 0.0), "base_scan", "its frame is 'base_scan'; expected 'map'"),
+            (Pose2D(math.nan, 0.0), "map", "expected finite numbers"),
+        ):
+            self.send(pose, frame)
             self.goals.log.wait_for(lambda m, text=text: "initialpose refused" in m.msg and text in m.msg, "a refusal")
         self.assertLess(distance(self.robot.pose(), here), 0.001)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""localization:=truth corrects map -> odom when odometry goes astray, as it does when the wheels slip at a wall."""
+"""localization:=truth corrects map -> odom for the error of odometry, here of wheels that slip at a wall."""
 
 import math
 import unittest
@@ -9,11 +9,11 @@ from harness import Recorder, Robot, distance, run, wait_for
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.nodes.convert import from_pose_msg
+from aro_robocop_goto_as.ros.convert import from_pose_msg
 
 SPAWN = Pose2D(2.0, 0.0)  # of the launch file
 WALL = 2.35  # [m] x of its face
-FRONT = 0.07 - 0.032  # [m] from the robot's middle to the face of its collision box
+FRONT = 0.07 - 0.032  # [m] from base_footprint to the front of the collision box
 
 
 def pose_of(transform):
@@ -23,19 +23,19 @@ def pose_of(transform):
 
 
 class LocalizationTruth(unittest.TestCase):
-    def test_robot_at_a_wall_is_held_by_it_can_back_out_and_tf_tells_where_it_is_all_the_time(self):
+    def test_pose_on_tf_stays_true_while_the_robot_hits_a_wall_and_backs_out(self):
         robot, commands, tf = Robot(), Commands(), Recorder("/tf", TFMessage)
-        self.assertLess(distance(robot.odom_pose(), Pose2D()), 0.001)  # odometry starts at zero wherever the robot is
+        self.assertLess(distance(robot.odom_pose(), Pose2D()), 0.001)  # wherever it is spawned
         self.assertLess(distance(robot.pose(), SPAWN), 0.001)
 
-        with commands.held(0.2):
+        with commands.repeated(0.2):
             start = len(robot.odom)
             robot.odom.wait_for(lambda m: m.pose.pose.position.x > 1.0, "odometry past the wall", start)
         at_the_wall = robot.wait_for_standstill()
         self.assertAlmostEqual(at_the_wall.x, WALL - FRONT, delta=0.01)
         self.assertGreater(robot.odom_pose().x - (at_the_wall.x - SPAWN.x), 0.5)
 
-        with commands.held(-0.2):
+        with commands.repeated(-0.2):
             wait_for(lambda: robot.pose().x < SPAWN.x - 0.2, "the robot away from the wall")
         robot.wait_for_standstill()
 

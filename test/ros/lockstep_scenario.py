@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A scripted run on a simulator in lockstep, with every byte of what it published: three goals that are reached, one
-that an obstacle ends, one that a newer goal replaces. Usage: lockstep_scenario.py RESULT.json [BAG]
+"""A scripted run in lockstep: three goals are reached, one is preempted, one ends at an obstacle.
 
-Time is moved on by ~step only, and goals are given while it stands, so that the run is the same on any machine.
+Usage: lockstep_scenario.py RESULT.json [BAG]. The result holds the outcomes and a digest of all messages. Time advances
+only by ~step, and goals are sent while it stands, so the run is the same on any machine.
 """
 
 import hashlib
@@ -15,21 +15,24 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult, SimStatus
 from aro_robocop_goto_as.srv import Step
-from harness import SERVER, SIMULATOR, Goals, Recorder, wait_for
+from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, wait_for, wait_for_connection
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
 RECORDED = {
-    "/ground_truth_odom": Odometry, "/odom": Odometry, "/scan": LaserScan,
-    "/robocop_goto_as/feedback": GoToPositionActionFeedback, "/robocop_goto_as/result": GoToPositionActionResult}
-# Where to (odom) [m], and for how long [s] time goes on before the next one: the third is replaced on its way.
+    "/ground_truth_odom": Odometry,
+    "/odom": Odometry,
+    "/scan": LaserScan,
+    "/robocop_goto_as/feedback": GoToPositionActionFeedback,
+    "/robocop_goto_as/result": GoToPositionActionResult,
+}
+# Goal in odom [m], and the time [s] before the next one is sent. The third goal is preempted by the fourth.
 GOALS = [((1.0, 0.0), 10.0), ((1.0, -0.8), 10.0), ((0.2, -0.5), 2.0), ((0.5, 0.3), 10.0), ((1.1, 0.55), 5.0)]
-WORDS = ["REACHED", "REACHED", "PREEMPTED", "REACHED", "OBSTACLE"]
-WARM_UP = 1.0  # [s] so that every node has seen time move, and knows each topic's period
+WARM_UP = 1.0  # [s] for every node to receive the clock, and for lockstep to learn the period of each topic
 
 
 def raw(message):
-    """A message as it goes over the wire."""
+    """A message in its serialized form."""
     buffer = io.BytesIO()
     message.serialize(buffer)
     return buffer.getvalue()
@@ -39,13 +42,17 @@ class Scenario:
     def __init__(self):
         self.status = Recorder(f"{SIMULATOR}/status", SimStatus)
         self.recorders = {topic: Recorder(topic, kind) for topic, kind in RECORDED.items()}
-        wait_for(lambda: self.status.messages and self.status.messages[-1].drivers == [SERVER],
-                 "lockstep waits for the server")
+        for topic in RECORDED:
+            wait_for_connection(SERVER if ACTION in topic else SIMULATOR, topic)
+        wait_for(
+            lambda: self.status.messages and self.status.messages[-1].drivers == [SERVER],
+            "lockstep waits for the server",
+        )
         self.step_service = rospy.ServiceProxy(f"{SIMULATOR}/step", Step)
         self.step_service.wait_for_service(60.0)
 
     def step(self, seconds):
-        """Move time on, and wait until it has come to this node too: it stamps the goals."""
+        """Advance time, and wait until this node has received it, as it stamps the goals."""
         answer = self.step_service(seconds)
         assert answer.success, answer.message
         wait_for(lambda: rospy.get_rostime() >= answer.stamp, "the clock")
@@ -63,11 +70,11 @@ class Scenario:
         wait_for(lambda: any(m.feedback.message == "obstacle" for m in given[-1].feedback()), "the last feedback")
         for topic in ("/ground_truth_odom", "/odom", "/scan"):
             self.recorders[topic].wait_for(lambda m: m.header.stamp == end, "the last message")
-        goals.check_ends()
+        goals.assert_each_ended_once()
         return words
 
     def summary(self, words):
-        """What a run is compared by."""
+        """The summary by which two runs are compared."""
         content = {topic: b"".join(map(raw, it.messages)) for topic, it in self.recorders.items()}
         return {
             "words": words,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Ten robots in one world, each with its frames, its scan and its server: one goal for each at the same time.
+"""Ten robots in one world, each with its own frames, scan and server, and a goal for each at the same time.
 
-Time stands while goals are given, and is moved on by ~step.
+Time stands while goals are sent, and advances by ~step.
 """
 
 import math
@@ -34,18 +34,18 @@ from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.nodes.convert import from_pose_msg
-from aro_robocop_goto_as.raycast import Fan
-from aro_robocop_goto_as.slice import Slice
-from aro_robocop_goto_as.world import find_world, load_world
+from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.ros.convert import from_pose_msg
+from aro_robocop_goto_as.world.load import find_world, load_world
 
 NAMES = [f"robot_{i}" for i in range(1, 11)]
 START = 120.0  # [s, wall] for ten servers to come up
-# Where each one is sent, from where it stands [m], and how that ends in the default world.
+# The goal of each robot in its base_footprint [m], and its outcome in the default world.
 GOALS = {
-    "robot_1": (-0.8, 0.0, "OBSTACLE"),  # robot_2 stands in the way
+    "robot_1": (-0.8, 0.0, "OBSTACLE"),  # robot_2
     "robot_2": (0.05, 0.05, "REACHED"),  # without moving
-    "robot_3": (0.5, 0.0, "REACHED"),  # after robot_7, which leaves
+    "robot_3": (0.5, 0.0, "REACHED"),  # where robot_7 stood before it left
     "robot_4": (0.0, 0.6, "OBSTACLE"),  # a wall
     "robot_5": (0.6, 0.0, "REACHED"),
     "robot_6": (-0.5, 0.0, "REACHED"),
@@ -54,7 +54,7 @@ GOALS = {
     "robot_9": (0.0, -0.5, "REACHED"),
     "robot_10": (0.0, -0.6, "REACHED"),
 }
-SPACING = 0.5  # [m] between neighbours before they drive
+SPACING = 0.5  # [m] between neighbours at the start
 TOLERANCE = 0.1  # [m] of the handout
 OBSTACLE_DISTANCE, OBSTACLE_HALF_ANGLE = 0.3, math.pi / 6.0  # [m], [rad] of the handout
 ODOM_RATE = 30  # [Hz]
@@ -62,12 +62,18 @@ NOISE = 0.05  # [m] five sigma of a scan
 BASE_FROM_SCAN = Pose2D(-0.032, 0.0)
 SCAN_HEIGHT, LIDAR_RADIUS = 0.182, 0.055  # [m] of a Burger
 LINKS = {  # child: parent, of a Burger
-    "base_footprint": "odom", "base_link": "base_footprint", "base_scan": "base_link", "imu_link": "base_link",
-    "caster_back_link": "base_link", "wheel_left_link": "base_link", "wheel_right_link": "base_link"}
+    "base_footprint": "odom",
+    "base_link": "base_footprint",
+    "base_scan": "base_link",
+    "imu_link": "base_link",
+    "caster_back_link": "base_link",
+    "wheel_left_link": "base_link",
+    "wheel_right_link": "base_link",
+}
 
 
 def clearance_ahead(walls, scanner, others):
-    """Distance [m] from a scanner to the nearest wall or other robot's scanner before it."""
+    """Distance [m] from a scanner to the nearest wall or other robot in the cone ahead."""
     samples = 61
     ahead = Fan(-OBSTACLE_HALF_ANGLE, 2.0 * OBSTACLE_HALF_ANGLE / (samples - 1), samples)
     circles = np.array([[(other.x, other.y, LIDAR_RADIUS) for other in others]])
@@ -75,7 +81,7 @@ def clearance_ahead(walls, scanner, others):
 
 
 def yaw_towards(here, there):
-    """Bearing [rad] of a point as seen from a pose, from 0 to a whole turn."""
+    """Bearing [rad] of a point from a pose, in [0, 2 pi)."""
     return (math.atan2(there.y - here.y, there.x - here.x) - here.yaw) % (2.0 * math.pi)
 
 
@@ -84,8 +90,11 @@ class ManyRobots(unittest.TestCase):
     def setUpClass(cls):
         status = Recorder(f"{SIMULATOR}/status", SimStatus)
         expected = sorted(f"/{name}{SERVER} driving {name}" for name in NAMES)
-        wait_for(lambda: status.messages and status.messages[-1].drivers == expected,
-                 lambda: f"lockstep waits for all servers; the last status: {status.messages[-1:]}", START)
+        wait_for(
+            lambda: status.messages and status.messages[-1].drivers == expected,
+            lambda: f"lockstep waits for all servers; the last status: {status.messages[-1:]}",
+            START,
+        )
         cls.step_service = rospy.ServiceProxy(f"{SIMULATOR}/step", Step)
         cls.step_service.wait_for_service(DEADLINE)
         cls.goals = [Goals(f"/{name}/{ACTION}", f"/{name}{SERVER}") for name in NAMES]
@@ -93,38 +102,36 @@ class ManyRobots(unittest.TestCase):
 
     def setUp(self):
         call_simulator("reset")
-        self.forget(*self.truth)
-        self.step_until(lambda: all(self.truth), "where every robot is")
-
-    def forget(self, *recorders):
-        """Drop what came before now: time stands, so what is on its way is older than the next step."""
-        for recorder in recorders:
-            recorder.forget()
+        for truth in self.truth:
+            truth.clear()
+        self.step_until(lambda: all(self.truth), "ground truth of every robot")
 
     def step(self, seconds):
-        """Move time on; the time then, which has come to this node too."""
+        """Advance time, and wait until this node has received it; the new time."""
         answer = self.step_service(seconds)
         self.assertTrue(answer.success, answer.message)
         wait_for(lambda: rospy.get_rostime() >= answer.stamp, "the clock")
         return answer.stamp
 
     def step_until(self, condition, what, seconds=0.1):
-        """Move time on in steps until a condition is true."""
+        """Advance time in steps until a condition is true."""
         wait_for(lambda: self.step(seconds) and condition(), what, START)
 
     def poses(self, stamp):
-        """Where the robots really were at a time."""
-        return [from_pose_msg(next(m for m in reversed(truth.messages) if m.header.stamp <= stamp).pose.pose)
-                for truth in self.truth]
+        """The true poses of all robots at a time."""
+        return [
+            from_pose_msg(next(m for m in reversed(truth.messages) if m.header.stamp <= stamp).pose.pose)
+            for truth in self.truth
+        ]
 
     def poses_now(self):
-        """Where the robots really are."""
+        """The true poses of all robots now."""
         stamp = self.step(0.1)
         for truth in self.truth:
-            truth.wait_for(lambda m: m.header.stamp == stamp, "ground truth of now")
+            truth.wait_for(lambda m: m.header.stamp == stamp, "current ground truth")
         return self.poses(stamp)
 
-    def test_tf_holds_every_frame_of_every_robot_below_map_and_none_without_a_name(self):
+    def test_tf_has_every_frame_of_every_robot_below_map_and_no_frame_without_prefix(self):
         buffer = tf2_ros.Buffer(debug=False)
         listener = tf2_ros.TransformListener(buffer)
         self.addCleanup(listener.unregister)
@@ -141,18 +148,18 @@ class ManyRobots(unittest.TestCase):
         self.assertEqual(tree(), expected)
         for name, pose in zip(NAMES, self.poses_now()):
             there, scanner = compose(pose, BASE_FROM_SCAN), f"{name}/base_scan"
-            found = buffer.lookup_transform("map", scanner, rospy.Time(0)).transform.translation
-            self.assertLess(distance(found, there), 1e-3, scanner)
-            self.assertAlmostEqual(found.z, SCAN_HEIGHT, delta=1e-6)
+            translation = buffer.lookup_transform("map", scanner, rospy.Time(0)).transform.translation
+            self.assertLess(distance(translation, there), 1e-3, scanner)
+            self.assertAlmostEqual(translation.z, SCAN_HEIGHT, delta=1e-6)
 
-    def test_simulator_sends_one_tf_message_for_all_robots_with_each_odometry(self):
+    def test_simulator_publishes_one_tf_message_for_all_robots_at_the_rate_of_odometry(self):
         tf = Recorder("/tf", TFMessage)
 
         def from_simulator():
             return [m for m in tf.messages if m._connection_header["callerid"] == SIMULATOR]
 
         self.step_until(from_simulator, "TF from the simulator")
-        tf.forget()
+        tf.clear()
         self.step(1.0)
         wait_for(lambda: len(from_simulator()) >= ODOM_RATE, "TF of a second")
         for message in from_simulator():
@@ -163,7 +170,7 @@ class ManyRobots(unittest.TestCase):
         np.testing.assert_allclose(np.diff(stamps), 1.0 / ODOM_RATE, atol=1e-6)
         self.assertEqual(len(stamps), ODOM_RATE)
 
-    def test_every_robots_scan_shows_its_neighbours(self):
+    def test_the_scan_of_every_robot_shows_its_neighbours(self):
         scans = [Recorder(f"/{name}/scan", LaserScan) for name in NAMES]
         self.step_until(lambda: all(scans), "a scan of every robot")
         scanners = [compose(pose, BASE_FROM_SCAN) for pose in self.poses_now()]
@@ -175,28 +182,28 @@ class ManyRobots(unittest.TestCase):
                 beam = round(yaw_towards(scanner, other) / scan.newest().angle_increment)
                 self.assertAlmostEqual(scan.newest().ranges[beam], distance(scanner, other) - LIDAR_RADIUS, delta=NOISE)
 
-    def test_ten_goals_at_once_end_as_ground_truth_says(self):
+    def test_ten_goals_at_once_end_as_ground_truth_shows(self):
         starts = self.poses_now()
         sent = [goals.send(*GOALS[name][:2]) for name, goals in zip(NAMES, self.goals)]
         for goal in sent:
-            wait_for(lambda goal=goal: GoalStatus.ACTIVE in goal.states(), "a goal that is accepted")
+            wait_for(lambda goal=goal: GoalStatus.ACTIVE in goal.states(), "acceptance of a goal")
         self.step_until(lambda: all(goal.results() for goal in sent), "the end of every goal", 1.0)
         ends = self.poses_now()
         for i, (name, goal) in enumerate(zip(NAMES, sent)):
             x, y, word = GOALS[name]
             with self.subTest(robot=name, result=goal.result().result.message):
-                goal.check_end()
+                goal.assert_ended_once()
                 goal.result(word)
                 if word == "REACHED":
                     self.assertLess(distance(ends[i], compose(starts[i], Pose2D(x, y))), TOLERANCE + 0.01)
                 else:
-                    self.check_obstacle(i, goal.result().header.stamp)
+                    self.assert_obstacle_ahead(i, goal.result().header.stamp)
         for goals in self.goals:
-            goals.check_ends()
+            goals.assert_each_ended_once()
             self.assertEqual(goals.of_others(), [])
 
-    def check_obstacle(self, robot, stamp):
-        """Something really was within the limit before a robot at a time, though not yet at it."""
+    def assert_obstacle_ahead(self, robot, stamp):
+        """At that time an obstacle was within the limit ahead of a robot, but not much nearer."""
         scanners = [compose(pose, BASE_FROM_SCAN) for pose in self.poses(stamp)]
         scanner = scanners.pop(robot)
         clearance = clearance_ahead(self.walls(), scanner, scanners)
@@ -204,7 +211,7 @@ class ManyRobots(unittest.TestCase):
         self.assertGreater(clearance, OBSTACLE_DISTANCE - 2.0 * NOISE)
 
     def walls(self):
-        """The default world as a scanner sees it."""
+        """The default world at the height of a scanner."""
         worlds = os.path.join(rospkg.RosPack().get_path(PACKAGE), "worlds")
         return Slice(load_world(find_world("stage_4", worlds)), SCAN_HEIGHT)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A controller as a student may write it: a loop on simulated time that publishes cmd_vel, and knows of no lockstep."""
+"""A controller unaware of lockstep, as a student may write it: a rospy.Rate loop that publishes cmd_vel."""
 
 import math
 
@@ -11,7 +11,7 @@ from harness import wait_for
 def main():
     rospy.init_node("metronome")
     publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-    wait_for(publisher.get_num_connections, "somebody listens to cmd_vel")
+    wait_for(publisher.get_num_connections, "a subscriber of cmd_vel")
     rate = rospy.Rate(rospy.get_param("~rate", 10))
     while not rospy.is_shutdown():
         command = Twist()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node with a parameter it doesn't know, or one that can't be, ends at once and says which, and what it expects."""
+"""A node with an unknown or invalid parameter ends at once, and names the parameter and what was expected."""
 
 import itertools
 import unittest
@@ -12,11 +12,13 @@ SIM, SERVER, BRIDGE = "robocop_sim.py", "robocop_goto_as.py", "robocop_rviz_goto
 class Parameters(unittest.TestCase):
     numbers = itertools.count()
 
-    def check(self, *cases):
-        """Start each node (program, name, its parameters) and see it fail with these texts; all at once, for speed."""
-        names = [f"node_{next(self.numbers)}" for _ in cases]  # the master keeps the parameters of each name
-        nodes = [Process(script(program), f"__name:={name}", *(f"_{p}" for p in parameters))
-                 for name, (program, parameters, _) in zip(names, cases)]
+    def assert_refused(self, *cases):
+        """Start all nodes (script, parameters, texts) at once; each fails with these texts."""
+        names = [f"node_{next(self.numbers)}" for _ in cases]  # the master keeps parameters after a node has ended
+        nodes = [
+            Process(script(program), f"__name:={name}", *(f"_{p}" for p in parameters))
+            for name, (program, parameters, _) in zip(names, cases)
+        ]
         for node, (_, _, texts) in zip(nodes, cases):
             with node:
                 self.assertEqual(node.wait_for_exit(), 1, node.output)
@@ -24,28 +26,55 @@ class Parameters(unittest.TestCase):
                     self.assertIn(text, node.output)
 
     def test_unknown_mistyped_and_impossible_parameters_are_all_named_at_once(self):
-        self.check((SIM, ["scan_rat:=20", "odom_tf:=maybe", "localization:=magic"],
-                    ["parameters of /node_", "scan_rat: unknown parameter; did you mean 'scan_rate'?",
-                     "odom_tf: expected bool, got str 'maybe'",
-                     "localization: expected one of static, truth, got 'magic'"]),
-                   (SERVER, ["obstacle_distanc:=0.3", "control_rate:=fast", "position_tolerance:=-0.1"],
-                    ["parameters of /node_", "obstacle_distanc: unknown parameter; did you mean 'obstacle_distance'?",
-                     "control_rate: expected float, got str 'fast'",
-                     "position_tolerance: expected at least 1e-09, got -0.1"]),
-                   (BRIDGE, ["goalframe:=odom", "status_period:=true", "cancel_timeout:=-2.0"],
-                    ["parameters of /node_", "goalframe: unknown parameter; did you mean 'goal_frame'?",
-                     "status_period: expected float, got bool True",
-                     "cancel_timeout: expected at least 1e-09, got -2.0"]))
+        self.assert_refused(
+            (
+                SIM,
+                ["scan_rat:=20", "odom_tf:=maybe", "localization:=magic"],
+                [
+                    "parameters of /node_",
+                    "scan_rat: unknown parameter; did you mean 'scan_rate'?",
+                    "odom_tf: expected bool, got str 'maybe'",
+                    "localization: expected one of static, truth, none, got 'magic'",
+                ],
+            ),
+            (
+                SERVER,
+                ["obstacle_distanc:=0.3", "control_rate:=fast", "position_tolerance:=-0.1"],
+                [
+                    "parameters of /node_",
+                    "obstacle_distanc: unknown parameter; did you mean 'obstacle_distance'?",
+                    "control_rate: expected float, got str 'fast'",
+                    "position_tolerance: expected at least 1e-09, got -0.1",
+                ],
+            ),
+            (
+                BRIDGE,
+                ["goalframe:=odom", "status_period:=true", "cancel_timeout:=-2.0"],
+                [
+                    "parameters of /node_",
+                    "goalframe: unknown parameter; did you mean 'goal_frame'?",
+                    "status_period: expected float, got bool True",
+                    "cancel_timeout: expected at least 1e-09, got -2.0",
+                ],
+            ),
+        )
 
-    def test_parameters_that_cannot_be_true_together_are_named(self):
-        self.check((SIM, ["scan_rate:=7"], ["scan_rate: 7 Hz does not divide physics_rate 240 Hz"]),
-                   (SERVER, ["min_linear_velocity:=0.5"],
-                    ["min_linear_velocity: expected at most max_linear_velocity 0.2, got 0.5"]))
+    def test_parameters_that_contradict_each_other_are_named(self):
+        self.assert_refused(
+            (SIM, ["scan_rate:=7"], ["scan_rate: 7 Hz does not divide physics_rate 240 Hz"]),
+            (
+                SERVER,
+                ["min_linear_velocity:=0.5"],
+                ["min_linear_velocity: expected at most max_linear_velocity 0.2, got 0.5"],
+            ),
+        )
 
-    def test_world_robot_or_spawn_that_is_not_there_is_named(self):
-        self.check((SIM, ["world:=nowhere"], ["WORLD: there is no world 'nowhere'", "stage_4"]),
-                   (SIM, ["model:=turtlebot9"], ["ROBOT_MODEL: ", "turtlebot9"]),
-                   (SIM, ["spawn:=here"], ["spawn: expected 'x y' or 'x y yaw' in metres", "got 'here'"]))
+    def test_unknown_world_robot_or_spawn_is_named(self):
+        self.assert_refused(
+            (SIM, ["world:=nowhere"], ["WORLD: there is no world 'nowhere'", "stage_4"]),
+            (SIM, ["model:=turtlebot9"], ["ROBOT_MODEL: ", "turtlebot9"]),
+            (SIM, ["spawn:=here"], ["spawn: expected 'x y' or 'x y yaw' in metres", "got 'here'"]),
+        )
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A paused simulator: time and robot stand still, but what a person asks for is still served."""
+"""While the simulator is paused, time and robot stand still, and goals and cancels are still served."""
 
 import rospy
 from harness import Recorder, SystemTest, call_simulator, distance, run, wait_for
@@ -19,24 +19,24 @@ class Pause(SystemTest):
         super().tearDown()
 
     def pause_while_driving(self):
-        """A goal on whose way the robot was when the simulator was paused, and the time of that."""
+        """Pause while the robot drives to a goal; the goal, and the time of the pause."""
         goal = self.goals.send(0.6, 0.0)
         self.robot.wait_until_it_drives(0.1)
         answer = call_simulator("pause")
         self.assertRegex(answer, r"^paused at \d+\.\d+ s$")
-        paused_at = self.clock.take(3)[-1].clock
+        paused_at = self.clock.next(3)[-1].clock
         self.assertAlmostEqual(paused_at.to_sec(), float(answer.split()[2]), delta=0.001)
         wait_for(lambda: rospy.get_rostime() == paused_at, "the clock at the pause")
         return goal, paused_at
 
-    def test_time_stands_still_while_paused_and_goes_on_from_there(self):
+    def test_time_stops_while_paused_and_continues_from_there(self):
         _, paused_at = self.pause_while_driving()
-        self.assertEqual({m.clock for m in self.clock.take(5)}, {paused_at})  # repeated for nodes that start now
-        self.robot.odom.forget()
+        self.assertEqual({m.clock for m in self.clock.next(5)}, {paused_at})  # repeated for nodes that start meanwhile
+        self.robot.odom.clear()
         call_simulator("unpause")
-        self.assertLess((self.robot.odom.take()[0].header.stamp - paused_at).to_sec(), 0.5)
+        self.assertLess((self.robot.odom.next()[0].header.stamp - paused_at).to_sec(), 0.5)
 
-    def test_cancel_is_served_while_paused_and_the_robot_stands_afterwards(self):
+    def test_cancel_is_served_while_paused_and_the_robot_stays_stopped(self):
         goal, paused_at = self.pause_while_driving()
         goal.cancel()
         self.assertEqual(goal.result("PREEMPTED").header.stamp, paused_at)
@@ -44,7 +44,7 @@ class Pause(SystemTest):
         call_simulator("unpause")
         self.assertLess(distance(here, self.robot.wait_until_it_stands()), 0.1)
 
-    def test_goal_goes_on_after_a_pause(self):
+    def test_goal_continues_after_a_pause(self):
         goal, paused_at = self.pause_while_driving()
         call_simulator("unpause")
         result = goal.result("REACHED")
@@ -52,7 +52,7 @@ class Pause(SystemTest):
         self.robot.wait_until_it_stands()
         self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.6, 0.0)), 0.1)
 
-    def test_goal_given_while_paused_is_accepted_and_reached_after_it(self):
+    def test_goal_sent_while_paused_is_accepted_and_reached_afterwards(self):
         call_simulator("pause")
         goal = self.goals.send(0.2, 0.0)
         self.goals.log.wait_for(lambda m: m.msg.startswith("goal accepted"), "the goal's acceptance")

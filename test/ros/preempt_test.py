@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Goals that are cancelled, or that a newer goal replaces."""
+"""Goals that are cancelled, or replaced by a newer goal."""
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
@@ -10,7 +10,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 
 class Preempt(SystemTest):
     def driving_goal(self):
-        """A goal 2 m ahead, on whose way the robot is already."""
+        """A goal 2 m ahead that the robot drives to."""
         goal = self.goals.send(2.0, 0.0)
         self.robot.wait_until_it_drives(0.15)
         return goal
@@ -24,7 +24,7 @@ class Preempt(SystemTest):
         self.assertEqual(result.status.status, GoalStatus.PREEMPTED)
         self.assertLess(distance(there, self.robot.wait_until_it_stands()), 0.15)
 
-    def test_cancel_of_all_goals_without_naming_one_is_served_too(self):
+    def test_cancel_of_all_goals_is_served(self):
         goal = self.driving_goal()
         self.goals.cancel_all()
         goal.result("PREEMPTED")
@@ -44,9 +44,9 @@ class Preempt(SystemTest):
         newer.result("REACHED")
         self.robot.wait_until_it_stands()
         self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.1, -0.1)), 0.1)
-        older.check_end()
+        older.assert_ended_once()
 
-    def test_goals_that_are_replaced_before_they_begin_get_a_filled_result_each(self):
+    def test_goals_replaced_before_they_begin_each_get_a_complete_result(self):
         first = self.driving_goal()
         waiting = [self.goals.send(2.0, 0.1 * i) for i in range(6)]
         newest = self.goals.send(0.1, 0.1)
@@ -56,7 +56,7 @@ class Preempt(SystemTest):
         texts = [goal.result().result.message for goal in waiting]
         self.assertIn("PREEMPTED: it was cancelled, or a newer goal came, before it began", texts)
 
-    def test_goal_that_comes_later_counts_though_it_is_stamped_earlier(self):
+    def test_goal_received_later_preempts_the_older_one_even_if_stamped_earlier(self):
         older = self.driving_goal()
         newer = self.goals.send(0.1, 0.1, stamp=rospy.Time(0, 1))  # of a client whose clock is behind
         self.assertIn("a newer goal came", older.result("PREEMPTED").result.message)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""profile:=real: two robots of different models, each with the topics, limits and time-out of a real one."""
+"""profile:=real: two robots of different models, each with the topics, limits and timeout of a real one."""
 
 import unittest
 
@@ -17,8 +17,10 @@ class RealRobot(unittest.TestCase):
         odom = Robot("red").odom.newest()
         self.assertEqual(set(odom.pose.covariance + odom.twist.covariance), {0.0})
         imu = Recorder("red/imu", Imu).newest()
-        self.assertEqual([imu.orientation_covariance[0], imu.angular_velocity_covariance[4],
-                          imu.linear_acceleration_covariance[8]], [0.0025, 0.02, 0.04])
+        self.assertEqual(
+            [imu.orientation_covariance[0], imu.angular_velocity_covariance[4], imu.linear_acceleration_covariance[8]],
+            [0.0025, 0.02, 0.04],
+        )
 
     def test_scan_is_that_of_an_lds01(self):
         scan = Recorder("red/scan", LaserScan).newest()
@@ -26,7 +28,7 @@ class RealRobot(unittest.TestCase):
         self.assertEqual(len(scan.ranges), 360)
         self.assertTrue(all(r == 0.0 or 0.12 <= r < 3.51 for r in scan.ranges))
 
-    def test_battery_and_magnetic_field_are_there_and_a_bumper_is_not(self):
+    def test_a_burger_has_battery_state_and_magnetic_field_but_no_bumper(self):
         battery = Recorder("red/battery_state", BatteryState).newest()
         self.assertTrue(battery.present and 11.0 < battery.voltage < 13.0)
         field = Recorder("red/magnetic_field", MagneticField).newest()
@@ -34,11 +36,11 @@ class RealRobot(unittest.TestCase):
         self.assertGreater(field.magnetic_field.y, 0.0)
         self.assertNotIn("/red/bumper", dict(rospy.get_published_topics()))
 
-    def test_encoders_count_ticks(self):
+    def test_joint_positions_are_whole_encoder_ticks(self):
         for position in Recorder("blue/joint_states", JointState).newest().position:
             self.assertAlmostEqual(position / TICK, round(position / TICK), places=6)
 
-    def test_burger_is_clamped_by_its_firmware_and_brakes_after_half_a_second(self):
+    def test_burger_is_limited_by_its_firmware_and_brakes_after_half_a_second(self):
         robot, commands = Robot("red"), Commands("red/cmd_vel")
         commands.once(5.0)
         robot.wait_until_it_drives(0.2)
@@ -47,7 +49,7 @@ class RealRobot(unittest.TestCase):
         self.assertAlmostEqual(fast[-1] - fast[0], 0.5, delta=0.07)
         self.assertLess(max(m.twist.twist.linear.x for m in robot.truth.messages), 0.214)
 
-    def test_each_robot_is_described_by_its_own_model_and_has_its_frames_on_tf(self):
+    def test_each_robot_has_the_description_and_the_frames_of_its_own_model(self):
         self.assertIn('name="turtlebot2"', rospy.get_param("/blue/robot_description"))
         self.assertIn('name="turtlebot3_burger"', rospy.get_param("/red/robot_description"))
         static = Recorder("/tf_static", TFMessage)

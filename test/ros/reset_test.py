@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A reset puts the robot back and odometry to zero, while time and goals go on."""
+"""A reset returns the robot to its spawn and odometry to zero, while time and goals continue."""
 
 from harness import Recorder, SystemTest, call_simulator, distance, run
 from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.nodes.convert import from_pose_msg
+from aro_robocop_goto_as.ros.convert import from_pose_msg
 
 SPAWN = Pose2D(-0.7, 0.2, 0.5)  # of the launch file
 
@@ -23,12 +23,12 @@ class Reset(SystemTest):
         self.assertLess(distance(odom, Pose2D()), 0.001)
         self.assertAlmostEqual(odom.yaw, 0.0, delta=0.001)
 
-    def test_reset_puts_the_robot_back_and_odometry_to_zero_while_time_goes_on(self):
+    def test_reset_returns_the_robot_to_its_spawn_and_odometry_to_zero_while_time_continues(self):
         self.goals.send(0.3, 0.2).result("REACHED")
         self.robot.wait_until_it_stands()
         self.assertGreater(distance(self.robot.pose(), SPAWN), 0.2)
-        self.clock.forget()
-        before = self.clock.take(1)[0].clock
+        self.clock.clear()
+        before = self.clock.next(1)[0].clock
         call_simulator("reset")
         start = len(self.robot.truth)
         self.robot.truth.wait_for(lambda m: distance(from_pose_msg(m.pose.pose), SPAWN) < 0.001, "the spawn", start)
@@ -44,7 +44,7 @@ class Reset(SystemTest):
         self.robot.wait_until_it_stands()
         self.assertLess(distance(self.robot.odom_pose(), Pose2D(0.2, -0.2)), 0.1)
 
-    def test_goal_goes_on_from_the_spawn_when_the_robot_is_reset_on_its_way(self):
+    def test_goal_continues_from_the_spawn_after_a_reset_during_the_goal(self):
         goal = self.goals.send(0.6, 0.0)
         self.robot.wait_until_it_drives(0.15)
         call_simulator("reset")

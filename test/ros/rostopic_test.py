@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The handout's way without an action client: `rostopic pub` gives the goal, `rostopic echo` shows what comes of it."""
+"""As in the handout, `rostopic pub` sends a goal, and `rostopic echo` shows its feedback and result."""
 
 import xmlrpc.client
 
@@ -8,22 +8,33 @@ import rospy
 from harness import ACTION, SERVER, Process, SystemTest, run, wait_for
 
 
-def rostopic_hears(topic):
-    """Whether the server is connected to a rostopic that listens to this topic of it."""
+def rostopic_subscribes(topic):
+    """Whether the server is connected to a rostopic process on a topic."""
     server = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(SERVER))
     _, _, connections = server.getBusInfo(rospy.get_name())
-    return any(direction == "o" and name == topic and str(other).startswith("/rostopic")
-               for _, other, direction, _, name, *_ in connections)
+    return any(
+        direction == "o" and name == topic and str(node).startswith("/rostopic")
+        for _, node, direction, _, name, *_ in connections
+    )
 
 
 class Rostopic(SystemTest):
     def test_goal_of_rostopic_pub_is_reached_and_rostopic_echo_shows_feedback_and_result(self):
-        with Process("rostopic", "echo", "-n", "1", f"/{ACTION}/result") as result, \
-                Process("rostopic", "echo", "-n", "1", f"/{ACTION}/feedback") as feedback:
+        with Process("rostopic", "echo", "-n", "1", f"/{ACTION}/result") as result, Process(
+            "rostopic", "echo", "-n", "1", f"/{ACTION}/feedback"
+        ) as feedback:
             for topic in ("result", "feedback"):
-                wait_for(lambda name=topic: rostopic_hears(f"/{ACTION}/{name}"), f"rostopic echo hears the {topic}")
-            with Process("rostopic", "pub", f"/{ACTION}/goal", "aro_robocop_goto_as/GoToPositionActionGoal",
-                         "{goal: {position: {x: 0.3, y: 0.1, z: 0.0}}}"):
+                wait_for(
+                    lambda name=topic: rostopic_subscribes(f"/{ACTION}/{name}"),
+                    f"rostopic echo is connected to the {topic}",
+                )
+            with Process(
+                "rostopic",
+                "pub",
+                f"/{ACTION}/goal",
+                "aro_robocop_goto_as/GoToPositionActionGoal",
+                "{goal: {position: {x: 0.3, y: 0.1, z: 0.0}}}",
+            ):
                 self.assertEqual(feedback.wait_for_exit(), 0)
                 self.assertEqual(result.wait_for_exit(), 0)
         self.assertRegex(feedback.output, r"(?m)^  position_error: 0\.\d+$")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A server that ends in the middle of a goal, however it ends, leaves a robot that stands."""
+"""The robot stops when its server ends in the middle of a goal, whether killed or interrupted."""
 
 import os
 import signal
@@ -17,43 +17,43 @@ class ServerDies(unittest.TestCase):
         self.robot = Robot()
         self.robot.reset()
 
-    def driving_server(self, server):
-        """A goal far ahead at a server that has just been started; the robot drives at its full speed."""
+    def send_distant_goal(self, server):
+        """Send a goal far ahead to a new server, and wait until the robot drives at full speed; the goal."""
         goals = Goals()
         goal = goals.send(2.0, 0.0)
         self.robot.wait_until_it_drives(0.19)
         self.assertIsNone(server.process.poll())
         return goal
 
-    def test_killed_server_leaves_a_robot_that_stops_after_the_command_timeout(self):
+    def test_robot_stops_after_the_command_timeout_when_its_server_is_killed(self):
         with Process(script("robocop_goto_as.py")) as server:
-            goal = self.driving_server(server)
+            goal = self.send_distant_goal(server)
             os.kill(server.pid, signal.SIGKILL)
             self.assertEqual(server.wait_for_exit(), -signal.SIGKILL)
         last_command = self.robot.commands.messages[-1]
         self.assertGreater(last_command.linear.x, 0.0)
-        there = self.robot.pose()
-        stands = self.robot.wait_for_standstill()
-        self.assertLess(distance(there, stands), 0.22 * (TIMEOUT + BRAKING) + 0.02)
-        self.assertEqual(self.robot.commands.messages[-1], last_command)  # nobody else stopped it
+        start = self.robot.pose()
+        end = self.robot.wait_for_standstill()
+        self.assertLess(distance(start, end), 0.22 * (TIMEOUT + BRAKING) + 0.02)
+        self.assertEqual(self.robot.commands.messages[-1], last_command)  # no other command stopped it
         self.assertEqual(goal.results(), [])
 
     def test_interrupted_server_stops_the_robot_and_reports_shutdown(self):
         with Process(script("robocop_goto_as.py")) as server:
-            goal = self.driving_server(server)
+            goal = self.send_distant_goal(server)
             server.process.send_signal(signal.SIGINT)
             self.assertEqual(server.wait_for_exit(), 0, server.output)
         self.assertIn("the server is shutting down", goal.result("SHUTDOWN").result.message)
         self.assertFalse(goal.result().result.success)
         self.assertEqual(len(goal.results()), 1)
-        stands = self.robot.wait_until_it_stands()
+        end = self.robot.wait_until_it_stands()
         self.assertEqual(self.robot.commands.messages[-1], Twist())
-        self.assertFalse(moves(self.robot.truth.take(10)[-1]))
-        self.assertLess(distance(stands, self.robot.pose()), 0.001)
+        self.assertFalse(moves(self.robot.truth.next(10)[-1]))
+        self.assertLess(distance(end, self.robot.pose()), 0.001)
 
-    def test_server_that_is_started_again_serves_goals(self):
+    def test_a_restarted_server_serves_goals(self):
         with Process(script("robocop_goto_as.py")) as server:
-            self.driving_server(server)
+            self.send_distant_goal(server)
             os.kill(server.pid, signal.SIGKILL)
         with Process(script("robocop_goto_as.py")):
             here = self.robot.odom_pose()

@@ -1,4 +1,4 @@
-"""Copies of the packages in test/students, as their authors have them on disk."""
+"""Copies of the packages in test/students, with the files named as in a student's package."""
 
 import shutil
 from pathlib import Path
@@ -7,7 +7,7 @@ STUDENTS = Path(__file__).resolve().parent.parent / "students"
 
 
 def copy_of(name, folder):
-    """The package `name` below a folder, without the .in that hides its files from rosrun and roslaunch."""
+    """Copy a package into a folder, without the .in that hides its files from rosrun and roslaunch."""
     package = folder / name
     shutil.copytree(STUDENTS / name, package)
     for path in list(package.rglob("*.in")):
@@ -16,5 +16,5 @@ def copy_of(name, folder):
 
 
 def contents(package):
-    """Every file with what is in it and how it may be used."""
+    """Content and mode of every file."""
     return {path: (path.read_bytes(), path.stat().st_mode) for path in package.rglob("*") if path.is_file()}

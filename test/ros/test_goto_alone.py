@@ -1,4 +1,4 @@
-"""`robocop goto` where no ROS runs: it starts a system for that goal, and leaves nothing of it behind."""
+"""`robocop goto` without a running ROS: it starts a system for that goal and leaves none of its processes behind."""
 
 import os
 import signal
@@ -7,26 +7,36 @@ import subprocess
 import time
 
 import pytest
-from processes import processes_with
+from processes import busy_processes, processes_with
 
-from aro_robocop_goto_as.loopback import free_port
+from aro_robocop_goto_as.process.ports import free_port
 
 DEADLINE = 120.0  # [s, wall]
 
 
 class Goto:
-    """The command on its own, with no master where it looks for one; its output and the processes it starts."""
+    """The command, with no master at its ROS_MASTER_URI; its output and the processes it starts."""
 
     def __init__(self, folder, *arguments):
         self.port = free_port()
         self.setting = b"ROS_HOME=" + os.fsencode(folder)
         self.output = folder / "output"
-        environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",
-                       "ROS_LOG_DIR": str(folder / "log"), "ROS_MASTER_URI": f"http://localhost:{self.port}"}
+        environment = {
+            **os.environ,
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(folder),
+            "PYTHONUNBUFFERED": "1",
+            "ROS_LOG_DIR": str(folder / "log"),
+            "ROS_MASTER_URI": f"http://localhost:{self.port}",
+        }
         environment.pop("ROS_IP", None)
         with open(self.output, "wb") as stream:
-            self.process = subprocess.Popen(["rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments],
-                                            env=environment, stdout=stream, stderr=subprocess.STDOUT)
+            self.process = subprocess.Popen(
+                ["rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments],
+                env=environment,
+                stdout=stream,
+                stderr=subprocess.STDOUT,
+            )
 
     def wait_until(self, condition, what):
         end = time.monotonic() + DEADLINE
@@ -38,8 +48,8 @@ class Goto:
         """Whether one of its processes has this word on its command line."""
         return bool(processes_with(self.setting, program.encode()))
 
-    def ends(self):
-        """Its exit status; by then nothing that it started may be there."""
+    def wait_for_exit(self):
+        """Its exit status; by then none of its processes may be left."""
         status = self.process.wait(DEADLINE)
         assert processes_with(self.setting) == []
         return status
@@ -54,50 +64,72 @@ def goto(tmp_path):
         return started[-1]
 
     yield start
-    for it in started:
-        for process in processes_with(it.setting):
+    for command in started:
+        for process in processes_with(command.setting):
             os.kill(process, signal.SIGKILL)
 
 
-def test_goal_is_reached_in_a_system_of_its_own(goto):
+def test_goal_is_reached_in_a_system_started_for_it(goto):
     command = goto("0.5", "0.2", "--world", "empty")
-    assert command.ends() == 0, command.output.read_text()
+    assert command.wait_for_exit() == 0, command.output.read_text()
     assert "SUCCEEDED: REACHED: " in command.output.read_text()
 
 
-@pytest.mark.parametrize("word", ["robocop_launch.py", "rosmaster", "robocop_sim.py"])
-@pytest.mark.parametrize("numbers", [[signal.SIGINT], [signal.SIGTERM, signal.SIGINT]])
-def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, numbers):
+ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
+
+
+@pytest.mark.parametrize(
+    "word, signals",
+    [
+        ("robocop_sim.py", ONCE),
+        *(
+            pytest.param(word, signals, marks=pytest.mark.slow)
+            for word, signals in [
+                ("robocop_launch.py", ONCE),
+                ("robocop_launch.py", TWICE),
+                ("rosmaster", ONCE),
+                ("rosmaster", TWICE),
+                ("robocop_sim.py", TWICE),
+            ]
+        ),
+    ],
+)
+def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, signals):
     command = goto("5", "0", "--world", "empty")
     command.wait_until(lambda: command.runs(word), f"{word} runs")
-    for number in numbers:
-        command.process.send_signal(number)
-    assert command.ends() == 1
+    with busy_processes():
+        for number in signals:
+            command.process.send_signal(number)
+        assert command.wait_for_exit() == 1
     assert "Traceback" not in command.output.read_text()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_while_it_asks_a_master_that_does_not_answer_it_starts_nothing(goto, number):
+def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto, number):
     command = goto("1", "0")
-    with socket.create_server(("127.0.0.1", command.port)) as mute:
-        mute.settimeout(DEADLINE)
-        asked, _ = mute.accept()
-        assert asked.recv(1)
-        command.process.send_signal(number)
-        assert command.ends() == 1
+    with socket.create_server(("127.0.0.1", command.port)) as silent:
+        silent.settimeout(DEADLINE)
+        connection, _ = silent.accept()
+        assert connection.recv(1)
+        with busy_processes():
+            command.process.send_signal(number)
+            assert command.wait_for_exit() == 1
     assert command.output.read_text() == "robocop goto: interrupted\n"
 
 
-def test_terminated_on_its_way_it_tells_how_the_goal_ended(goto):
+@pytest.mark.slow
+def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
     command = goto("5", "0", "--world", "empty")
     command.wait_until(lambda: "driving" in command.output.read_text(), "driving")
-    command.process.send_signal(signal.SIGTERM)
-    assert command.ends() == 1
+    with busy_processes():
+        command.process.send_signal(signal.SIGTERM)
+        assert command.wait_for_exit() == 1
     assert "PREEMPTED: PREEMPTED: " in command.output.read_text()
 
 
-def test_unknown_world_is_told_with_the_log_to_read(goto):
+@pytest.mark.slow
+def test_unknown_world_is_reported_with_the_log_to_read(goto):
     command = goto("1", "0", "--world", "no_such")
-    assert command.ends() == 1
+    assert command.wait_for_exit() == 1
     assert "there is no world 'no_such'" in command.output.read_text()
     assert "robocop_goto.log" in command.output.read_text()

@@ -1,26 +1,42 @@
-"""Which nodes the launch files start for one robot and for many, with which names and frames; nothing is started."""
+"""Names, namespaces and parameters of the nodes in the launch files, for one robot and for many; nothing is started."""
+
+import dataclasses
+import os
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 import roslaunch.config
+import roslaunch.xmlloader
+import yaml
 
-LAUNCH = Path(__file__).resolve().parents[2] / "launch"
-LONE = {"/robocop_sim", "/robot_state_publisher", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node", "/rviz"}
-OF_EACH = ("robot_state_publisher", "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node")
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.param_loading import from_dict
+from aro_robocop_goto_as.params import BridgeParams, GotoParams, SimParams
+
+ROOT = Path(__file__).resolve().parents[2]
+LAUNCH = ROOT / "launch"
+SIM, SERVER, BRIDGE = "/robocop_sim", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node"
+LONE = {"/robocop_sim", "/robocop_state_publisher", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node", "/rviz"}
+OF_EACH = ("robocop_state_publisher", "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node")
 
 
 class Launch:
-    """What roslaunch makes of a file and its arguments."""
+    """A launch file with arguments, as loaded by roslaunch."""
 
     def __init__(self, *arguments, file="robocop_goto_as.launch"):
-        loaded = roslaunch.config.load_config_default(
-            [(str(LAUNCH / file), list(arguments))], None, verbose=False, assign_machines=False)
+        loaded = roslaunch.config.ROSLaunchConfig()
+        roslaunch.xmlloader.XmlLoader().load(str(LAUNCH / file), loaded, argv=list(arguments), verbose=False)
         self.nodes = {node.namespace + node.name: node for node in loaded.nodes}
+        self.cleared = set(loaded.clear_params)
         self.params = {name: param.value for name, param in loaded.params.items()}
 
+    def given(self, node):
+        """Parameters that are set for a node."""
+        return {name[len(node) + 1 :]: value for name, value in self.params.items() if name.startswith(node + "/")}
+
     def named(self, ending):
-        """Parameters whose names end so."""
+        """The parameters whose names end in this text."""
         return {name: value for name, value in self.params.items() if name.endswith(ending)}
 
 
@@ -28,29 +44,33 @@ def of_robots(*names):
     return {f"/{name}/{node}" for name in names for node in OF_EACH}
 
 
-def test_lone_robot_has_no_namespace_and_no_prefix():
+def test_single_robot_has_no_namespace_or_prefix():
     launch = Launch()
     assert set(launch.nodes) == LONE
     assert launch.named("tf_prefix") == {}
-    assert launch.named("/goal_frame") == {"/robocop_rviz_goto_ac_node/goal_frame": "odom"}
-    assert launch.params["/robocop_sim/robots"] == ""
+    assert from_dict(BridgeParams, launch.given(BRIDGE), BRIDGE).goal_frame == "odom"
+    assert from_dict(SimParams, launch.given(SIM), SIM).robots == ""
     assert "robocop.rviz -f map" in launch.nodes["/rviz"].args
 
 
-@pytest.mark.parametrize("robots, names", [
-    ("1", ["robot_1"]),
-    ("3", ["robot_1", "robot_2", "robot_3"]),
-    ("50", [f"robot_{i}" for i in range(1, 51)]),
-    ("red 0 0", ["red"]),
-    ("red 0 0.5; blue_2 1 -1 3.14", ["red", "blue_2"]),
-])
+@pytest.mark.parametrize(
+    "robots, names",
+    [
+        ("1", ["robot_1"]),
+        ("3", ["robot_1", "robot_2", "robot_3"]),
+        pytest.param("50", [f"robot_{i}" for i in range(1, 51)], marks=pytest.mark.slow),
+        ("red 0 0", ["red"]),
+        ("red 0 0.5; blue_2 1 -1 3.14", ["red", "blue_2"]),
+    ],
+)
 def test_each_of_many_robots_has_its_nodes_in_its_namespace_and_its_frames(robots, names):
     launch = Launch(f"robots:={robots}", "rviz:=false")
     assert set(launch.nodes) == {"/robocop_sim"} | of_robots(*names)
     assert launch.params["/robocop_sim/robots"] == robots
-    assert launch.named("tf_prefix") == {f"/{name}/robot_state_publisher/tf_prefix": name for name in names}
+    assert launch.named("tf_prefix") == {f"/{name}/robocop_state_publisher/tf_prefix": name for name in names}
     assert launch.named("/goal_frame") == {
-        f"/{name}/robocop_rviz_goto_ac_node/goal_frame": f"{name}/odom" for name in names}
+        f"/{name}/robocop_rviz_goto_ac_node/goal_frame": f"{name}/odom" for name in names
+    }
 
 
 def test_each_robot_has_the_description_of_its_own_model():
@@ -61,10 +81,12 @@ def test_each_robot_has_the_description_of_its_own_model():
     assert robots_described() == {"/robot_description": "turtlebot3_burger"}
     assert robots_described("model:=waffle") == {"/robot_description": "turtlebot3_waffle"}
     assert robots_described("robots:=red 0 0; blue:waffle_pi 1 0", "model:=turtlebot2") == {
-        "/red/robot_description": "turtlebot2", "/blue/robot_description": "turtlebot3_waffle_pi"}
+        "/red/robot_description": "turtlebot2",
+        "/blue/robot_description": "turtlebot3_waffle_pi",
+    }
 
 
-def test_a_robots_model_is_no_part_of_its_name():
+def test_a_robots_model_is_not_part_of_its_name():
     launch = Launch("robots:=red:waffle 0 0; blue 1 0")
     assert set(launch.nodes) == {"/robocop_sim", "/red/rviz"} | of_robots("red", "blue")
     assert launch.params["/robocop_sim/robots"] == "red:waffle 0 0; blue 1 0"
@@ -72,7 +94,7 @@ def test_a_robots_model_is_no_part_of_its_name():
 
 def test_simulator_alone_publishes_the_state_of_each_robot():
     launch = Launch("robots:=2", file="robocop_sim.launch")
-    assert set(launch.nodes) == {"/robocop_sim", "/robot_1/robot_state_publisher", "/robot_2/robot_state_publisher"}
+    assert set(launch.nodes) == {"/robocop_sim", "/robot_1/robocop_state_publisher", "/robot_2/robocop_state_publisher"}
 
 
 def test_simulator_bridges_and_rviz_can_be_left_out():
@@ -80,29 +102,125 @@ def test_simulator_bridges_and_rviz_can_be_left_out():
     assert set(launch.nodes) == {f"/robot_{i}/aro_robocop_goto_as_node" for i in (1, 2)}
 
 
-@pytest.mark.parametrize("arguments, node", [
-    (["robots:=2"], "/robot_1/rviz"),
-    (["robots:=red 0 0; blue 1 1"], "/red/rviz"),
-    (["robots:=2", "rviz_robot:=robot_2"], "/robot_2/rviz"),
-])
-def test_rviz_of_many_robots_runs_in_the_namespace_of_the_one_it_shows(arguments, node):
+@pytest.mark.parametrize(
+    "arguments, node",
+    [
+        (["robots:=2"], "/robot_1/rviz"),
+        (["robots:=red 0 0; blue 1 1"], "/red/rviz"),
+        (["robots:=2", "rviz_robot:=robot_2"], "/robot_2/rviz"),
+    ],
+)
+def test_rviz_of_many_robots_runs_in_the_namespace_of_the_displayed_robot(arguments, node):
     rviz = {name: it.args for name, it in Launch(*arguments).nodes.items() if name.endswith("rviz")}
     assert set(rviz) == {node}
     assert "many_robots.rviz -f map" in rviz[node]
 
 
-def test_profile_wins_over_the_config_and_arguments_over_both():
-    def timeout(*arguments):
-        params = Launch(*arguments).params
-        return params["/robocop_sim/cmd_vel_timeout"], params["/robocop_sim/scan_profile"]
+def arguments_of(file):
+    return {arg.get("name") for arg in ElementTree.parse(LAUNCH / file).iter("arg")}
 
-    assert timeout() == (0.5, "gazebo")
-    assert timeout("profile:=gazebo") == (0.0, "gazebo")
-    assert timeout("profile:=real") == (-1.0, "lds01")
-    assert timeout("profile:=real", "cmd_vel_timeout:=2", "scan_profile:=lds02") == (2.0, "lds02")
+
+def layered(field, layer):
+    """A value for a parameter that differs from its default and between two adjacent layers, 1 to 3."""
+    special = {"robots": ["red 0 0", "2", "3"], "model": ["waffle", "waffle_pi", "turtlebot2"]}
+    if field.name in special:
+        return special[field.name][layer - 1]
+    if isinstance(field.default, bool):
+        return field.default ^ (layer % 2 == 1)
+    if isinstance(field.default, str):
+        return f"layer {layer}"
+    return 1000 + layer if "int" in str(field.type) else layer / 8
+
+
+def written(path, cls, layer):
+    path.write_text(yaml.safe_dump({field.name: layered(field, layer) for field in dataclasses.fields(cls)}))
+    return path
+
+
+@pytest.mark.parametrize("file", ["robocop_sim.launch", "robocop_goto_as.launch"])
+def test_every_simulator_parameter_comes_from_argument_else_profile_else_config_else_its_default(tmp_path, file):
+    def given(*arguments):
+        return Launch(*arguments, file=file).given(SIM)
+
+    def texts(layer, names):
+        return [f"{field.name}:={layered(field, layer)}" for field in fields if field.name in names]
+
+    fields = dataclasses.fields(SimParams)
+    values = [{field.name: layered(field, layer) for field in fields} for layer in (1, 2, 3)]
+    arguments = arguments_of("robocop_sim.launch") & {field.name for field in fields}
+    assert len(arguments) == 18
+    config = f"config:={written(tmp_path / 'config.yaml', SimParams, 1)}"
+    profiles = os.path.realpath(ROOT / "config" / "profiles")
+    profile = f"profile:={os.path.relpath(written(tmp_path / 'profile.yaml', SimParams, 2), profiles)}"[: -len(".yaml")]
+
+    assert given() == {}
+    assert given(config) == values[0]
+    assert given(config, profile) == values[1]
+    assert given(*texts(3, arguments)) == {name: values[2][name] for name in arguments}
+    assert given(config, profile, *texts(3, arguments)) == {
+        **values[1],
+        **{name: values[2][name] for name in arguments},
+    }
+
+
+def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_else_its_default(tmp_path):
+    server = f"goto_config:={written(tmp_path / 'server.yaml', GotoParams, 1)}"
+    bridge = f"bridge_config:={written(tmp_path / 'bridge.yaml', BridgeParams, 1)}"
+    bare = Launch("sim:=false")
+    assert bare.given(SERVER) == bare.given(BRIDGE) == {}
+    launch = Launch("sim:=false", server, bridge)
+    assert launch.given(SERVER) == yaml.safe_load((tmp_path / "server.yaml").read_text())
+    values = yaml.safe_load((tmp_path / "bridge.yaml").read_text())
+    assert launch.given(BRIDGE) == values
+    launch = Launch("sim:=false", bridge, "ignore_goal_frame:=false")
+    assert launch.given(BRIDGE) == {**values, "ignore_goal_frame": False}
+    assert Launch("sim:=false", bridge, "robots:=red 0 0").given("/red" + BRIDGE) == values
+
+
+def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):
+    config = tmp_path / "config.yaml"
+    config.write_text("model: waffle\n")
+    described = Launch(f"config:={config}", "robots:=red 0 0; blue:turtlebot2 1 0").named("robot_description")
+    names = {name: ElementTree.fromstring(text).get("name") for name, text in described.items()}
+    assert names == {"/robot_description": "turtlebot3_waffle", "/blue/robot_description": "turtlebot2"}
+    assert capfd.readouterr().err == ""
+
+    config.write_text("robots: 3 0\nmodel: wafle\n")
+    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
+        Launch(f"config:={config}")
+    error = capfd.readouterr().err
+    assert "ROBOT_MODEL: there is no model 'wafle'; known are: burger" in error
+    assert "pass it as the argument robots:=" in error
+
+
+def test_strings_that_look_like_numbers_or_booleans_stay_strings():
+    sim = Launch("world:=7", "spawn:=0 0 0", "model:=burger", "scan_profile:=true", "robots:=1e3 0 0").given(SIM)
+    assert sim == {"world": "7", "spawn": "0 0 0", "model": "burger", "scan_profile": "true", "robots": "1e3 0 0"}
+
+
+@pytest.mark.parametrize("seed", ["12345678901234567890123", "-2147483648000", "1.5"])
+def test_a_seed_that_is_not_a_32_bit_integer_is_refused_by_the_node(seed):
+    with pytest.raises(ParameterError, match=f"seed: expected int, got str '{seed}'"):
+        from_dict(SimParams, Launch(f"seed:={seed}", file="robocop_sim.launch").given(SIM), SIM)
+
+
+def test_profile_overrides_the_default_and_arguments_override_both():
+    def loaded(*arguments):
+        p = from_dict(SimParams, Launch(*arguments, file="robocop_sim.launch").given(SIM), SIM)
+        return p.cmd_vel_timeout, p.scan_profile
+
+    assert loaded() == (None, "gazebo")
+    assert loaded("profile:=gazebo") == (0.0, "gazebo")
+    assert loaded("profile:=real") == (None, "lds01")
+    assert loaded("profile:=real", "cmd_vel_timeout:=2", "scan_profile:=lds02") == (2.0, "lds02")
 
 
 def test_time_and_drive_are_passed_on_to_the_simulator():
     launch = Launch("robots:=2", "drive:=kinematic", "sync:=lockstep", "real_time_factor:=0")
     found = [launch.params[f"/robocop_sim/{name}"] for name in ("drive", "sync", "real_time_factor")]
     assert found == ["kinematic", "lockstep", 0.0]
+
+
+def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():
+    assert {"/robocop_sim", SERVER, BRIDGE} <= {name.rstrip("/") for name in Launch().cleared}
+    assert {"/red" + SERVER, "/red" + BRIDGE} <= {name.rstrip("/") for name in Launch("robots:=red 0 0").cleared}

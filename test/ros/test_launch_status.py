@@ -1,4 +1,4 @@
-"""robocop_launch.py, which is roslaunch but for how it ends: with a status that tells, at any moment, and with all."""
+"""robocop_launch.py: its exit status reports how the simulator ended, and an interrupt ends all of its processes."""
 
 import contextlib
 import os
@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 
 import pytest
-from processes import processes_with
+from processes import busy_processes, processes_with
 
-from aro_robocop_goto_as.loopback import free_port
+from aro_robocop_goto_as.process.ports import free_port
 
-DEADLINE = 60.0  # [s, wall]
-READY = "robot at x"  # what the simulator says once it runs
+DEADLINE = 120.0  # [s, wall]
+READY = "robot at x"  # in the output of a simulator that runs
 
 
 class Launch:
@@ -22,40 +22,55 @@ class Launch:
     def __init__(self, folder, *arguments):
         self.setting = b"ROS_HOME=" + os.fsencode(folder)
         self.output = folder / "output"
-        environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(folder), "PYTHONUNBUFFERED": "1",
-                       "ROS_LOG_DIR": str(folder / "log")}
+        environment = {
+            **os.environ,
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(folder),
+            "PYTHONUNBUFFERED": "1",
+            "ROS_LOG_DIR": str(folder / "log"),
+        }
         environment.pop("ROS_IP", None)
         self.port = free_port()
-        command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", "-p", str(self.port), "aro_robocop_goto_as",
-                   "robocop_sim.launch", "drive:=kinematic", *arguments]
+        command = [
+            "rosrun",
+            "aro_robocop_goto_as",
+            "robocop_launch.py",
+            "-p",
+            str(self.port),
+            "aro_robocop_goto_as",
+            "robocop_sim.launch",
+            "drive:=kinematic",
+            *arguments,
+        ]
         with open(self.output, "wb") as stream:
             self.process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
 
     def simulator(self):
-        """Its process id once it has begun to simulate."""
+        """Wait until the simulator runs; its process id."""
         self.wait_until(lambda: READY in self.output.read_text())
         return self.runs("robocop_sim.py")
 
     def runs(self, program):
-        """The id, once there is one, of a process of the launch with this word on its command line."""
-        found = []
-        self.wait_until(lambda: found.extend(processes_with(self.setting, program.encode())) or found)
-        return found[0]
+        """Wait for a process of the launch with this word on its command line; its id."""
+        return self.wait_until(lambda: processes_with(self.setting, program.encode()))[0]
 
     def wait_until(self, condition):
-        """Wait for a condition, as long as the launch lives."""
+        """The first true value of a condition, while the launch runs."""
         end = time.monotonic() + DEADLINE
-        while not condition():
+        while True:
+            value = condition()
+            if value:
+                return value
             assert self.process.poll() is None and time.monotonic() < end, self.output.read_text()
             time.sleep(0.001)
 
     def has_handlers(self, process):
-        """Whether a process has come so far that it handles SIGTERM itself."""
+        """Whether a process has installed a handler of SIGTERM."""
         (line,) = [line for line in Path(f"/proc/{process}/status").read_text().splitlines() if "SigCgt" in line]
         return bool(int(line.split()[1], 16) >> signal.SIGTERM - 1 & 1)
 
-    def asks_the_master(self, process):
-        """Whether a process has sent the master what that one has not read yet."""
+    def waits_for_the_master(self, process):
+        """Whether a process has sent the master a request that the master has not read yet."""
         sockets = set()
         for entry in Path(f"/proc/{process}/fd").iterdir():
             with contextlib.suppress(FileNotFoundError):  # closed meanwhile
@@ -65,8 +80,8 @@ class Launch:
         mine = {row[1] for row in rows if row[2] == master and f"socket:[{row[9]}]" in sockets}
         return any(row[1] == master and row[2] in mine and int(row[4].split(":")[1], 16) for row in rows)
 
-    def ends(self):
-        """Its exit status; by then nothing that it started may be there."""
+    def wait_for_exit(self):
+        """Its exit status; by then none of its processes may be left."""
         status = self.process.wait(DEADLINE)
         assert processes_with(self.setting) == []
         return status
@@ -81,56 +96,69 @@ def launch(tmp_path):
         return started[-1]
 
     yield start
-    for it in started:
-        for process in processes_with(it.setting):
+    for launched in started:
+        for process in processes_with(launched.setting):
             os.kill(process, signal.SIGKILL)
-        it.process.wait()
+        launched.process.wait()
 
 
-def test_simulator_that_refuses_what_it_is_given_makes_the_launch_fail(launch):
+def test_launch_fails_when_the_simulator_refuses_its_parameters(launch):
     launched = launch("world:=no_such")
-    assert launched.ends() == 1
+    assert launched.wait_for_exit() == 1
     assert "there is no world 'no_such'" in launched.output.read_text()
 
 
-def test_simulator_that_is_killed_makes_the_launch_fail(launch):
+def test_launch_fails_when_the_simulator_is_killed(launch):
     launched = launch("world:=empty")
     os.kill(launched.simulator(), signal.SIGKILL)
-    assert launched.ends() == 1
+    assert launched.wait_for_exit() == 1
 
 
-def test_simulator_that_ends_as_asked_is_no_failure(launch):
+@pytest.mark.slow
+def test_interrupted_simulator_is_no_failure(launch):
     launched = launch("world:=empty")
-    os.kill(launched.simulator(), signal.SIGINT)
-    assert launched.ends() == 0
+    simulator = launched.simulator()
+    with busy_processes():
+        os.kill(simulator, signal.SIGINT)
+        assert launched.wait_for_exit() == 0
 
 
-def test_launch_that_is_interrupted_ends_all_and_is_no_failure(launch):
+def test_interrupted_launch_ends_all_processes_and_is_no_failure(launch):
     launched = launch("world:=empty")
     launched.simulator()
-    launched.process.send_signal(signal.SIGINT)
-    assert launched.ends() == 0
+    with busy_processes():
+        launched.process.send_signal(signal.SIGINT)
+        assert launched.wait_for_exit() == 0
     assert "Traceback" not in launched.output.read_text()
 
 
-def test_simulator_that_is_told_to_end_while_it_waits_for_the_master_ends_when_that_answers(launch):
+@pytest.mark.slow
+def test_simulator_interrupted_while_it_waits_for_the_master_ends_when_that_answers(launch):
     launched = launch("world:=empty")
     simulator, (master,) = launched.runs("robocop_sim.py"), processes_with(launched.setting, b"/rosmaster")
     launched.wait_until(lambda: launched.has_handlers(simulator))
     os.kill(master, signal.SIGSTOP)
     try:
-        launched.wait_until(lambda: launched.asks_the_master(simulator))
-        os.kill(simulator, signal.SIGINT)
-    finally:
+        launched.wait_until(lambda: launched.waits_for_the_master(simulator))
+    except BaseException:
         os.kill(master, signal.SIGCONT)
-    assert launched.ends() == 0
+        raise
+    with busy_processes():
+        os.kill(simulator, signal.SIGINT)
+        os.kill(master, signal.SIGCONT)
+        assert launched.wait_for_exit() == 0
 
 
-@pytest.mark.parametrize("numbers", [[signal.SIGINT], [signal.SIGTERM, signal.SIGINT]])
+ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("signals", [ONCE, TWICE])
 @pytest.mark.parametrize("program", ["/rosmaster", "/rosout", "robocop_sim.py", "/robot_state_publisher"])
-def test_launch_that_is_interrupted_while_it_starts_a_process_loses_none(launch, program, numbers):
+def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch, program, signals):
     launched = launch("world:=empty")
     launched.runs(program)
-    for number in numbers:
-        launched.process.send_signal(number)
-    assert launched.ends() == 0
+    with busy_processes():
+        for number in signals:
+            launched.process.send_signal(number)
+        assert launched.wait_for_exit() == 0

@@ -1,7 +1,7 @@
-"""The same run twice is the same to the last byte, whatever else the machine does; and nothing can hang it.
+"""Lockstep: runs are identical to the last byte on a quiet and on a busy machine, and no controller can block time.
 
-Every run has fresh processes on one master. Processes with plain signals rather than rostest: they are started and
-stopped many times, and one of them is frozen.
+Every run has new processes on one master. They are plain processes rather than nodes of a rostest, because they are
+started and stopped many times and one of them is frozen by SIGSTOP.
 """
 
 import json
@@ -13,37 +13,47 @@ import time
 from pathlib import Path
 
 import pytest
-import yaml
+import rosgraph
+from processes import busy_processes
 
-from aro_robocop_goto_as.loopback import free_port
+from aro_robocop_goto_as.process.ports import free_port
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-DEADLINE = 120.0  # [s, wall] for anything to come; reached only when it never would
-RUNS = 10  # of each kind, quiet and with a hog: twenty in all
-pytestmark = pytest.mark.timeout(900)
+DEADLINE = 120.0  # [s, wall] for any one condition; only a failure takes this long
+SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
+pytestmark = pytest.mark.xdist_group("lockstep")  # for the master and the reference run that the tests share
 
 
 class Ros:
-    """A master of its own, and the nodes that a test starts on it."""
+    """A ROS master of its own, and the nodes that a test starts on it."""
 
     def __init__(self, folder):
-        self.port = free_port()
+        port = free_port()
         self.folder = folder
         self.environment = {
-            **os.environ, "ROS_HOSTNAME": "localhost", "ROS_MASTER_URI": f"http://localhost:{self.port}",
-            "ROS_HOME": str(folder), "ROS_LOG_DIR": str(folder / "log")}
+            **os.environ,
+            "ROS_HOSTNAME": "localhost",
+            "ROS_MASTER_URI": f"http://localhost:{port}",
+            "ROS_HOME": str(folder),
+            "ROS_LOG_DIR": str(folder / "log"),
+        }
         self.environment.pop("ROS_IP", None)
+        self.master = rosgraph.Master("/lockstep_test", self.environment["ROS_MASTER_URI"])
         self.processes = []
         self.logs = 0
-        self.master = self.start("roscore", "-p", str(self.port))
-        self.wait(lambda: self.call("rosparam", "set", "/use_sim_time", "true").returncode == 0, "the master")
+        self.core = self.start("roscore", "-p", str(port))
+        self.wait(self.master.is_online, "the master", (self.core,))
+        self.wait(lambda: self.master.hasParam("/run_id"), "roscore's parameters", (self.core,))
+        self.master.setParam("/use_sim_time", True)
 
-    def start(self, *command):
+    def start(self, *command, **streams):
+        """Start a process; unless `streams` says otherwise its output goes to a log file."""
         self.logs += 1
         log = self.folder / f"{self.logs}-{Path(command[0]).name}.log"
         with open(log, "wb") as output:
-            process = subprocess.Popen(command, env=self.environment, stdout=output, stderr=subprocess.STDOUT)
+            streams = {"stdout": output, "stderr": output, **streams}
+            process = subprocess.Popen(command, env=self.environment, **streams)
         process.log = log
         self.processes.append(process)
         return process
@@ -51,31 +61,37 @@ class Ros:
     def node(self, script, *arguments):
         return self.start("rosrun", "aro_robocop_goto_as", script, *arguments)
 
-    def script(self, name, *arguments):
-        return self.start(sys.executable, str(HERE / name), *map(str, arguments))
+    def script(self, name, *arguments, **streams):
+        return self.start(sys.executable, str(HERE / name), *map(str, arguments), **streams)
 
-    def call(self, *command):
-        return subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=DEADLINE)
-
-    def parameters(self, node, values):
-        path = self.folder / "parameters.yaml"
-        path.write_text(yaml.safe_dump(values))
-        self.call("rosparam", "delete", node)
-        assert self.call("rosparam", "load", str(path), node).returncode == 0
+    def set_parameters(self, node, values):
+        """Replace all parameters of a node."""
+        if self.master.hasParam(node):
+            self.master.deleteParam(node)
+        if values:
+            self.master.setParam(node, values)
 
     def simulator(self, **changes):
         """A simulator in lockstep that stands at time zero."""
-        values = yaml.safe_load((ROOT / "config" / "sim.yaml").read_text())
-        values.update({"sync": "lockstep", "start_paused": True, "real_time_factor": 0.0, **changes})
-        self.parameters("/robocop_sim", values)
+        values = {"sync": "lockstep", "start_paused": True, "real_time_factor": 0.0, **changes}
+        self.set_parameters(SIMULATOR, values)
         simulator = self.node("robocop_sim.py", "__name:=robocop_sim")
-        self.wait(lambda: self.call("rosservice", "type", "/robocop_sim/step").returncode == 0, "the simulator",
-                  (simulator,))
+        self.wait(lambda: self.offers(f"{SIMULATOR}/step"), "the simulator", (simulator,))
         return simulator
 
+    def offers(self, service):
+        try:
+            return self.master.lookupService(service)
+        except rosgraph.MasterError:
+            return None
+
     def wait(self, condition, what, processes=()):
+        """The first true value of a condition; these processes may not fail meanwhile."""
         end = time.monotonic() + DEADLINE
-        while not condition():
+        while True:
+            value = condition()
+            if value:
+                return value
             for process in processes:
                 assert process.poll() in (None, 0), f"{process.args} ended: {process.log.read_text()[-3000:]}"
             assert time.monotonic() < end, f"not within {DEADLINE:g} s: {what}"
@@ -83,6 +99,8 @@ class Ros:
 
     def stop(self, *processes):
         for process in processes:
+            if process.stdin is not None:
+                process.stdin.close()
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
         for process in processes:
@@ -93,34 +111,89 @@ class Ros:
                 process.wait()
             self.processes.remove(process)
 
+    def stop_nodes(self):
+        """End everything but the master."""
+        self.stop(*(process for process in reversed(self.processes) if process is not self.core))
+
     def close(self):
-        self.stop(*reversed(self.processes))
+        self.stop_nodes()
+        self.stop(self.core)
+
+
+class Remote:
+    """Steps the simulator and reads its status."""
+
+    def __init__(self, ros, simulator):
+        self.ros, self.simulator = ros, simulator
+        self.process = ros.script("remote.py", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def _ask(self, request):
+        self.process.stdin.write(f"{request}\n".encode())
+        self.process.stdin.flush()
+        answer = self.process.stdout.readline()
+        assert answer, f"{self.process.log.read_text()}\n{self.simulator.log.read_text()[-3000:]}"
+        return json.loads(answer)
+
+    def step(self, seconds):
+        answer = self._ask(f"step {seconds}")
+        assert answer["success"], answer
+
+    def status(self):
+        """The next report from now on."""
+        return self._ask("status")
+
+    def wait_for_driver(self, driver, *processes):
+        """Wait until lockstep waits for a controller."""
+        self.ros.wait(lambda: driver in self.status()["drivers"], f"{driver} drives", (self.simulator, *processes))
+
+
+@pytest.fixture(scope="module")
+def shared_ros(tmp_path_factory):
+    ros = Ros(tmp_path_factory.mktemp("lockstep"))
+    yield ros
+    ros.close()
 
 
 @pytest.fixture
-def ros(tmp_path):
-    it = Ros(tmp_path)
-    yield it
-    it.close()
+def ros(shared_ros):
+    """The master that all tests share; their nodes end with each of them."""
+    yield shared_ros
+    shared_ros.stop_nodes()
+
+
+@pytest.fixture
+def ros_of_its_own(tmp_path):
+    """A master of its own, as a killed node leaves registrations behind."""
+    ros = Ros(tmp_path)
+    yield ros
+    ros.close()
+
+
+@pytest.fixture(scope="module")
+def reference(shared_ros):
+    """The summary of one run of the scenario, and the bag of all its messages."""
+    bag = shared_ros.folder / "run.bag"
+    run = run_scenario(shared_ros, bag)
+    assert run["words"] == ["REACHED", "REACHED", "PREEMPTED", "REACHED", "OBSTACLE"]
+    assert run["counts"]["/ground_truth_odom"] == 38 * 30
+    assert run["misses"] == 0
+    return run, bag
 
 
 @pytest.fixture
 def hog():
     """Two processes that leave no core idle."""
-    hogs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
-    yield
-    for process in hogs:
-        process.kill()
-        process.wait()
+    with busy_processes(2):
+        yield
 
 
 def run_scenario(ros, bag=None, **changes):
-    """One run in fresh processes: its summary."""
+    """One run in new processes: its summary."""
     result = ros.folder / "result.json"
     result.unlink(missing_ok=True)
-    ros.parameters("/aro_robocop_goto_as_node", {})
+    ros.set_parameters(SERVER, {})
     simulator = ros.simulator(**changes)
-    server = ros.node("robocop_goto_as.py", "__name:=aro_robocop_goto_as_node")
+    server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
     scenario = ros.script("lockstep_scenario.py", result, *([bag] if bag else []))
     ros.wait(lambda: scenario.poll() is not None, "the scenario's end", (simulator, server, scenario))
     assert scenario.returncode == 0, scenario.log.read_text()[-3000:]
@@ -128,130 +201,129 @@ def run_scenario(ros, bag=None, **changes):
     return json.loads(result.read_text())
 
 
-def assert_all_the_same(runs):
-    assert runs[0]["words"] == ["REACHED", "REACHED", "PREEMPTED", "REACHED", "OBSTACLE"]
-    assert runs[0]["counts"]["/ground_truth_odom"] == 38 * 30
-    for number, run in enumerate(runs, 1):
-        assert run["misses"] == 0
-        assert run == runs[0], f"run {number} differs from run 1"
+@pytest.mark.parametrize("number", [2, pytest.param(3, marks=pytest.mark.slow)])
+def test_a_seeded_scenario_is_byte_identical_in_every_run(ros, reference, number):
+    assert run_scenario(ros) == reference[0], f"run {number} differs from run 1"
 
 
-def test_a_seeded_scenario_is_byte_identical_in_every_run(ros):
-    assert_all_the_same([run_scenario(ros) for _ in range(RUNS)])
+@pytest.mark.parametrize("number", [1, *(pytest.param(number, marks=pytest.mark.slow) for number in (2, 3))])
+def test_a_seeded_scenario_is_byte_identical_on_a_busy_machine(ros, reference, hog, number):
+    assert run_scenario(ros) == reference[0], f"run {number} on a busy machine differs from the one on a quiet machine"
 
 
-def test_a_seeded_scenario_is_byte_identical_on_a_machine_without_an_idle_core(ros, hog):
-    assert_all_the_same([run_scenario(ros) for _ in range(RUNS)])
+@pytest.mark.slow
+def test_real_time_factor_does_not_change_the_run(ros, reference):
+    assert run_scenario(ros, real_time_factor=8.0) == reference[0]
 
 
-def test_speed_does_not_matter_and_another_seed_is_other_noise_with_the_same_outcome(ros):
-    fast, at_most_eight, other = (run_scenario(ros), run_scenario(ros, real_time_factor=8.0), run_scenario(ros, seed=7))
-    assert fast == at_most_eight
-    assert other["words"] == fast["words"]
-    assert other["digests"]["/scan"] != fast["digests"]["/scan"]
+def test_another_seed_gives_different_noise_but_the_same_outcome(ros, reference):
+    other = run_scenario(ros, seed=7)
+    assert other["words"] == reference[0]["words"]
+    assert other["digests"]["/scan"] != reference[0]["digests"]["/scan"]
 
 
-def test_a_rosbag_of_a_run_plays_back_every_message(ros):
-    bag = ros.folder / "run.bag"
-    run = run_scenario(ros, bag)
-    counter = ros.script("count_messages.py", ros.folder / "counts.json", *run["counts"])
-    ready = ros.folder / "counts.json.ready"
-    ros.wait(ready.exists, "the counter listens", (counter,))
-    player = ros.start("rosrun", "rosbag", "play", "--quiet", "--rate=20", "--wait-for-subscribers", str(bag))
+def test_a_rosbag_of_a_run_plays_back_every_message(ros, reference):
+    run, bag = reference
+    counts = ros.folder / "counts.json"
+    counter = ros.script("count_messages.py", counts, *run["counts"])
+    ros.wait((ros.folder / "counts.json.ready").exists, "the counter listens", (counter,))
+    player = ros.start(
+        "rosrun", "rosbag", "play", "--quiet", "--rate=20", "--queue=100000", "--wait-for-subscribers", str(bag)
+    )
     ros.wait(lambda: player.poll() is not None, "the end of the bag", (player, counter))
-    ros.wait(lambda: json.loads((ros.folder / "counts.json").read_text()) == run["counts"],
-             f"all of {run['counts']}", (counter,))
+    ros.wait(lambda: json.loads(counts.read_text()) == run["counts"], f"all of {run['counts']}", (counter,))
 
 
-def status_of(ros):
-    answer = ros.call("rostopic", "echo", "-n", "1", "/robocop_sim/status")
-    return yaml.safe_load(answer.stdout.split("---")[0]) if answer.returncode == 0 else {}
-
-
-def step(ros, seconds):
-    answer = ros.call("rosservice", "call", "/robocop_sim/step", f"duration: {seconds}")
-    assert "success: True" in answer.stdout, answer
-    return answer
-
-
-def recorded(ros, simulator):
-    """A simulator at one second, since rospy takes time zero for no time at all, and the file of its true poses."""
+def start_recorder(ros, simulator, remote):
+    """Move time to one second, as rospy takes time zero for no time at all; the file of all true poses from there."""
     trajectory = ros.folder / "trajectory"
     trajectory.unlink(missing_ok=True)
     recorder = ros.script("trajectory.py", trajectory)
     ros.wait(trajectory.exists, "the recorder listens", (simulator, recorder))
-    step(ros, 1.0)
-    return trajectory, recorder
+    remote.step(1.0)
+    return trajectory
 
 
 def poses_at(ros, trajectory, seconds):
-    """All true poses once simulated time stands at so many seconds."""
+    """All true poses, once simulated time has reached a value [s]."""
     ros.wait(lambda: len(trajectory.read_text().splitlines()) == round(30 * seconds), f"the poses of {seconds} s")
     return trajectory.read_text().splitlines()
 
 
-def start_metronome(ros, simulator, rate=10):
+def start_metronome(ros, remote, rate=10):
     controller = ros.script("metronome.py", f"_rate:={rate}")
-    ros.wait(lambda: "/metronome" in status_of(ros).get("drivers", []), "it drives", (simulator, controller))
+    remote.wait_for_driver("/metronome", controller)
     return controller
 
 
 def run_metronome(ros):
-    """Ten seconds with a plain controller: the true poses, and how often it was given up on."""
+    """Ten seconds with a plain controller: the true poses, and how often it missed lockstep's timeout."""
     simulator = ros.simulator(cmd_vel_timeout=0.0)
-    trajectory, recorder = recorded(ros, simulator)
-    controller = start_metronome(ros, simulator)
-    step(ros, 10.0)
+    remote = Remote(ros, simulator)
+    trajectory = start_recorder(ros, simulator, remote)
+    start_metronome(ros, remote)
+    remote.step(10.0)
     poses = poses_at(ros, trajectory, 11.0)
-    misses = status_of(ros)["lockstep_misses"]
-    ros.stop(controller, recorder, simulator)
+    misses = remote.status()["lockstep_misses"]
+    ros.stop_nodes()
     return poses, misses
 
 
-def test_a_controller_that_knows_nothing_of_lockstep_gives_the_same_trajectory(ros, hog):
-    first, misses = run_metronome(ros)
+def test_controller_unaware_of_lockstep_gives_the_same_trajectory_on_a_busy_machine(ros):
+    poses, misses = run_metronome(ros)
     assert misses == 0
-    assert len(set(first)) > 290, "the robot did not move"
-    for _ in range(2):
-        assert run_metronome(ros) == (first, 0)
+    assert len(set(poses)) > 290, "the robot did not move"
+    with busy_processes(2):
+        assert run_metronome(ros) == (poses, 0)
 
 
-@pytest.mark.parametrize("rate", [3, 4])
-def test_a_loop_whose_period_is_no_whole_number_of_ticks_costs_no_miss(ros, rate):
+@pytest.mark.parametrize("rate", [3, pytest.param(4, marks=pytest.mark.slow)])
+def test_loop_whose_period_is_not_a_multiple_of_the_tick_causes_no_miss(ros, rate):
     simulator = ros.simulator(cmd_vel_timeout=0.0)
-    step(ros, 1.0)
-    start_metronome(ros, simulator, rate)
-    step(ros, 30.0)
-    status = status_of(ros)
-    assert (status["lockstep_misses"], status["drivers"]) == (0, ["/metronome"])
+    remote = Remote(ros, simulator)
+    remote.step(1.0)
+    start_metronome(ros, remote, rate)
+    remote.step(30.0)
+    assert remote.status() == {"lockstep_misses": 0, "drivers": ["/metronome"]}
 
 
-def test_a_controller_that_hangs_costs_one_time_out_and_is_followed_again_when_it_is_back(ros):
+def test_controller_that_hangs_causes_one_miss_and_is_awaited_again_when_it_continues(ros):
     simulator = ros.simulator(lockstep_timeout=0.5)
-    step(ros, 1.0)
-    controller = start_metronome(ros, simulator)
-    step(ros, 1.0)
+    remote = Remote(ros, simulator)
+    remote.step(1.0)
+    controller = start_metronome(ros, remote)
+    remote.step(1.0)
     controller.send_signal(signal.SIGSTOP)
-    step(ros, 3.0)
-    status = status_of(ros)
-    controller.send_signal(signal.SIGCONT)
-    assert status["lockstep_misses"] == 1 and status["drivers"] == []
+    try:
+        remote.step(3.0)
+        status = remote.status()
+    finally:
+        controller.send_signal(signal.SIGCONT)
+    assert status == {"lockstep_misses": 1, "drivers": []}
     assert "no answer within 0.5 s from /metronome" in simulator.log.read_text()
-    ros.wait(lambda: step(ros, 0.1) and "/metronome" in status_of(ros)["drivers"], "it drives again", (simulator,))
+    ros.wait(lambda: remote.step(0.1) or "/metronome" in remote.status()["drivers"], "it drives again", (simulator,))
 
 
-def test_a_controller_that_is_killed_stops_neither_time_nor_leaves_the_robot_driving(ros):
+def test_killing_a_controller_stops_its_robot_but_not_time(ros_of_its_own):
+    ros = ros_of_its_own
     simulator = ros.simulator(cmd_vel_timeout=0.0)
-    server = ros.node("robocop_goto_as.py", "__name:=aro_robocop_goto_as_node")
-    trajectory, _ = recorded(ros, simulator)
-    ros.wait(lambda: "/aro_robocop_goto_as_node" in status_of(ros).get("drivers", []), "it drives", (simulator, server))
-    goal = ros.start("rostopic", "pub", "-1", "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal",
-                     "{goal: {position: {x: 3.0}}}")
+    server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
+    remote = Remote(ros, simulator)
+    trajectory = start_recorder(ros, simulator, remote)
+    remote.wait_for_driver(SERVER, server)
+    goal = ros.start(
+        "rostopic",
+        "pub",
+        "-1",
+        "/robocop_goto_as/goal",
+        "aro_robocop_goto_as/GoToPositionActionGoal",
+        "{goal: {position: {x: 3.0}}}",
+    )
     ros.wait(lambda: "goal accepted" in server.log.read_text(), "the goal", (server, goal))
-    step(ros, 2.0)
+    remote.step(2.0)
     server.kill()
     server.wait()
-    step(ros, 2.0)
+    remote.step(2.0)
     poses = poses_at(ros, trajectory, 5.0)
     assert len(set(poses[30:90])) > 50, "it did not drive"
     assert len(set(poses[-30:])) == 1, "it still drives"

@@ -1,4 +1,5 @@
-"""Every test/ros/*.test is run by rostest, each in a ROS of its own: master, port, logs and results."""
+"""Runs every test/ros/*.test by rostest, each with its own master, port, logs and results."""
+
 import os
 import signal
 import subprocess
@@ -9,13 +10,16 @@ from xml.etree import ElementTree
 import pytest
 from processes import processes_with
 
-DEADLINE = 180.0  # [s] for one .test file; each <test> in it should have a shorter time-limit of its own
-SHUTDOWN = 20.0  # [s] that rostest gets to end its nodes once the deadline has passed
+DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit
+SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 HERE = Path(__file__).resolve().parent
+LONG = ("lab", "simulator", "simulator_services", "two_robots")
+# Most of these is also tested without processes (parameters), or with a fake robot and through the bridge (preempt).
+SLOW = ("parameters", "preempt")
 
 
 def run_rostest(test_file, directory):
-    """Run one file to its end or its deadline; return the exit status, None after the deadline, and the output."""
+    """Run one file: the exit status, or None after the deadline, and the output."""
     environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(directory / "home")}
     environment["ROS_LOG_DIR"] = str(directory / "log")
     for name in ("ROS_MASTER_URI", "ROS_IP", "DISPLAY"):
@@ -34,7 +38,7 @@ def run_rostest(test_file, directory):
                 rostest.kill()
                 rostest.wait()
         finally:
-            # roslaunch gives every node a session of its own, so the environment is what tells them apart.
+            # roslaunch starts every node in its own session, so nodes are recognised by their environment.
             for process in processes_with(b"ROS_LOG_DIR=" + os.fsencode(environment["ROS_LOG_DIR"])):
                 with suppress(ProcessLookupError):
                     os.kill(process, signal.SIGKILL)
@@ -43,7 +47,7 @@ def run_rostest(test_file, directory):
 
 
 def cases_in(result):
-    """The <testcase>s of a result file; none where the node died before it wrote any."""
+    """The <testcase>s of a result file; none if the node died before it wrote any."""
     try:
         return list(ElementTree.parse(result).iter("testcase"))
     except ElementTree.ParseError:
@@ -51,7 +55,7 @@ def cases_in(result):
 
 
 def problems_of(case):
-    """What an xunit <testcase> complains of, one string each."""
+    """The failures, errors and skips of an xunit <testcase>, one string each."""
     name = f"{case.get('classname')}.{case.get('name')}"
     return [
         f"{name}: {entry.tag} {entry.get('message') or ''}\n{entry.text or ''}"
@@ -61,16 +65,22 @@ def problems_of(case):
 
 
 def logs(directory):
-    """The end of the log file of every node: what it had to say itself. rostest's own repeats its output."""
+    """The end of every node's log file. rostest's own is left out, as it repeats the output."""
     for log in sorted(directory.rglob("*.log")):
         if log.is_file() and not log.name.startswith(("rostest-", "roslaunch-")):
             yield f"--- {log.name}\n" + "\n".join(log.read_text(errors="replace").splitlines()[-30:])
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in HERE.glob("*.test")))
+def rostests():
+    """The longest first, so that the workers finish at about the same time."""
+    names = sorted((path.stem for path in HERE.glob("*.test")), key=lambda name: (name not in LONG, name))
+    return [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in names]
+
+
+@pytest.mark.parametrize("name", rostests())
 def test_rostest(name, tmp_path):
     status, output = run_rostest(HERE / f"{name}.test", tmp_path)
-    # rostest-*.xml tells of the <test> tags, each other file of the cases that one test node ran.
+    # rostest-*.xml holds the <test> tags, each other file the test cases of one test node.
     results = {path: cases_in(path) for path in tmp_path.glob("results/*/*.xml")}
     problems = [problem for cases in results.values() for case in cases for problem in problems_of(case)]
     problems += [f"{path.name}: not one test case ran" for path, cases in results.items() if not cases]

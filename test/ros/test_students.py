@@ -1,5 +1,6 @@
-"""Packages as students write them run against this simulator as they are, mistakes included."""
+"""Packages as students write them run unchanged with this simulator, mistakes included."""
 
+import functools
 import json
 import os
 import signal
@@ -12,11 +13,11 @@ import pytest
 from processes import processes_with
 from students import contents, copy_of
 
-from aro_robocop_goto_as.loopback import free_port
+from aro_robocop_goto_as.process.ports import free_port
 
 HERE = Path(__file__).resolve().parent
-DEADLINE = 150.0  # [s, wall] a build and a start on a busy machine
-pytestmark = pytest.mark.xdist_group("hosting")  # the first one builds what all of them need
+DEADLINE = 150.0  # [s, wall] for a build and a start on a busy machine
+pytestmark = pytest.mark.xdist_group("hosting")  # the first test builds the workspace that all of them extend
 
 
 class Hosted:
@@ -24,15 +25,24 @@ class Hosted:
 
     def __init__(self, package, folder, *arguments):
         port = free_port()
-        self.environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
-                            "ROS_HOME": str(folder), "ROBOCOP_RVIZ": "false"}
+        self.environment = {
+            **os.environ,
+            "ROS_MASTER_URI": f"http://localhost:{port}",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(folder),
+            "ROBOCOP_RVIZ": "false",
+        }
         self.environment.pop("ROS_IP", None)
         self.setting = b"ROS_HOME=" + os.fsencode(folder)
         self.log = folder / "output"
         with open(self.log, "wb") as output:
             self.process = subprocess.Popen(
                 ["rosrun", "aro_robocop_goto_as", "robocop_sim_with.py", str(package), "world:=empty", *arguments],
-                env=self.environment, stdout=output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+                env=self.environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+            )
 
     @property
     def output(self):
@@ -48,97 +58,135 @@ class Hosted:
         self.wait_until(lambda: name in self.call("rosnode", "list").stdout.split(), f"{name} runs")
 
     def call(self, *command, **environment):
-        return subprocess.run(command, env={**self.environment, **environment}, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, timeout=DEADLINE)
+        return subprocess.run(
+            command,
+            env={**self.environment, **environment},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=DEADLINE,
+        )
 
     def goto(self, *arguments):
         return self.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments)
 
     def end(self):
-        """Ctrl-C; what is left after it."""
+        """Interrupt it as by Ctrl-C; the processes that are left."""
         self.process.send_signal(signal.SIGINT)
         self.process.wait(DEADLINE)
         return processes_with(self.setting)
 
 
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Copies of packages by name; each is copied and so built from nothing only once."""
+    home = tmp_path_factory.mktemp("home")
+    return functools.lru_cache(maxsize=None)(lambda name: copy_of(name, home))
+
+
 @pytest.fixture
-def hosted(tmp_path):
+def hosted(tmp_path, package):
     started = []
 
     def start(name, *arguments):
-        package = copy_of(name, tmp_path / "home")
-        (tmp_path / "ros").mkdir()
-        before = contents(package)
-        started.append((Hosted(package, tmp_path / "ros", *arguments), package, before))
+        before = contents(package(name))
+        started.append((Hosted(package(name), tmp_path, *arguments), package(name), before))
         return started[-1][0]
 
     yield start
-    for it, package, before in started:
-        if it.process.poll() is None:
-            assert it.end() == []
-        for process in processes_with(it.setting):
+    for system, path, before in started:
+        if system.process.poll() is None:
+            assert system.end() == []
+        for process in processes_with(system.setting):
             os.kill(process, signal.SIGKILL)
-        assert contents(package) == before, "its author's files were touched"
+        assert contents(path) == before, "its author's files were changed"
 
 
-def test_a_package_in_the_labs_own_style_is_built_and_reaches_a_goal_with_gazebos_services_there(hosted):
-    it = hosted("as_taught")
-    it.wait_until(lambda: "state of the server" in it.output, "its bridge talks to its server")
-    done = it.goto("0.3", "0.3")
-    assert (done.returncode, "SUCCEEDED: there" in done.stdout) == (0, True), done.stdout + it.output
+def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gazebos_services(hosted):
+    system = hosted("as_taught")
+    system.wait_until(lambda: "state of the server" in system.output, "its bridge talks to its server")
+    done = system.goto("0.3", "0.3")
+    assert (done.returncode, "SUCCEEDED: there" in done.stdout) == (0, True), done.stdout + system.output
     types = Path(os.environ["ROBOCOP_STATE"], "compat", "devel", "lib", "python3", "dist-packages")
-    calls = it.call(sys.executable, str(HERE / "gazebo_calls.py"),
-                    PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}").stdout
-    said = json.loads(calls.splitlines()[-1])
-    assert said.pop("models") == ["ground_plane", "turtlebot3_burger"]
-    assert said.pop("unknown")[3].startswith("model [table] does not exist; there are: ground_plane, turtlebot3_burger")
-    positions = {name: said.pop(name)[:3] for name in ("position", "relative", "then", "reset_world",
-                                                       "reset_simulation")}
-    assert positions == {"position": [True, 0.5, -0.25], "relative": [True, 0.0, 0.0], "then": [True, 1.0, -0.25],
-                         "reset_world": [True, 0.0, 0.0], "reset_simulation": [True, 0.0, 0.0]}
-    assert said.pop("table")[:3] == [True, 2.0, 0.0] and said.pop("table moved")[:3] == [True, 1.0, 1.0]
-    assert said.pop("spawned nonsense") == "SpawnModel: "
-    assert said == {"spawned": True, "spawned twice": False, "deleted": True, "deleted a robot": False,
-                    "light": True, "set": True, "paused": True, "moved by itself": True, "unknown set": False,
-                    "time": True}
+    output = system.call(
+        sys.executable, str(HERE / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
+    ).stdout
+    answers = json.loads(output.splitlines()[-1])
+    assert answers.pop("models") == ["ground_plane", "turtlebot3_burger"]
+    assert answers.pop("unknown")[3].startswith(
+        "model [table] does not exist; there are: ground_plane, turtlebot3_burger"
+    )
+    positions = {
+        name: answers.pop(name)[:3] for name in ("position", "relative", "then", "reset_world", "reset_simulation")
+    }
+    assert positions == {
+        "position": [True, 0.5, -0.25],
+        "relative": [True, 0.0, 0.0],
+        "then": [True, 1.0, -0.25],
+        "reset_world": [True, 0.0, 0.0],
+        "reset_simulation": [True, 0.0, 0.0],
+    }
+    assert answers.pop("table")[:3] == [True, 2.0, 0.0] and answers.pop("table moved")[:3] == [True, 1.0, 1.0]
+    assert answers.pop("spawned nonsense") == "SpawnModel: "
+    assert answers == {
+        "spawned": True,
+        "spawned twice": False,
+        "deleted": True,
+        "deleted a robot": False,
+        "light": True,
+        "set": True,
+        "paused": True,
+        "moved by itself": True,
+        "unknown set": False,
+        "time": True,
+    }
 
 
-def test_scripts_without_launch_file_are_started_and_a_misspelt_action_is_told(hosted):
-    it = hosted("timer_driven")
-    it.wait_for_node("/aro_robocop_goto_as_node")
-    assert "src/robocop_goto_as.py is not executable" in it.output
-    done = it.goto("0.3", "0.0")
+@pytest.mark.slow
+def test_scripts_without_a_launch_file_are_started_and_a_misspelt_action_is_reported(hosted):
+    system = hosted("timer_driven")
+    system.wait_for_node("/aro_robocop_goto_as_node")
+    assert "src/robocop_goto_as.py is not executable" in system.output
+    done = system.goto("0.3", "0.0")
     assert done.returncode == 1
     assert "there is '/robovop_goto_as' of the same type: a misspelt name?" in done.stdout
-    # Its commands are published once each and have to hold.
-    published = it.call("rostopic", "pub", "-1", "/robovop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal",
-                        "{goal: {position: {x: -0.3, y: 0.2}}}")
+    # It publishes each command once, so commands have to stay in force.
+    published = system.call(
+        "rostopic",
+        "pub",
+        "-1",
+        "/robovop_goto_as/goal",
+        "aro_robocop_goto_as/GoToPositionActionGoal",
+        "{goal: {position: {x: -0.3, y: 0.2}}}",
+    )
     assert published.returncode == 0, published.stdout
-    answer = it.call("rostopic", "echo", "-n", "1", "/robovop_goto_as/result")
-    assert 'message: "reached"' in answer.stdout, answer.stdout + it.output
+    answer = system.call("rostopic", "echo", "-n", "1", "/robovop_goto_as/result")
+    assert 'message: "reached"' in answer.stdout, answer.stdout + system.output
 
 
-def test_a_launch_file_of_another_name_takes_its_argument_and_a_crash_on_the_second_goal_is_seen(hosted):
-    it = hosted("functions_only", "speed:=0.1")
-    it.wait_for_node("/aro_robocop_goto_as_node")
-    assert it.goto("0.3", "0.0").returncode == 0
-    speed = it.call("rosparam", "get", "/aro_robocop_goto_as_node/speed")
+@pytest.mark.slow
+def test_a_launch_file_of_another_name_gets_its_argument_and_a_crash_on_the_second_goal_is_reported(hosted):
+    system = hosted("functions_only", "speed:=0.1")
+    system.wait_for_node("/aro_robocop_goto_as_node")
+    assert system.goto("0.3", "0.0").returncode == 0
+    speed = system.call("rosparam", "get", "/aro_robocop_goto_as_node/speed")
     assert speed.stdout.strip() == "0.1"
-    second = it.goto("0.0", "0.0")
+    second = system.goto("0.0", "0.0")
     assert second.returncode == 1 and "ABORTED" in second.stdout
-    assert "RuntimeError: already" in it.output
+    assert "RuntimeError: already" in system.output
 
 
-def test_a_simulator_that_refuses_its_arguments_ends_it_with_status_1(hosted):
-    it = hosted("timer_driven", "scan_profile:=no_such")
-    assert it.process.wait(DEADLINE) == 1, it.output
-    assert "scan_profile" in it.output and processes_with(it.setting) == []
+@pytest.mark.slow
+def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
+    system = hosted("timer_driven", "scan_profile:=no_such")
+    assert system.process.wait(DEADLINE) == 1, system.output
+    assert "scan_profile" in system.output and processes_with(system.setting) == []
 
 
-def test_a_package_that_does_not_build_shows_why(hosted, tmp_path):
+def test_a_package_that_does_not_build_is_reported_with_the_log_of_the_build(hosted, tmp_path):
     package = copy_of("timer_driven", tmp_path)
     (package / "action" / "GoToPosition.action").write_text("geometry_msgs/Pint position\n---\n---\n")
     (tmp_path / "ros").mkdir()
-    it = Hosted(package, tmp_path / "ros")
-    assert it.process.wait(DEADLINE) == 1
-    assert "aro_robocop_goto_as can't be built:" in it.output and "Pint" in it.output
+    system = Hosted(package, tmp_path / "ros")
+    assert system.process.wait(DEADLINE) == 1
+    assert "aro_robocop_goto_as can't be built:" in system.output and "Pint" in system.output

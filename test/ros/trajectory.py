@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the true poses to a file, a line each, to the last bit. Usage: trajectory.py FILE"""
+"""Writes the true poses to a file, one a line, as exact hexadecimal floats. Usage: trajectory.py FILE"""
 
 import sys
 
 import rospy
-from harness import wait_for
+from harness import SIMULATOR, wait_for, wait_for_connection
 from nav_msgs.msg import Odometry
 
 
@@ -20,6 +20,7 @@ def main():
 
     topic = rospy.Subscriber("ground_truth_odom", Odometry, on_truth)
     wait_for(topic.get_num_connections, "the simulator")
+    wait_for_connection(SIMULATOR, topic.name)
     open(sys.argv[1], "w").close()
     rospy.spin()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A 2D Nav Goal on one robot's topic, in any robot's frame, moves that robot and no other."""
+"""A 2D Nav Goal on one robot's topic moves only that robot, even if it is in another robot's frame."""
 
 import unittest
 
@@ -9,7 +9,7 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
-NEAR = 0.12  # [m] the handout's tolerance with a little drift of odometry
+NEAR = 0.12  # [m] the handout's tolerance of 0.1 m, and the drift of odometry
 STILL = 0.005  # [m]
 
 
@@ -24,15 +24,15 @@ class TwoRobots(unittest.TestCase):
     def setUp(self):
         for robot, goals, clicks in zip(self.robots, self.goals, self.clicks):
             robot.reset()
-            goals.forget()
-            clicks.status.forget()
+            goals.clear()
+            clicks.status.clear()
 
     def tearDown(self):
         for goals in self.goals:
-            goals.check_ends()
+            goals.assert_each_ended_once()
 
-    def check_arrival(self, robot, target):
-        """A click is on its way to a robot: it gets there, and the other one neither gets a goal nor moves."""
+    def assert_only_it_arrives(self, robot, target):
+        """After a click for a robot, it reaches the target, and the other one neither gets a goal nor moves."""
         other = 1 - robot
         stood = self.robots[other].pose()
         goal = wait_for(self.goals[robot].of_others, f"a goal from the bridge of robot {robot}")[0]
@@ -42,9 +42,9 @@ class TwoRobots(unittest.TestCase):
         self.assertEqual(self.goals[other].sent.messages, [])
         self.assertEqual(self.robots[other].commands.messages, [])
 
-    def test_goal_in_map_makes_that_robot_and_only_that_one_arrive(self):
+    def test_goal_in_map_moves_only_the_robot_it_is_sent_to(self):
         self.clicks[1].click(-1.6, -0.4, "map")
-        self.check_arrival(1, Pose2D(-1.6, -0.4))
+        self.assert_only_it_arrives(1, Pose2D(-1.6, -0.4))
 
     def test_each_robot_serves_its_own_goal_at_the_same_time(self):
         targets = [Pose2D(-0.2, -0.4), Pose2D(-1.6, 0.4)]
@@ -54,30 +54,32 @@ class TwoRobots(unittest.TestCase):
             wait_for(goals.of_others, "a goal from the bridge")[0].result("REACHED")
             self.assertLess(distance(robot.wait_until_it_stands(), target), NEAR)
 
-    def test_goal_in_the_other_robots_frame_is_beside_that_robot(self):
+    def test_goal_in_the_frame_of_the_other_robot_is_relative_to_that_one(self):
         target = compose(self.robots[1].pose(), Pose2D(-0.1, 0.5))
         self.clicks[0].click(-0.1, 0.5, "robot_2/base_footprint")
-        self.check_arrival(0, target)
+        self.assert_only_it_arrives(0, target)
 
-    def test_goto_from_the_command_line_sends_the_robot_that_is_named(self):
+    def test_goto_command_moves_the_named_robot(self):
         with Process(script("robocop_goto.py"), "-1.6", "-0.4", "--frame", "map", "--robot", "robot_2") as command:
             self.assertEqual(command.wait_for_exit(), 0, command.output)
         self.assertLess(distance(self.robots[1].wait_until_it_stands(), Pose2D(-1.6, -0.4)), NEAR)
         with Process(script("robocop_goto.py"), "0.2", "0", "--frame", "base_footprint", "--robot=robot_1") as command:
             self.assertEqual(command.wait_for_exit(), 0, command.output)
 
-    def test_goto_without_a_robots_name_asks_for_one(self):
+    def test_goto_command_without_a_name_lists_the_robots(self):
         with Process(script("robocop_goto.py"), "0.5", "0") as command:
             self.assertEqual(command.wait_for_exit(), 1)
         both = "'/robot_1/robocop_goto_as' and '/robot_2/robocop_goto_as'"
         self.assertIn(f"{both} of the same type: which robot is meant?", command.output)
 
-    def test_simulator_shows_rviz_each_robot_with_its_name_in_its_frame(self):
+    def test_each_robot_has_a_name_marker_in_its_frame(self):
         shapes = Recorder(f"{SIMULATOR}/world", MarkerArray).newest().markers
-        self.assertEqual({m.text: m.header.frame_id for m in shapes if m.ns == "names"}, {
-            name: f"{name}/base_footprint" for name in ("robot_1", "robot_2")})
+        self.assertEqual(
+            {m.text: m.header.frame_id for m in shapes if m.ns == "names"},
+            {name: f"{name}/base_footprint" for name in ("robot_1", "robot_2")},
+        )
 
-    def test_frame_without_a_robots_name_is_refused(self):
+    def test_frame_without_a_robots_prefix_is_refused(self):
         self.clicks[0].click(0.5, 0.0, "odom")
         self.clicks[0].wait_for_status("goal refused: no transform from 'odom' to 'robot_1/odom'")
         self.assertEqual(self.goals[0].sent.messages, [])

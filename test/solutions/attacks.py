@@ -1,4 +1,4 @@
-"""What a submission may try against the grader: code for the node, which prints SUCCESS where it gets through."""
+"""Attacks of a submission on the grader: code for the node, which prints SUCCESS for each attack that works."""
 
 FORK_BOMB = """
 import os
@@ -97,10 +97,10 @@ MEMORY = """
 import os, time
 for _ in range(12):
     if os.fork() == 0:
-        taken = bytearray(400 * 2 ** 20)
+        memory = bytearray(400 * 2 ** 20)
         time.sleep(60.0)
         os._exit(0)
-os.wait()  # or the node would be done with its goals before all of it is taken
+os.wait()  # otherwise the node would finish its goals before all memory is allocated
 """
 BUILD = """
 import os, socket
@@ -123,7 +123,7 @@ except OSError as error:
 if 'SECRET_OF_THE_TEACHER' in os.environ:
     print('SUCCESS environment')
 """
-"""Code that a package's CMakeLists.txt, or its launch file, runs."""
+"""Code run by a package's CMakeLists.txt or its launch file."""
 BUILD_FULL = """
 for number in range(40):
     with open(f'big{number}', 'wb') as f:
@@ -134,11 +134,11 @@ time.sleep(30.0)
 """
 MEMFD = """
 import os, time
-held = []
+descriptors = []
 for _ in range(60):
-    held.append(os.memfd_create('hidden'))
+    descriptors.append(os.memfd_create('hidden'))
     for _ in range(60):
-        os.write(held[-1], bytes(2 ** 20))
+        os.write(descriptors[-1], bytes(2 ** 20))
 time.sleep(60.0)
 """
 FLOOD = """

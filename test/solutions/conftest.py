@@ -1,4 +1,4 @@
-"""What takes long, or more rights than some machines give, is asked for by --all."""
+"""Long tests, and tests that need more privileges than some machines grant, run only with --all."""
 
 
 def pytest_ignore_collect(collection_path, config):

@@ -1,4 +1,4 @@
-"""Solutions kept as text, graded as a student's file would be."""
+"""Grades the solutions in this folder like a student's file."""
 
 import multiprocessing
 import os
@@ -6,78 +6,77 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Dict, Optional, Sequence
+from typing import Dict, Sequence
 
 from wrong_solutions import WRONG, Wrong
 
-from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading import judge, runner
 from aro_robocop_goto_as.grading.judge import Grade
 from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.sandbox import Cage, cage
-from aro_robocop_goto_as.grading.submission import take
+from aro_robocop_goto_as.grading.sandbox import Sandbox, open_sandbox
+from aro_robocop_goto_as.grading.submission import prepare_submission
 
 HERE = Path(__file__).resolve().parent
 STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
 PLAN = SHARE / "config" / "grading.yaml"
-RIGHT: Dict[str, Path] = {path.name[:-len(".py.in")]: path
-                          for path in sorted([*HERE.glob("base_*.py.in"), *(HERE / "right").glob("*.py.in")])}
+RIGHT: Dict[str, Path] = {
+    path.name[: -len(".py.in")]: path
+    for path in sorted([*HERE.glob("base_*.py.in"), *(HERE / "right").glob("*.py.in")])
+}
 
 
-def _can_be_caged() -> bool:
-    try:
-        return cage(False) is not None
-    except GradingError:
-        return False
-
-
-CAGED = _can_be_caged()  # these solutions are ours: where bubblewrap can't run they are judged without it
-SWITCHES = [] if CAGED else ["--unsafe"]
-
-
-def the_cage() -> Optional[Cage]:
-    """What these solutions run in here."""
-    return cage(not CAGED, [STATE / "venv", STATE / "compat"])
+def sandbox() -> Sandbox:
+    """The sandbox that solutions run in; GradingError says why this machine can't have one."""
+    opened = open_sandbox(False, [STATE / "venv", STATE / "compat"])
+    assert opened is not None
+    return opened
 
 
 def recorded(text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET) -> runner.Recorded:
-    """A solution driven through the scenarios of its part, or some of them, in the cage."""
+    """A solution driven through the scenarios of its part, or some of them, in the sandbox."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
-    around = the_cage()
-    submission = take(str(folder / "solution.py"), SHARE, STATE, folder, around)
-    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE, around, only, budget=budget)
+    opened = sandbox()
+    submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
+    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE, opened, only, budget=budget)
 
 
 def graded(name: str, text: str, folder: Path) -> Grade:
-    """A solution's grade."""
-    it = recorded(text, folder)
-    part = "bridge" if "no_server" in it.records else "server"
-    return judge.judge(name, load(PLAN), {part: it.records}, {part: it.problem})
+    """The grade of a solution."""
+    run = recorded(text, folder)
+    part = "bridge" if "no_server" in run.records else "server"
+    return judge.judge(name, load(PLAN), {part: run.records}, {part: run.problem})
 
 
 def row(wrong: Wrong) -> str:
-    """A wrong solution against all checks: a row for docs/grading.md."""
+    """Grade a wrong solution by all checks; a row of the table in docs/grading.md."""
     started = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         grade = graded(wrong.name, wrong.text(), Path(folder))
     seconds = time.monotonic() - started
-    line = {line.name: line for line in grade.lines}[wrong.check]
-    found, said = line.failure is not None, wrong.words in line.words()
+    check = {check.name: check for check in grade.checks}[wrong.check]
     others = ", ".join(name for name in grade.failed() if name != wrong.check)
-    cells = (wrong.name, wrong.check if found else "NO", "yes" if said else "NO", others, f"{grade.points:g}",
-             f"{seconds:.0f}")
+    cells = (
+        wrong.name,
+        wrong.check if check.failure is not None else "NO",
+        "yes" if wrong.words in check.explanation() else "NO",
+        others,
+        f"{grade.points:g}",
+        f"{seconds:.0f}",
+    )
     return f"| {' | '.join(cells)} |"
 
 
 def main() -> None:
-    """Print the rows of wrong solutions, two at a time; arguments: names, all of them without."""
-    print("| mistake | found by the check meant for it | with the right words | failed besides | points | seconds |\n"
-          "| --- | --- | --- | --- | --- | --- |")
+    """Print the table of wrong solutions, two graded at a time; arguments: names (default: all)."""
+    print(
+        "| mistake | failed the intended check | expected words | also failed | points | seconds |\n"
+        "| --- | --- | --- | --- | --- | --- |"
+    )
     chosen = [wrong for wrong in WRONG if len(sys.argv) == 1 or wrong.name in sys.argv[1:]]
     with multiprocessing.get_context("spawn").Pool(2, maxtasksperchild=1) as pool:
-        for words in pool.imap(row, chosen):
-            print(words, flush=True)
+        for line in pool.imap(row, chosen):
+            print(line, flush=True)
 
 
 if __name__ == "__main__":

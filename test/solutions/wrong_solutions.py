@@ -1,7 +1,4 @@
-"""Wrong solutions: the base with one mistake each, the checks that may be the first to say so, and words of the cause.
-
-`check` is the one that is meant for the mistake; it has to fail, with `words` in its explanation.
-"""
+"""Wrong solutions: the base with one mistake each, the check that has to fail, and words of its explanation."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +10,7 @@ SERVER, BRIDGE = "base_server.py.in", "base_bridge.py.in"
 
 @dataclass(frozen=True)
 class Wrong:
-    """One mistake."""
+    """A solution with one mistake; `check` has to fail with `words` in its explanation."""
 
     name: str
     check: str
@@ -22,7 +19,7 @@ class Wrong:
     base: str = SERVER
 
     def text(self) -> str:
-        """The solution with the mistake in it."""
+        """The source with the mistake in it."""
         text = (HERE / self.base).read_text()
         for old, new in self.changes:
             assert text.count(old) >= 1, f"{self.name}: {old!r} is not in {self.base}"
@@ -66,12 +63,17 @@ WRONG = (
         ("import GoToPositionAction,", "import GoToPositionAction as _,"),
         ("import rospy\n", "import rospy\nfrom actionlib.msg import TestAction as GoToPositionAction\n"),
     ),
-    _server("crashes_at_start", "action_server", "ends at its start", ("self.count = 0", "self.count = undefined")),
+    _server("crashes_at_start", "action_server", "ended while starting", ("self.count = 0", "self.count = undefined")),
     _server("not_wrapped", "feedback_angle", "not wrapped", (ERROR, "angle_error = math.atan2(dy, dx) - yaw")),
     _server(
         "degrees", "feedback_angle", "degrees", (ERROR, "angle_error = math.degrees(wrap(math.atan2(dy, dx) - yaw))")
     ),
-    _server("angle_sign", "feedback_angle", "sign", (ERROR, "angle_error = wrap(yaw - math.atan2(dy, dx))")),
+    _server(
+        "angle_sign",
+        "feedback_angle",
+        "sign of angle_error is wrong",
+        (ERROR, "angle_error = wrap(yaw - math.atan2(dy, dx))"),
+    ),
     _server("no_heading", "feedback_angle", "heading is left out", (ERROR, "angle_error = math.atan2(dy, dx)")),
     _server(
         "heading_added",
@@ -82,9 +84,19 @@ WRONG = (
     _server(
         "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
     ),
-    _server("atan", "feedback_angle", "atan instead of atan2", (ERROR, "angle_error = wrap(math.atan(dy / dx) - yaw)")),
+    _server(
+        "atan",
+        "feedback_angle",
+        "atan is used instead of atan2",
+        (ERROR, "angle_error = wrap(math.atan(dy / dx) - yaw)"),
+    ),
     _server("quaternion_z", "feedback_angle", "orientation.z", (YAW, "yaw = q.z")),
-    _server("unsigned_angle", "feedback_angle", "sign", (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))")),
+    _server(
+        "unsigned_angle",
+        "feedback_angle",
+        "sign of angle_error is wrong",
+        (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))"),
+    ),
     _server("ground_truth", "feedback_position", "/ground_truth_odom", ("'/odom'", "'/ground_truth_odom'")),
     _server(
         "distance_from_origin",
@@ -94,8 +106,8 @@ WRONG = (
         ("dy = goal.position.y - y", "dy = goal.position.y"),
     ),
     _server("squared_distance", "feedback_position", "squared", ("math.hypot(dx, dy)", "dx * dx + dy * dy")),
-    _server("only_x", "feedback_position", "only x", ("math.hypot(dx, dy)", "abs(dx)")),
-    _server("no_feedback", "feedback_rate", "no feedback", (PUBLISH, "")),
+    _server("only_x", "feedback_position", "depends on x only", ("math.hypot(dx, dy)", "abs(dx)")),
+    _server("no_feedback", "feedback_rate", "No feedback", (PUBLISH, "")),
     _server(
         "feedback_once_a_second",
         "feedback_rate",
@@ -116,7 +128,7 @@ WRONG = (
     _server(
         "scan_read_once",
         "stops_at_obstacle",
-        "looked at in each iteration",
+        "checked in each iteration",
         ("self.min_dist_ahead < 0.3", "ahead < 0.3"),
         ("        rate = rospy.Rate(10)\n", "        rate = rospy.Rate(10)\n        ahead = self.min_dist_ahead\n"),
     ),
@@ -124,7 +136,7 @@ WRONG = (
     _server(
         "constant_feedback",
         "feedback_position",
-        "not calculated anew",
+        "recalculate it in each iteration",
         ("feedback.position_error = position_error", "feedback.position_error = 1.0"),
     ),
     _server(
@@ -154,7 +166,7 @@ WRONG = (
     ),
     _server("right_side_forgotten", "turns_to_goal", "never turned", (CONDITION, "if angle_error > 0.1:")),
     _server("drives_backward", "drives_straight", "backward", ("self.drive(0.2, 0.0)", "self.drive(-0.2, 0.0)")),
-    _server("drives_bends", "drives_straight", "goes on turning", ("self.drive(0.2, 0.0)", "self.drive(0.2, 0.5)")),
+    _server("drives_bends", "drives_straight", "keeps turning", ("self.drive(0.2, 0.0)", "self.drive(0.2, 0.5)")),
     _server("never_drives", "drives_straight", "stayed 0", ("self.drive(0.2, 0.0)", "self.drive(0.0, 0.0)")),
     _server(
         "reached_at_half_a_metre", "reaches_goal", "threshold", ("if position_error < 0.1:", "if position_error < 0.5:")
@@ -173,18 +185,18 @@ WRONG = (
         "set_aborted is called",
         ("self.server.set_succeeded(result)", "self.server.set_aborted(result)"),
     ),
-    _server("success_flag_forgotten", "success_result", "does not fit", ("result.success = success", "pass")),
+    _server("success_flag_forgotten", "success_result", "contradicts", ("result.success = success", "pass")),
     _server(
         "result_not_sent",
         "failure_result",
-        "no result",
+        "No result",
         ("set_succeeded(result)", "set_succeeded()"),
         ("set_aborted(result)", "set_aborted()"),
     ),
     _server(
         "moves_first",
         "already_there",
-        "look at it before moving",
+        "check it before moving",
         (
             "        rate = rospy.Rate(10)\n",
             "        rate = rospy.Rate(10)\n        self.drive(0.2, 0.0)\n        rospy.sleep(1.0)\n",
@@ -226,7 +238,7 @@ WRONG = (
     _server(
         "aborts_on_cancel",
         "cancel",
-        "needs set_preempted",
+        "Call set_preempted",
         (
             "self.server.set_preempted(GoToPositionResult(False, 'preempted'))",
             "self.server.set_aborted(GoToPositionResult(False, 'preempted'))",
@@ -250,19 +262,19 @@ WRONG = (
     _server(
         "no_terminal_state",
         "one_ending",
-        "returned without",
+        "returned without calling",
         ("            self.server.set_aborted(result)\n", "            pass\n"),
     ),
     _server(
         "never_stops",
         "stands_at_end",
-        "kept driving",
+        "kept moving",
         ("    def stop(self):\n        self.drive(0.0, 0.0)", "    def stop(self):\n        pass"),
     ),
     _server(
         "goes_on_after_cancel",
         "stands_at_end",
-        "kept driving",
+        "kept moving",
         (
             "                self.stop()\n                self.server.set_preempted",
             "                self.server.set_preempted",
@@ -280,7 +292,7 @@ WRONG = (
     _server(
         "done_never_cleared",
         "next_goal",
-        "second goal",
+        "The second goal",
         ("        success = False\n        while", "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
@@ -317,10 +329,10 @@ WRONG = (
         ("SimpleActionClient('robocop_goto_as'", "SimpleActionClient('robocop_goto'"),
     ),
     _bridge(
-        "bridge_other_topic", "forwards_goal", "nothing listens", ("'/move_base_simple/goal'", "'/move_base/goal'")
+        "bridge_other_topic", "forwards_goal", "does not subscribe", ("'/move_base_simple/goal'", "'/move_base/goal'")
     ),
     _bridge("bridge_empty_goal", "forwards_goal", "goal.position", ("goal.position = pose.pose.position", "pass")),
-    _bridge("bridge_never_sends", "forwards_goal", "nothing was sent", ("self.client.send_goal(goal)", "pass")),
+    _bridge("bridge_never_sends", "forwards_goal", "No goal was sent", ("self.client.send_goal(goal)", "pass")),
     _bridge(
         "bridge_no_timer",
         "reports_status",
@@ -330,17 +342,19 @@ WRONG = (
     _bridge(
         "bridge_reports_once",
         "reports_status",
-        "again and again",
+        "report repeatedly",
         ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
     ),
     _bridge(
         "bridge_publishes_figures",
         "reports_status",
         "rospy.Timer",
-        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n",
-         "        from nav_msgs.msg import Odometry\n        from std_msgs.msg import Float32\n"
-         "        self.pub = rospy.Publisher('x', Float32, queue_size=1)\n"
-         "        rospy.Subscriber('/odom', Odometry, lambda msg: self.pub.publish(msg.pose.pose.position.x))\n"),
+        (
+            "        rospy.Timer(rospy.Duration(2), self.report_cb)\n",
+            "        from nav_msgs.msg import Odometry\n        from std_msgs.msg import Float32\n"
+            "        self.pub = rospy.Publisher('x', Float32, queue_size=1)\n"
+            "        rospy.Subscriber('/odom', Odometry, lambda msg: self.pub.publish(msg.pose.pose.position.x))\n",
+        ),
     ),
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
     _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
@@ -357,7 +371,7 @@ WRONG = (
     _bridge(
         "bridge_gives_up",
         "waits_for_server",
-        "giving up",
+        "without a timeout",
         ("self.client.wait_for_server()", "self.up = self.client.wait_for_server(rospy.Duration(1))"),
         ("        self.client.send_goal(goal)\n", "        if self.up:\n            self.client.send_goal(goal)\n"),
     ),

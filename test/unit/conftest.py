@@ -1,4 +1,4 @@
-"""Fixtures of the unit tests. What tests import is in support.py: pytest may take another folder's conftest for it."""
+"""Fixtures of the unit tests. Shared functions are in support.py: `import conftest` may find another folder's file."""
 
 from support import burger, simulator
 

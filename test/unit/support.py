@@ -1,22 +1,22 @@
 """Shared by the unit tests: the package's folders, a ready simulator, an analytic ray cast."""
 
+import math
 import os
 from typing import Callable, Iterator, List
 
 import numpy as np
+import pybullet
 import pytest
-from hypothesis import settings
 
-from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.models import load_model
+from aro_robocop_goto_as.geometry import Pose2D, Vector3
 from aro_robocop_goto_as.params import SimParams
-from aro_robocop_goto_as.robot import RobotModel
-from aro_robocop_goto_as.simulator import RobotSpec, Simulator
-from aro_robocop_goto_as.world import Box, Cylinder, World, find_world, load_world
-
-# Always the same examples, and no limit on their time: a busy machine must not make a test fail.
-settings.register_profile("robocop", derandomize=True, deadline=None)
-settings.load_profile("robocop")
+from aro_robocop_goto_as.physics.bullet import WORLD_GROUP, BulletEngine
+from aro_robocop_goto_as.robot.catalog import load_model
+from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.simulator import Simulator
+from aro_robocop_goto_as.world.load import find_world, load_world
+from aro_robocop_goto_as.world.model import Box, Cylinder, World
 
 ORIGIN = Pose2D()
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -37,13 +37,13 @@ def world_named(name: str) -> World:
 
 @pytest.fixture
 def simulator() -> Iterator[Callable[..., Simulator]]:
-    """Makes simulators, and closes them when the test is over."""
+    """Creates simulators, and closes them at the end of the test."""
     made: List[Simulator] = []
 
     def make(world: str = "empty", *spawns: Pose2D, **params: object) -> Simulator:
         p = SimParams(**params)  # type: ignore[arg-type]
         robots = [RobotSpec(f"robot_{i}", model_named(p.model), spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
-        made.append(Simulator(p, world_named(world), robots))
+        made.append(make_simulator(p, world_named(world), robots))
         return made[-1]
 
     yield make
@@ -54,7 +54,7 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
 def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:
     """Exact distances (n,) [m] from a point along world angles (n,) [rad] to upright boxes and cylinders.
 
-    Plane geometry only, nothing of it shared with the simulator: slabs for boxes, a quadratic for cylinders.
+    Shares no code with the simulator: slabs for boxes, a quadratic equation for cylinders.
     """
     best = np.full(len(angles), np.inf)
     for obstacle in world.obstacles:
@@ -86,3 +86,17 @@ def _circle(ox: float, oy: float, dx: np.ndarray, dy: np.ndarray, radius: float)
     root = b * b - c
     near = -b - np.sqrt(np.maximum(root, 0.0))
     return np.where((root >= 0.0) & (near > 0.0), near, np.inf)
+
+
+def lean(sim: Simulator, robot: int = 0) -> float:
+    """Angle [rad] between a robot's mast and the vertical."""
+    x, y, _, _ = sim.engine.body(robot).world_from_base.orientation
+    return 2.0 * math.asin(min(1.0, math.hypot(x, y)))
+
+
+def bullet_rays(engine: BulletEngine, start: Vector3, ends: np.ndarray) -> np.ndarray:
+    """Hit fractions (n,) of Bullet's rays from `start` [m] to `ends` (n, 3) [m]; 1.0 = no hit."""
+    hits = pybullet.rayTestBatch(
+        [start] * len(ends), ends.tolist(), collisionFilterMask=WORLD_GROUP, physicsClientId=engine.client
+    )
+    return np.array([hit[2] for hit in hits])

@@ -1,4 +1,4 @@
-"""Cameras: what they see agrees with the geometry of the world, and costs nothing where nobody looks."""
+"""Camera images agree with the geometry of the world."""
 
 import math
 from typing import Any, Callable, Dict
@@ -9,15 +9,16 @@ from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, depth_of, points_of, projection
-from aro_robocop_goto_as.shapes import Box
-from aro_robocop_goto_as.simulator import RobotSpec, Simulator
-from aro_robocop_goto_as.world import Obstacle, World
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.simulator import Simulator, everything
+from aro_robocop_goto_as.world.model import Box, Obstacle, World
 
 Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60}
 WITH_CAMERA = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
-TOLERANCE = 0.003  # [m] of depth on flat walls; a cylinder's rim is seen at a slant, and off by more
+TOLERANCE = 0.003  # [m] of depth on flat walls; larger at a cylinder's edge, which is seen at a slant
 
 
 def _image(sim: Simulator, robot: int = 0) -> CameraImage:
@@ -34,19 +35,21 @@ def _world_from_camera(model: str, pose: Pose2D) -> Pose3D:
 
 
 def _points(image: CameraImage, world_from_camera: Pose3D, spec: CameraSpec) -> np.ndarray:
-    """Where in the world (height, width, 3) [m] an image's points are."""
+    """An image's points in the world frame: (height, width, 3) [m]."""
     points = points_of(image.depth, spec).astype(float)
     return points @ rotation_matrix(world_from_camera.orientation).T + np.array(world_from_camera.position)
 
 
 @pytest.mark.parametrize("model", WITH_CAMERA)
-@pytest.mark.parametrize("world, pose", [
-    ("stage_1", Pose2D(0.0, 0.0, 0.4)), ("maze_1", Pose2D(0.0, 0.0, 0.1)), ("stage_4", Pose2D(-0.7, 0.0, 2.0))])
+@pytest.mark.parametrize(
+    "world, pose",
+    [("stage_1", Pose2D(0.0, 0.0, 0.4)), ("maze_1", Pose2D(0.0, 0.0, 0.1)), ("stage_4", Pose2D(-0.7, 0.0, 2.0))],
+)
 def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, world: str, pose: Pose2D) -> None:
     description = world_named(world)
     walls = World(world, tuple(it for it in description.obstacles if isinstance(it.geometry, Box)), pose, (), "")
     sim = simulator(world, pose, model=model, **KINEMATIC)
-    camera, spec = _world_from_camera(model, pose), sim.params.camera()
+    camera, spec = _world_from_camera(model, pose), sim.config.camera
     points = _points(_image(sim), camera, spec)
     x, y, _ = camera.position
     away = np.hypot(points[..., 0] - x, points[..., 1] - y)
@@ -57,14 +60,14 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
         expected = analytic_distances(walls, x, y, bearings[row][on_wall], 20.0)
         off = np.abs(away[row][on_wall] - expected)
         compared += int((off < TOLERANCE).sum())
-        if world != "stage_4":  # where cylinders stand before the walls
+        if world != "stage_4":  # where cylinders occlude walls
             assert off.max(initial=0.0) < TOLERANCE
     assert compared > 150
 
 
-def test_cylinders_are_as_round_as_they_should_be(simulator: Make) -> None:
+def test_cylinders_are_seen_with_their_radius(simulator: Make) -> None:
     sim = simulator("stage_2", Pose2D(0.0, 0.0, math.pi / 4.0), model="burger_rgbd", **KINEMATIC)
-    camera, spec = _world_from_camera("burger_rgbd", Pose2D(0.0, 0.0, math.pi / 4.0)), sim.params.camera()
+    camera, spec = _world_from_camera("burger_rgbd", Pose2D(0.0, 0.0, math.pi / 4.0)), sim.config.camera
     points = _points(_image(sim), camera, spec)[60]
     radii = np.hypot(points[:, 0] - 0.6, points[:, 1] - 0.6)
     on_it = radii < 0.2
@@ -72,9 +75,9 @@ def test_cylinders_are_as_round_as_they_should_be(simulator: Make) -> None:
     assert np.abs(radii[on_it] - 0.15).max() < 0.001
 
 
-def test_the_floor_is_at_height_zero_and_the_sky_infinitely_far(simulator: Make) -> None:
+def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
     sim = simulator("empty", model="waffle", **KINEMATIC)
-    image, spec = _image(sim), sim.params.camera()
+    image, spec = _image(sim), sim.config.camera
     points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
     assert np.abs(points[70:, :, 2]).max() < 0.001
     assert np.isinf(image.depth[:58]).all()
@@ -82,29 +85,34 @@ def test_the_floor_is_at_height_zero_and_the_sky_infinitely_far(simulator: Make)
 
 
 def _see_a_box(simulator: Make, model: str, place: Vector3) -> "tuple[float, float]":
-    """Middle column and row of a small box that stands at a place in base_footprint, as the camera sees it."""
+    """Mean column and row of a small box at a position in base_footprint in the camera's image."""
     world = World("box", (Obstacle("box", Pose3D(place), Box((0.05, 0.05, 0.05))),), Pose2D(), (), "")
-    sim = Simulator(SimParams(model=model, **KINEMATIC), world, [  # type: ignore[arg-type]
-        RobotSpec("", model_named(model), Pose2D())])
-    points = _points(_image(sim), _world_from_camera(model, Pose2D()), sim.params.camera())
+    sim = make_simulator(
+        SimParams(model=model, **KINEMATIC),
+        world,
+        [  # type: ignore[arg-type]
+            RobotSpec("", model_named(model), Pose2D())
+        ],
+    )
+    points = _points(_image(sim), _world_from_camera(model, Pose2D()), sim.config.camera)
     sim.close()
     on_it = (np.abs(points - place) < 0.026).all(axis=-1)
     rows, columns = np.nonzero(on_it)
     return float(columns.mean()), float(rows.mean())
 
 
-def test_what_is_to_the_left_and_above_is_to_the_left_and_above_in_the_image(simulator: Make) -> None:
+def test_image_is_neither_mirrored_nor_upside_down(simulator: Make) -> None:
     column, row = _see_a_box(simulator, "burger_rgbd", (1.5, 0.3, 0.4))
     assert column < 70 and row < 50
     column, row = _see_a_box(simulator, "burger_rgbd", (1.5, -0.3, 0.05))
     assert column > 90 and row > 62
 
 
-def test_a_robot_sees_the_others_and_not_itself(simulator: Make) -> None:
-    alone = _image(simulator("empty", model="burger_rgbd"))
+def test_camera_sees_other_robots_but_not_its_own(simulator: Make) -> None:
+    without_others = _image(simulator("empty", model="burger_rgbd"))
     sim = simulator("empty", Pose2D(), Pose2D(1.0, 0.0), model="burger_rgbd")
     image = _image(sim)
-    assert np.isinf(alone.depth[57]).all()
+    assert np.isinf(without_others.depth[57]).all()
     assert image.depth[57].min() == pytest.approx(1.0 - 0.045 - 0.032 - 0.069, abs=0.05)
     assert np.isinf(image.depth[57, [0, -1]]).all()
     between_plates = _image(simulator("empty", model="turtlebot2"))
@@ -112,13 +120,13 @@ def test_a_robot_sees_the_others_and_not_itself(simulator: Make) -> None:
 
 
 @pytest.mark.parametrize("params", [{}, KINEMATIC])
-def test_images_are_the_same_in_each_run(simulator: Make, params: Dict[str, Any]) -> None:
+def test_images_are_reproducible(simulator: Make, params: Dict[str, Any]) -> None:
     one, other = (_image(simulator("stage_4", Pose2D(-0.7, 0.0), model="turtlebot2", **params)) for _ in range(2))
     assert (one.rgb == other.rgb).all() and (one.depth == other.depth).all()
     assert one.rgb.std() > 10.0
 
 
-def test_what_moves_and_what_changes_is_seen_where_it_is(simulator: Make) -> None:
+def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> None:
     sim = simulator("stage_3", Pose2D(0.0, 0.0, 0.0), model="burger_rgbd", moving=True, **KINEMATIC)
     first = _image(sim)
     for _ in range(5 * 60):
@@ -131,23 +139,25 @@ def test_what_moves_and_what_changes_is_seen_where_it_is(simulator: Make) -> Non
 
 def test_a_robot_without_a_camera_sends_no_images(simulator: Make) -> None:
     sim = simulator("stage_1")
-    assert all(not seen.images for seen in (sim.step(sim.everything()) for _ in range(240)) if seen is not None)
+    assert all(
+        not seen.images for seen in (sim.step(everything(len(sim.robots))) for _ in range(240)) if seen is not None
+    )
 
 
-def test_a_camera_has_ten_images_a_second_or_none(simulator: Make) -> None:
+def test_camera_rate_is_the_number_of_images_per_second_and_zero_disables_them(simulator: Make) -> None:
     for rate in (10, 0):
         sim = simulator("stage_1", model="waffle", camera_rate=rate, camera_width=8, camera_height=6, **KINEMATIC)
         seen = [it for it in (sim.step({"camera": [0]}) for _ in range(60)) if it is not None]
         assert sum(bool(it.images) for it in seen) == rate
 
 
-def test_pixels_centres_lie_on_the_rays_that_calibration_says() -> None:
+def test_pixel_centres_lie_on_the_rays_of_the_calibration() -> None:
     spec = CameraSpec(4, 2, math.pi / 2.0, 0.5, 8.0)
     assert (spec.focal, spec.centre_x, spec.centre_y) == (pytest.approx(2.0), 1.5, 0.5)
     points = points_of(np.full((2, 4), 2.0, np.float32), spec)
     assert points[0, 0] == pytest.approx([-1.5, -0.5, 2.0])
     assert points[1, 3] == pytest.approx([1.5, 0.5, 2.0])
-    # The projection takes what lies ahead at the nearest and the farthest depth to both ends of the depth buffer.
+    # The projection maps the nearest and farthest depth to the two ends of the depth buffer.
     matrix = np.array(projection(spec)).reshape(4, 4).T
     for depth, end in ((0.5, 0.0), (8.0, 1.0)):
         clip = matrix @ [0.0, 0.0, -depth, 1.0]

@@ -1,4 +1,4 @@
-"""What a class hands in is packed and told apart; what comes of it is kept whole, listed and counted."""
+"""Hand-ins of a class are collected and packed; their results are stored, listed and summarized."""
 
 import csv
 import io
@@ -22,12 +22,12 @@ PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
 
 @pytest.fixture
 def folder(tmp_path):
-    """Anna handed in a folder, Ben a file; there is also what is neither."""
+    """Anna handed in a folder, Ben a file; the other entries are not hand-ins."""
     top = tmp_path / "class"
     (top / "anna" / "scripts").mkdir(parents=True)
     (top / "anna" / "scripts" / "robocop_goto_as.py").write_text("one")
     (top / "anna" / "build").mkdir()
-    (top / "anna" / "build" / "big").write_text("made, not written")
+    (top / "anna" / "build" / "big").write_text("a build product")
     (top / "ben.py").write_text("two")
     (top / "list.csv").write_text("anna,ben")
     (top / ".hidden.py").write_text("")
@@ -36,26 +36,26 @@ def folder(tmp_path):
 
 
 def only(folder):
-    """The hand-in of a folder that has one."""
-    (found,), _ = collect(folder)
-    return found
+    """The only hand-in of a folder."""
+    (hand_in,), _ = collect(folder)
+    return hand_in
 
 
-def test_folders_and_python_files_are_hand_ins_and_come_out_as_they_went_in(folder, tmp_path):
-    found, others = collect(folder)
-    assert [it.name for it in found] == ["anna", "ben.py"]
+def test_folders_and_python_files_are_hand_ins_and_are_unpacked_unchanged(folder, tmp_path):
+    hand_ins, others = collect(folder)
+    assert [hand_in.name for hand_in in hand_ins] == ["anna", "ben.py"]
     assert others == ["link.py", "list.csv"]
-    assert [it.problem for it in found] == ["", ""]
-    anna, ben = (unpack(it, tmp_path / "out") for it in found)
+    assert [hand_in.problem for hand_in in hand_ins] == ["", ""]
+    anna, ben = (unpack(hand_in, tmp_path / "out") for hand_in in hand_ins)
     assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
     assert not (anna / "build").exists()
     assert ben.read_text() == "two"
 
 
-def test_the_digest_is_the_contents_and_not_the_times(folder):
+def test_digest_depends_on_contents_but_not_on_times(folder):
     before, _ = collect(folder)
     os.utime(folder / "ben.py", (0, 0))
-    assert [it.digest for it in collect(folder)[0]] == [it.digest for it in before]
+    assert [hand_in.digest for hand_in in collect(folder)[0]] == [hand_in.digest for hand_in in before]
     (folder / "anna" / "scripts" / "robocop_goto_as.py").write_text("One")
     after, _ = collect(folder)
     assert after[0].digest != before[0].digest and after[1].digest == before[1].digest
@@ -70,7 +70,7 @@ def test_a_link_is_packed_as_a_link(tmp_path):
     assert b"points" not in only(tmp_path / "class").packed
 
 
-def test_a_zip_counts_as_the_folder_that_is_in_it(tmp_path):
+def test_zip_counts_as_the_folder_that_it_contains(tmp_path):
     (tmp_path / "class" / "eve").mkdir(parents=True)
     (tmp_path / "class" / "eve" / "run.sh").write_text("one")
     (tmp_path / "class" / "eve" / "run.sh").chmod(0o755)
@@ -85,49 +85,57 @@ def test_a_zip_counts_as_the_folder_that_is_in_it(tmp_path):
         assert script.read_text() == "one" and os.access(script, os.X_OK)
 
 
-@pytest.mark.parametrize("name, megabytes, problem", [
-    ("../../evil.py", 0, "../../evil.py: expected a path within the zip"),
-    ("/etc/evil.py", 0, "/etc/evil.py: expected a path within the zip"),
-    ("bomb.py", 65, "larger than 64 MB"),
-    ("", 0, "can't be read: File is not a zip file"),
-])
-def test_a_zip_that_is_up_to_something_is_refused(name, megabytes, problem, tmp_path):
+@pytest.mark.parametrize(
+    "name, megabytes, problem",
+    [
+        ("../../evil.py", 0, "../../evil.py: expected a path within the zip"),
+        ("/etc/evil.py", 0, "/etc/evil.py: expected a path within the zip"),
+        ("bomb.py", 65, "larger than 64 MB"),
+        ("", 0, "can't be read: File is not a zip file"),
+    ],
+)
+def test_malicious_or_broken_zip_is_refused(name, megabytes, problem, tmp_path):
     with open(tmp_path / "eve.zip", "wb") as file:
         if not name:
             file.write(b"PK no zip at all")
         else:
             with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-                archive.writestr(name, bytes(megabytes * 1024 ** 2))
+                archive.writestr(name, bytes(megabytes * 1024**2))
     assert only(tmp_path).problem == problem
 
 
-def test_what_can_not_be_packed_says_why(tmp_path):
+def test_hand_in_that_cannot_be_packed_states_the_reason(tmp_path):
     (tmp_path / "pipes" / "eve").mkdir(parents=True)
     os.mkfifo(tmp_path / "pipes" / "eve" / "pipe")
-    assert only(tmp_path / "pipes").problem == "pipe: neither a file nor a folder nor a link"
+    assert only(tmp_path / "pipes").problem == "pipe: expected a file, folder or link"
     (tmp_path / "large" / "eve").mkdir(parents=True)
     with open(tmp_path / "large" / "eve" / "hole", "wb") as hole:
-        hole.truncate(10 ** 12)
+        hole.truncate(10**12)
     assert only(tmp_path / "large").problem == "larger than 64 MB"
 
 
 def test_a_folder_without_hand_ins_is_refused(tmp_path):
-    with pytest.raises(GradingError, match="nothing handed in"):
+    with pytest.raises(GradingError, match="no hand-ins"):
         collect(tmp_path)
     with pytest.raises(GradingError, match="expected a folder with one folder, zip or Python file"):
         collect(tmp_path / "nothing")
 
 
 def report(name, points, cause=""):
-    """A worker's answer with one check in it."""
+    """A worker's result with one check."""
     failure = {"cause": cause} if cause else None
-    check = {"name": "cancel", "part": "server", "outcome": "failed" if cause else "passed", "points": points,
-             "failure": failure}
+    check = {
+        "name": "cancel",
+        "part": "server",
+        "outcome": "failed" if cause else "passed",
+        "points": points,
+        "failure": failure,
+    }
     raw = json.dumps({"name": name, "checks": [check], "problems": []}).encode()
     return Done(name, f"digest of {name}", {"report.json": raw, "report.html": b"<html>"}, 3.0, "here")
 
 
-def test_what_is_kept_is_there_unless_hand_in_or_plan_have_changed(tmp_path):
+def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
     results = Results(tmp_path, {"plan": "1"})
     hand_in = HandIn("anna", digest="digest of anna")
     assert not results.has(hand_in)
@@ -140,7 +148,7 @@ def test_what_is_kept_is_there_unless_hand_in_or_plan_have_changed(tmp_path):
     assert results.read("anna").points == 0.1
 
 
-def test_half_a_result_is_none(tmp_path):
+def test_incomplete_result_is_ignored_and_removed(tmp_path):
     results = Results(tmp_path, {})
     results.keep(report("anna", 0.2))
     (tmp_path / "anna" / "hand_in.json").write_text("{")
@@ -151,14 +159,18 @@ def test_half_a_result_is_none(tmp_path):
 
 
 RESULTS = (
-    Result("=anna", (Check("cancel", "server", "failed", 0.0, "<cause> at 1.5"),
-                     Check("action_server", "server", "passed", 0.5)), (), 9.0),
+    Result(
+        "=anna",
+        (Check("cancel", "server", "failed", 0.0, "<cause> at 1.5"), Check("action_server", "server", "passed", 0.5)),
+        (),
+        9.0,
+    ),
     Result("ben", (Check("cancel", "server", "failed", 0.0, "<cause> at -3"),), ("=cmd",), 9.0),
     Result("carl", (), ("nothing to grade",), 9.0),
 )
 
 
-def test_the_table_has_a_line_each_and_nothing_that_a_spreadsheet_would_calculate():
+def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
     rows = list(csv.DictReader(io.StringIO(table(RESULTS, PLAN))))
     assert [row["name"] for row in rows] == ["'=anna", "ben", "carl"]
     assert [row["points"] for row in rows] == ["0.5", "0.0", "0"]
@@ -171,9 +183,9 @@ def test_the_table_has_a_line_each_and_nothing_that_a_spreadsheet_would_calculat
 
 def test_the_overview_counts_checks_and_causes_and_escapes_them():
     html = overview.page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True)
-    assert "3 of 4 graded, still at it" in html and "http-equiv='refresh'" in html
+    assert "3 of 4 graded, in progress" in html and "http-equiv='refresh'" in html
     assert "2 × &lt;cause&gt; at 1.5" in html and "<cause>" not in html and "<1>" not in html
-    assert "0 of 2" in html, "of those who handed in a server that came so far"
+    assert "0 of 2" in html, "of the two that handed in a server"
     assert "dora" in html
     assert "interrupted" in overview.page("class", RESULTS, PLAN, {"dora": "waiting"}, running=False)
     assert "http" not in overview.page("class", RESULTS, PLAN, {}, running=False)

@@ -1,4 +1,5 @@
-"""What every file of the project must satisfy, before any of its behaviour is tested."""
+"""Rules that every file of the project satisfies: style, types, spelling, and which module may import which."""
+
 import ast
 import importlib.util
 import subprocess
@@ -7,14 +8,49 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from imports import PACKAGE, Imports, within
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCE = ROOT / "src" / "aro_robocop_goto_as"
-PYTHON_FILES = sorted(path for part in ("src", "scripts", "test") for path in (ROOT / part).rglob("*.py"))
-# The parts that may use ROS. All the rest is the core.
-ROS_PARTS = ("nodes", "grading.probe", "bench")
-# Modules that package.xml knows by another name.
-ROSDEP_KEYS = {name: f"python3-{name}" for name in ("lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")}
+SOURCE = ROOT / "src" / PACKAGE
+IMPORTS = Imports(SOURCE)
+PYTHON = ("src", "scripts", "test", "setup.py")
+# Correct words, and deliberate misspellings in tests.
+SPELT_RIGHT = "colision,crate,fro,modle,orgin,sise"
+PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml", "robocop")
+SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "docs", "launch", "msg", "skeleton", "srv", "worlds")
+MAY_IMPORT_ROS = ("ros", "bench", "grading.probe")
+MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
+# Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
+ORDER = {
+    "errors": "",
+    "geometry": "",
+    "component_params": "",
+    "param_loading": "errors",
+    "process": "errors",
+    "bootstrap": "errors",
+    "world": "errors geometry",
+    "robot": "component_params errors geometry param_loading world",
+    "raycast": "errors geometry robot world",
+    "physics": "errors geometry raycast robot world",
+    "sensors": "component_params geometry physics raycast robot world",
+    "params": "component_params param_loading sensors",
+    "goto": "geometry params robot",
+    "simulation": "component_params errors geometry params physics raycast robot sensors world",
+    "hosting": "errors process",
+    "ros": "component_params errors geometry param_loading process robot sensors simulation world",
+    "ros.sim": "component_params errors geometry params robot ros sensors simulation world",
+    "ros.server": "errors geometry goto params ros simulation",
+    "ros.client": "errors geometry params ros",
+    "ros.cli": "bootstrap errors geometry hosting params process robot ros ros.client",
+    "grading": "errors geometry hosting param_loading process world",
+    "grading.classroom": "errors grading hosting process",
+    "grading.probe": "errors geometry goto grading params process robot ros ros.sim simulation world",
+    "bench": "errors geometry param_loading params process raycast robot ros sensors simulation world",
+}
+# Modules whose rosdep key differs from their name.
+ROSDEP_KEYS = {
+    name: f"python3-{name}" for name in ("jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
+}
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
 OPTIONAL = {"gazebo_msgs", "distributed"}  # imported on request only: in compat/, in deb-packages/class.txt
 IMPORT_WITHOUT_ROS = """
@@ -33,70 +69,136 @@ for module in sys.argv[2:]:
 """
 
 
-def core_modules():
-    for path in sorted(SOURCE.rglob("*.py")):
-        parts = path.relative_to(SOURCE.parent).with_suffix("").parts
-        if not ".".join(parts[1:]).startswith(ROS_PARTS):
-            yield ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
-def check(*command):
-    """Run a checker; what it prints is what the test fails with."""
+def run_checker(*command):
+    """Run a checker; its output becomes the test's failure message."""
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         pytest.fail(f"{' '.join(map(str, command))}\n{done.stdout}", pytrace=False)
 
 
-def installed_imports(path):
-    """Top-level names of what a source file imports from Debian's or PyPI's packages."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        names = []
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and not node.level:
-            names = [node.module]
-        for name in {name.split(".")[0] for name in names} - {SOURCE.name}:
-            found = importlib.util.find_spec(name)
-            if found is None or "-packages" in str(found.origin):
-                yield name
+def expect_none(problems):
+    """Fail if there are problems, with one per line."""
+    if problems:
+        pytest.fail("\n".join(problems), pytrace=False)
 
 
-def test_ruff_has_no_complaint():
-    check(sys.executable, "-m", "ruff", "check", "src", "scripts", "test", "setup.py")
+def test_ruff_reports_nothing():
+    run_checker(sys.executable, "-m", "ruff", "check", *PYTHON)
 
 
-def test_types_of_the_core_hold():
-    check(sys.executable, "-m", "mypy")
+def test_files_are_formatted_by_ruff():
+    run_checker(sys.executable, "-m", "ruff", "format", "--check", "--diff", *PYTHON)
 
 
-def test_catkin_lint_has_no_complaint():
-    # A checkout may be called what it likes, and ./robocop has no business in an install space.
+def test_mypy_reports_nothing():
+    run_checker(sys.executable, "-m", "mypy")
+
+
+def test_codespell_reports_nothing():
+    run_checker("codespell", "--ignore-words-list", SPELT_RIGHT, *SPELT)
+
+
+def test_catkin_lint_reports_nothing():
+    # A checkout may have any name, and ./robocop does not belong in an install space.
     ignored = ("--ignore", "package_path_name", "--ignore", "uninstalled_script")
-    check("catkin_lint", "-W2", "--strict", "--offline", *ignored, ".")
+    run_checker("catkin_lint", "-W2", "--strict", "--offline", *ignored, ".")
 
 
-def test_shellcheck_has_no_complaint():
-    check("shellcheck", "robocop", ".ci/run")
+def test_shellcheck_reports_nothing():
+    run_checker("shellcheck", "robocop", ".ci/run", f"src/{PACKAGE}/bootstrap/completion.bash")
 
 
-@pytest.mark.parametrize("path", PYTHON_FILES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_source_is_valid_python_3_8(path):
-    ast.parse(path.read_text(encoding="utf-8"), filename=str(path), feature_version=(3, 8))
+def test_sources_are_valid_python_3_8():
+    paths = [path for part in PYTHON for path in [ROOT / part, *(ROOT / part).rglob("*.py")] if path.is_file()]
+    assert len(paths) > 100
+    for path in paths:
+        ast.parse(path.read_text(encoding="utf-8"), filename=str(path), feature_version=(3, 8))
 
 
 def test_core_imports_without_ros():
-    check(sys.executable, "-c", IMPORT_WITHOUT_ROS, str(SOURCE.parent), *core_modules())
+    core = [f"{PACKAGE}.{module}".rstrip(".") for module in IMPORTS.paths if not within(module, *MAY_IMPORT_ROS)]
+    run_checker(sys.executable, "-c", IMPORT_WITHOUT_ROS, str(SOURCE.parent), *core)
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "scripts").glob("*.py")), ids=lambda path: path.name)
-def test_script_is_installed_and_only_starts_a_main(path):
-    assert path.stat().st_mode & 0o111, "not executable"
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= 20
-    assert f"scripts/{path.name}\n" in (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"), "not installed by CMake"
+def is_ros(name):
+    """Whether a module belongs to ROS 1, generated messages and services included."""
+    top, *rest = name.split(".")
+    return (
+        top.startswith(("ros", "actionlib", "tf2_", "dynamic_reconfigure", "genpy"))
+        and top != "rospkg"
+        or top.endswith(("_msgs", "_srvs"))
+        or (top in ("msg", "srv", "cfg") and not rest)
+    )
+
+
+def test_ros_is_imported_only_where_it_belongs():
+    expect_none(
+        [
+            f"{module} imports {name}"
+            for module, names in IMPORTS.external.items()
+            if not within(module, *MAY_IMPORT_ROS)
+            for name in sorted(filter(is_ros, names))
+        ]
+    )
+
+
+def test_pybullet_is_imported_only_where_it_belongs():
+    expect_none(
+        [
+            f"{module} imports {name}"
+            for module, names in IMPORTS.external.items()
+            if not within(module, *MAY_IMPORT_PYBULLET)
+            for name in sorted(names)
+            if name.startswith("pybullet")
+        ]
+    )
+
+
+def test_imports_have_no_cycles():
+    expect_none([" <-> ".join(modules) for modules in IMPORTS.cycles()])
+
+
+def row_of(module):
+    """The row of ORDER that a module belongs to: the longest that fits."""
+    return max((row for row in ORDER if within(module, row)), key=len)
+
+
+def test_order_of_folders_has_no_cycles():
+    for number, (row, names) in enumerate(ORDER.items()):
+        assert set(names.split()) <= set(list(ORDER)[:number]), f"{row} may only import rows above it"
+
+
+def test_modules_import_only_what_the_order_of_folders_allows():
+    expect_none(
+        [
+            f"{module} imports {imported}"
+            for module, names in IMPORTS.internal.items()
+            if module
+            for imported in sorted(names)
+            if row_of(imported) not in [row_of(module), *ORDER[row_of(module)].split()]
+        ]
+    )
+
+
+def test_scripts_are_installed_and_only_start_a_main():
+    cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    scripts = sorted((ROOT / "scripts").glob("*.py"))
+    assert scripts
+    for path in scripts:
+        assert path.stat().st_mode & 0o111, f"{path.name} is not executable"
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= 20, path.name
+        assert f"scripts/{path.name}\n" in cmake, f"{path.name} is not installed by CMake"
+
+
+def is_installed(name):
+    """Whether a top-level module comes from a Debian or PyPI package, or is missing."""
+    spec = importlib.util.find_spec(name)
+    return spec is None or "-packages" in str(spec.origin)
 
 
 def test_package_xml_declares_every_import():
     depends = ElementTree.parse(ROOT / "package.xml").getroot()
     declared = {entry.text for entry in depends if entry.tag in ("depend", "exec_depend")}
-    imported = {name for path in SOURCE.rglob("*.py") for name in installed_imports(path)}
+    imported = {name.split(".")[0] for names in IMPORTS.external.values() for name in names}
+    imported = {name for name in imported - {PACKAGE, "msg", "srv", "cfg"} if is_installed(name)}
     assert {ROSDEP_KEYS.get(name, name) for name in imported - OPTIONAL} - declared == set()

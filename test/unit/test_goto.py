@@ -1,4 +1,4 @@
-"""The lab's decision: a pure function of pose, clearance, goal, parameters."""
+"""The lab's control rule as a pure function of pose, clearance, goal and parameters."""
 
 import math
 from typing import List
@@ -10,17 +10,17 @@ from hypothesis import strategies as st
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
 from aro_robocop_goto_as.goto import (
-    Drive,
     End,
     Errors,
     Goal,
+    MoveForward,
     Outcome,
     Rotate,
     clearance_ahead,
     decide,
     errors_to,
-    smoothed,
-    watch,
+    limit_acceleration,
+    track_progress,
 )
 from aro_robocop_goto_as.params import GotoParams
 
@@ -29,12 +29,13 @@ near = st.floats(-20.0, 20.0)
 poses = st.builds(Pose2D, near, near, st.floats(-math.pi, math.pi))
 goals = st.builds(Goal, near, near)
 clearances = st.one_of(st.floats(0.0, 12.0), st.just(math.inf))
-twists = st.one_of(st.builds(Twist2D, st.just(0.0), st.floats(-1, 1)),
-                   st.builds(Twist2D, st.floats(0, 0.2), st.just(0.0)))
+twists = st.one_of(
+    st.builds(Twist2D, st.just(0.0), st.floats(-1, 1)), st.builds(Twist2D, st.floats(0, 0.2), st.just(0.0))
+)
 
 
 @given(poses, goals)
-def test_errors_lead_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> None:
+def test_errors_are_distance_and_bearing_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> None:
     errors = errors_to(goal, pose)
     assert -math.pi <= errors.angle <= math.pi
     heading = pose.yaw + errors.angle
@@ -44,7 +45,7 @@ def test_errors_lead_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> Non
 
 
 @given(poses, clearances, goals)
-def test_the_rule_is_the_handouts(pose: Pose2D, clearance: float, goal: Goal) -> None:
+def test_decisions_follow_the_handouts_rule(pose: Pose2D, clearance: float, goal: Goal) -> None:
     decision = decide(pose, clearance, goal, P)
     errors = decision.errors
     if errors.position < 0.1:
@@ -54,45 +55,47 @@ def test_the_rule_is_the_handouts(pose: Pose2D, clearance: float, goal: Goal) ->
     elif clearance < 0.3:
         assert isinstance(decision, End) and decision.outcome is Outcome.OBSTACLE
     else:
-        assert isinstance(decision, Drive)
+        assert isinstance(decision, MoveForward)
 
 
 @given(poses, clearances, goals)
 def test_the_robot_turns_towards_the_goal_or_drives_straight_within_its_limits(
-        pose: Pose2D, clearance: float, goal: Goal) -> None:
+    pose: Pose2D, clearance: float, goal: Goal
+) -> None:
     decision = decide(pose, clearance, goal, P)
     twist = decision.twist
     if isinstance(decision, Rotate):
         assert twist.v == 0.0 and twist.w * decision.errors.angle > 0.0
         assert P.min_angular_velocity <= abs(twist.w) <= P.max_angular_velocity
-    elif isinstance(decision, Drive):
+    elif isinstance(decision, MoveForward):
         assert twist.w == 0.0 and P.min_linear_velocity <= twist.v <= P.max_linear_velocity
     else:
         assert twist == STANDSTILL
 
 
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0))
-def test_it_is_never_faster_nearer_to_the_goal(a: float, b: float) -> None:
+def test_speed_never_rises_as_the_goal_comes_nearer(a: float, b: float) -> None:
     less, more = sorted((a, b))
     slow, fast = (decide(Pose2D(), math.inf, Goal(x, 0.0), P).twist.v for x in (less, more))
     assert slow <= fast
 
 
-def test_at_the_tolerance_it_has_slowed_down() -> None:
+def test_robot_is_slow_when_it_reaches_the_tolerance() -> None:
     assert decide(Pose2D(), math.inf, Goal(0.1001, 0.0), P).twist.v <= 0.06
 
 
 @given(twists, poses, clearances, goals)
 def test_commands_accelerate_within_limits_and_never_turn_while_driving(
-        previous: Twist2D, pose: Pose2D, clearance: float, goal: Goal) -> None:
+    previous: Twist2D, pose: Pose2D, clearance: float, goal: Goal
+) -> None:
     decision = decide(pose, clearance, goal, P)
-    twist = smoothed(previous, decision, 0.1, P)
+    twist = limit_acceleration(previous, decision, 0.1, P)
     assert twist.v == 0.0 or twist.w == 0.0
     if isinstance(decision, End):
         assert twist == STANDSTILL
     if isinstance(decision, Rotate):
         assert abs(twist.w - previous.w) <= P.angular_acceleration * 0.1 + 1e-12
-    if isinstance(decision, Drive):
+    if isinstance(decision, MoveForward):
         assert abs(twist.v - previous.v) <= P.linear_acceleration * 0.1 + 1e-12
 
 
@@ -104,24 +107,31 @@ def test_an_ideal_robot_without_obstacles_always_arrives(x: float, y: float, yaw
         if isinstance(decision, End):
             assert decision.outcome is Outcome.REACHED
             return
-        twist = smoothed(twist, decision, 0.1, P)
-        pose = Pose2D(pose.x + 0.1 * twist.v * math.cos(pose.yaw), pose.y + 0.1 * twist.v * math.sin(pose.yaw),
-                      wrap_angle(pose.yaw + 0.1 * twist.w))
+        twist = limit_acceleration(twist, decision, 0.1, P)
+        pose = Pose2D(
+            pose.x + 0.1 * twist.v * math.cos(pose.yaw),
+            pose.y + 0.1 * twist.v * math.sin(pose.yaw),
+            wrap_angle(pose.yaw + 0.1 * twist.w),
+        )
     pytest.fail(f"not there after two minutes: {pose}")
 
 
-def test_no_progress_is_neither_nearer_nor_turned() -> None:
-    start = watch(None, Errors(1.0, 0.5), 0.0, P)
-    assert watch(start, Errors(0.995, 0.48), 4.0, P).since == 0.0
-    assert watch(start, Errors(0.98, 0.5), 4.0, P).since == 4.0
-    assert watch(start, Errors(1.0, 0.44), 4.0, P).since == 4.0
-    assert watch(start, Errors(1.2, 0.6), 4.0, P).since == 0.0
+def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
+    start = track_progress(None, Errors(1.0, 0.5), 0.0, P)
+    assert track_progress(start, Errors(0.995, 0.48), 4.0, P).since == 0.0
+    assert track_progress(start, Errors(0.98, 0.5), 4.0, P).since == 4.0
+    assert track_progress(start, Errors(1.0, 0.44), 4.0, P).since == 4.0
+    assert track_progress(start, Errors(1.2, 0.6), 4.0, P).since == 0.0
 
 
 # -- clearance --
 
-LAYOUTS = [(0.0, 6.28319 / 359, 360), (-math.pi, 2 * math.pi / 360, 360), (math.pi, -2 * math.pi / 500, 500),
-           (-2.0, 0.01, 401)]
+LAYOUTS = [
+    (0.0, 6.28319 / 359, 360),
+    (-math.pi, 2 * math.pi / 360, 360),
+    (math.pi, -2 * math.pi / 500, 500),
+    (-2.0, 0.01, 401),
+]
 
 
 def _ahead(ranges: List[float], layout: "tuple[float, float, int]" = LAYOUTS[0]) -> "float | None":
@@ -129,8 +139,9 @@ def _ahead(ranges: List[float], layout: "tuple[float, float, int]" = LAYOUTS[0])
 
 
 @given(st.sampled_from(LAYOUTS), st.floats(-math.pi, math.pi), st.floats(0.13, 9.9))
-def test_a_return_counts_when_it_is_within_thirty_degrees_of_ahead(
-        layout: "tuple[float, float, int]", direction: float, distance: float) -> None:
+def test_only_returns_within_30_degrees_of_ahead_count(
+    layout: "tuple[float, float, int]", direction: float, distance: float
+) -> None:
     start, increment, count = layout
     angles = np.array([wrap_angle(start + increment * i) for i in range(count)])
     beam = int(np.argmin(np.abs(angles - direction)))
@@ -140,13 +151,33 @@ def test_a_return_counts_when_it_is_within_thirty_degrees_of_ahead(
     assert _ahead(ranges, layout) == expected
 
 
-@pytest.mark.parametrize("nothing", [math.inf, math.nan, 0.0, 0.12, 10.0, 55.0])
+@pytest.mark.parametrize("nothing", [math.inf, 0.0, 0.12, 10.0, 55.0])
 def test_what_is_no_valid_return_is_no_obstacle(nothing: float) -> None:
     assert _ahead([nothing] * 360) == math.inf
 
 
-def test_minus_infinity_is_too_near_to_measure_and_stops_the_robot() -> None:
+def test_minus_infinity_means_zero_clearance() -> None:
     assert _ahead([-math.inf] + [5.0] * 359) == 0.0
+
+
+@pytest.mark.parametrize("valid", [math.inf, 0.0, 55.0])
+def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid: float) -> None:
+    ranges = [math.nan if abs(beam - 180) > 140 else 2.0 for beam in range(360)]  # NaN within 40 degrees of ahead
+    assert math.isnan(_ahead(ranges) or 0.0)
+    ranges[350] = valid
+    assert _ahead(ranges) == math.inf
+    ranges[5] = 0.7
+    assert _ahead(ranges) == 0.7
+
+
+@pytest.mark.parametrize("limits", [(math.nan, 10.0), (0.12, math.nan)])
+def test_a_scan_whose_range_limits_are_nan_is_invalid(limits: "tuple[float, float]") -> None:
+    assert math.isnan(clearance_ahead([0.5] * 360, *LAYOUTS[0][:2], *limits, math.pi / 6) or 0.0)
+
+
+@pytest.mark.parametrize("layout", [(math.nan, 0.1), (0.0, math.nan), (math.inf, 0.1), (0.0, math.inf)])
+def test_beams_without_a_direction_do_not_point_ahead(layout: "tuple[float, float]") -> None:
+    assert clearance_ahead([0.5] * 10, *layout, 0.12, 10.0, math.pi / 6) is None
 
 
 def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:

@@ -1,4 +1,4 @@
-"""Each check on records made by hand: right ones pass, each mistake is told apart with its cause."""
+"""Each check on constructed records: a correct one passes, each mistake fails with its own cause."""
 
 import math
 from dataclasses import replace
@@ -8,11 +8,12 @@ from typing import Any, List, Tuple
 import pytest
 from support import ROOT
 
-from aro_robocop_goto_as.errors import GradingError, ParameterError
+from aro_robocop_goto_as.errors import ParameterError, PlanError
 from aro_robocop_goto_as.grading import record as rec
 from aro_robocop_goto_as.grading.checks import CHECKS, Failed, NotReached, Passed
 from aro_robocop_goto_as.grading.judge import Outcome, judge
-from aro_robocop_goto_as.grading.plan import Limits, Plan, load, summary, world_of
+from aro_robocop_goto_as.grading.limits import Limits
+from aro_robocop_goto_as.grading.plan import Plan, load, world_of
 from aro_robocop_goto_as.grading.record import Record
 
 PLAN = Path(ROOT, "config", "grading.yaml")
@@ -21,7 +22,7 @@ GOAL = rec.Goal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
 
 
 def _drive() -> Record:
-    """A robot that turns by 45 degrees in 2 s, then drives to the goal in 8 s, with feedback at every tick."""
+    """A run: the robot turns by 45 degrees in 2 s, then drives to the goal in 8 s, with feedback at every tick."""
     samples: List[rec.Sample] = []
     commands, feedback = [], []
     far = math.hypot(1.0, 1.0) - 0.09
@@ -70,7 +71,7 @@ def _changed(**fields: Any) -> Record:
 
 
 def _fed_back(position: Any = None, angle: Any = None) -> Record:
-    """The same drive with other numbers in its feedback."""
+    """The same run with different values in its feedback."""
     return _changed(
         feedback=tuple(
             replace(
@@ -103,34 +104,34 @@ def _commanded(change: Any) -> Record:
         "stays_alive",
     ],
 )
-def test_a_right_drive_passes(name: str) -> None:
+def test_correct_run_passes(name: str) -> None:
     assert CHECKS[name](RIGHT, LIMITS) == Passed()
 
 
 WRONG: List[Tuple[str, Record, str]] = [
-    ("feedback_rate", _changed(feedback=()), "no feedback was sent at all"),
+    ("feedback_rate", _changed(feedback=()), "No feedback was sent at all"),
     ("feedback_rate", _changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
     ("feedback_rate", _changed(feedback=RIGHT.feedback * 5), "not paced"),
     ("feedback_position", _fed_back(position=lambda _: 0.7), "always 0.70"),
-    ("feedback_position", _fed_back(position=lambda _: 0.0), "never filled"),
+    ("feedback_position", _fed_back(position=lambda _: 0.0), "never filled in"),
     ("feedback_position", _fed_back(position=lambda d: d * d), "squared"),
-    ("feedback_position", _fed_back(position=lambda _: math.nan), "not a number"),
+    ("feedback_position", _fed_back(position=lambda _: math.nan), "not finite"),
     ("feedback_angle", _fed_back(angle=lambda a: a - 2.0 * math.pi), "not wrapped: -5.5 rad"),
     ("feedback_angle", _fed_back(angle=math.degrees), "degrees"),
-    ("feedback_angle", _fed_back(angle=lambda a: -a), "sign is wrong"),
+    ("feedback_angle", _fed_back(angle=lambda a: -a), "sign of angle_error is wrong"),
     ("turns_to_goal", _commanded(lambda c: replace(c, v=0.1)), "drives while it turns"),
     ("turns_to_goal", _commanded(lambda c: replace(c, w=-c.w)), "turns away"),
-    ("turns_to_goal", _commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 but angular.z stayed 0"),
+    ("turns_to_goal", _commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 rad but angular.z stayed 0"),
     ("turns_to_goal", _changed(commands=()), "nothing was published on /cmd_vel"),
     ("drives_straight", _commanded(lambda c: replace(c, v=-c.v)), "backward"),
     ("drives_straight", _commanded(lambda c: replace(c, v=0.0)), "does not drive"),
-    ("drives_straight", _commanded(lambda c: replace(c, w=0.5)), "goes on turning"),
+    ("drives_straight", _commanded(lambda c: replace(c, w=0.5)), "keeps turning"),
     ("reaches_goal", _changed(results=()), "no terminal state"),
     ("reaches_goal", _changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
     ("reaches_goal", _changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
-    ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "not sent with"),
+    ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "result is missing"),
     ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, ""),)), "empty"),
-    ("stands_at_end", _changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept driving"),
+    ("stands_at_end", _changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept moving"),
     ("one_ending", _changed(results=RIGHT.results * 2), "two terminal states"),
     (
         "no_exception",
@@ -142,7 +143,7 @@ WRONG: List[Tuple[str, Record, str]] = [
 
 
 @pytest.mark.parametrize("name, record, words", WRONG, ids=lambda it: it if isinstance(it, str) else "")
-def test_a_mistake_fails_with_its_cause(name: str, record: Record, words: str) -> None:
+def test_mistake_fails_its_check_with_the_cause(name: str, record: Record, words: str) -> None:
     verdict = CHECKS[name](record, LIMITS)
     assert isinstance(verdict, Failed), verdict
     assert words in verdict.cause
@@ -151,25 +152,30 @@ def test_a_mistake_fails_with_its_cause(name: str, record: Record, words: str) -
 @pytest.mark.parametrize(
     "name", [name for name in CHECKS if name not in ("no_exception", "stays_alive", "bridge_alive", "waits_for_server")]
 )
-def test_nothing_recorded_is_never_a_pass(name: str) -> None:
+def test_empty_record_never_passes(name: str) -> None:
     assert not isinstance(CHECKS[name](Record("start", "server", up=False), LIMITS), Passed)
 
 
-def test_the_misspelt_name_is_told() -> None:
+def test_a_misspelt_name_is_reported() -> None:
     record = Record("start", "server", up=False, servers=("/robovop_goto_as",), types=("x/GoToPositionAction",))
     verdict = CHECKS["action_server"](record, LIMITS)
     assert isinstance(verdict, Failed)
-    assert verdict.cause == "action server is called robovop_goto_as; the handout says robocop_goto_as"
+    assert verdict.cause == "The action server is called robovop_goto_as; the handout says robocop_goto_as"
 
 
-def test_a_record_is_read_as_it_was_written(tmp_path: Path) -> None:
+def test_record_is_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
     rec.write(RIGHT, tmp_path / "r.json")
     assert rec.read(tmp_path / "r.json") == RIGHT
 
 
-def test_the_plan_has_five_points_for_the_server_and_three_for_the_bridge_and_a_function_for_each_check() -> None:
+def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
     plan = load(PLAN)
-    assert summary(plan) == {"server": 5.0, "bridge": 3.0}
+    points = {
+        part: round(sum(check.points for check in plan.checks if check.part == part and not check.extra), 6)
+        for part in ("server", "bridge")
+    }
+    assert points == {"server": 5.0, "bridge": 3.0}
+    assert plan.points == 8.0
     assert {check.name for check in plan.checks} == set(CHECKS)
     known = {scenario.name for scenario in plan.scenarios} | {"start", "no_server", "click", "replace", "frame"}
     assert {name for check in plan.checks for name in check.scenarios} <= known
@@ -191,12 +197,15 @@ def test_the_plan_has_five_points_for_the_server_and_three_for_the_bridge_and_a_
         ("points: 0.5, scenarios: [start]", "points: -1, scenarios: [start]", "points: expected a number from 0"),
         ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
         ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
-        ("part: bridge, points: 1.0, scenarios: [click]", "part: bridge, points: 1.0, scenarios: [left]",
-         "unknown for a bridge: 'left'"),
+        (
+            "part: bridge, points: 1.0, scenarios: [click]",
+            "part: bridge, points: 1.0, scenarios: [left]",
+            "unknown for a bridge: 'left'",
+        ),
         ("  far_goal:", "  farr_goal:", "unknown: farr_goal"),
-        ("name: right", "name: left", "left: expected a name of its own"),
+        ("name: right", "name: left", "left: expected a unique name"),
         ("name: right", "name: a/b", "expected letters, digits and _"),
-        ("- {goal: [0.7, 0.7], ends: SUCCEEDED}", "- {cancel: true}", "cancel: expected a goal before it"),
+        ("- {goal: [0.7, 0.7], ends: SUCCEEDED}", "- {cancel: true}", "cancel: expected an earlier goal in the script"),
         ("- {goal: [0.7, 0.7], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
         ("box: [1.2, 0.0, 0.0, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
     ],
@@ -205,7 +214,7 @@ def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, er
     text = PLAN.read_text()
     assert old in text
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
-    with pytest.raises((GradingError, ParameterError), match=error):
+    with pytest.raises((PlanError, ParameterError), match=error):
         load(tmp_path / "plan.yaml")
 
 
@@ -213,19 +222,19 @@ def _grade(plan: Plan, **records: Record) -> Any:
     return judge("x", plan, {"server": records}, {"server": "time-out: it was at left"})
 
 
-def test_a_scenario_that_was_cut_short_fails_its_checks_with_the_reason() -> None:
-    lines = {line.name: line for line in _grade(load(PLAN), start=replace(RIGHT, name="start")).lines}
-    assert lines["action_server"].outcome is Outcome.PASSED
-    assert lines["reaches_goal"].outcome is Outcome.FAILED
-    assert "time-out: it was at left" in lines["reaches_goal"].words()
+def test_interrupted_scenario_fails_its_checks_with_the_reason() -> None:
+    checks = {check.name: check for check in _grade(load(PLAN), start=replace(RIGHT, name="start")).checks}
+    assert checks["action_server"].outcome is Outcome.PASSED
+    assert checks["reaches_goal"].outcome is Outcome.FAILED
+    assert "time-out: it was at left" in checks["reaches_goal"].explanation()
 
 
-def test_only_what_is_there_is_graded() -> None:
+def test_only_submitted_parts_are_graded() -> None:
     grade = judge("x", load(PLAN), {"server": {"start": replace(RIGHT, name="start")}}, {})
-    assert grade.of == 5.0 and {line.part for line in grade.lines} == {"server"}
+    assert grade.points_available == 5.0 and {check.part for check in grade.checks} == {"server"}
     assert not grade.all_right
 
 
-def test_not_reached_is_said_and_gives_no_points() -> None:
+def test_check_that_was_not_reached_states_the_reason() -> None:
     verdict = CHECKS["cancel"](RIGHT, LIMITS)
     assert verdict == NotReached("the goal ended before it could be cancelled")

@@ -1,4 +1,4 @@
-"""The guard ends what takes too much together, says why, and leaves alone what only shares."""
+"""The guard kills a process tree that exceeds its limit, says why, and counts shared memory once."""
 
 import subprocess
 import sys
@@ -7,9 +7,9 @@ import pytest
 
 from aro_robocop_goto_as.grading.guard import Guard
 
-MB = 1024 ** 2
+MB = 1024**2
 PATIENCE = 30.0  # [s, wall]
-# Children that take memory, or only look at what their parent has taken; they stay until they are ended.
+# Children that allocate memory of their own, besides what they share with their parent, and then sleep.
 FAMILY = """
 import os, time
 shared = bytearray({shared} * 2 ** 20)
@@ -31,18 +31,18 @@ def watched(code, folder=None, **limits):
         guard.stop()
 
 
-def test_processes_that_take_too_much_together_are_ended():
+def test_processes_that_together_exceed_the_memory_limit_are_killed():
     status, reason = watched(FAMILY.format(shared=1, own=60, alive=600.0), memory=200 * MB)
     assert status < 0
     assert reason == "its processes together took more than 200 MB of memory"
 
 
-def test_memory_that_processes_share_counts_once(tmp_path):
+def test_shared_memory_counts_once(tmp_path):
     code = FAMILY.format(shared=100, own=1, alive=1.0) + "os.killpg(0, 15)"
     assert watched(code, memory=250 * MB)[1] == ""
 
 
-def test_a_folder_that_grows_too_large_is_the_end(tmp_path):
+def test_a_process_whose_folder_grows_too_large_is_killed(tmp_path):
     code = "import time\nopen('big', 'wb').write(bytes(5 * 2 ** 20))\ntime.sleep(600.0)"
     status, reason = watched(code, tmp_path, disk=4 * MB)
     assert status < 0
@@ -50,6 +50,6 @@ def test_a_folder_that_grows_too_large_is_the_end(tmp_path):
 
 
 @pytest.mark.parametrize("code", ["", "raise SystemExit(3)"])
-def test_who_ends_by_himself_has_no_reason(code):
+def test_process_that_ends_by_itself_is_reported_without_a_reason(code):
     status, reason = watched(code)
     assert (status, reason) == (3 if code else 0, "")

@@ -1,18 +1,18 @@
-"""Whom simulated time waits for."""
+"""Which controllers simulated time waits for."""
 
 from fractions import Fraction
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.lockstep import SURE, Lockstep
+from aro_robocop_goto_as.simulation.lockstep import SURE, Lockstep
 
 
-def test_with_nobody_driving_it_waits_for_nobody() -> None:
+def test_without_controllers_nothing_is_awaited() -> None:
     assert Lockstep().missing() == []
 
 
-def test_who_commanded_once_is_waited_for_at_the_next_tick_and_not_at_this_one() -> None:
+def test_new_controller_is_awaited_from_the_tick_after_its_first_command() -> None:
     lockstep = Lockstep()
     lockstep.commanded("/a")
     assert lockstep.missing() == []
@@ -22,7 +22,7 @@ def test_who_commanded_once_is_waited_for_at_the_next_tick_and_not_at_this_one()
     assert lockstep.missing() == []
 
 
-def test_who_stops_answering_costs_one_miss_and_is_waited_for_again_when_back() -> None:
+def test_controller_that_stops_answering_causes_one_miss_and_is_awaited_again_when_it_returns() -> None:
     lockstep = Lockstep()
     for _ in range(2):
         lockstep.commanded("/a")
@@ -37,7 +37,7 @@ def test_who_stops_answering_costs_one_miss_and_is_waited_for_again_when_back() 
     assert lockstep.missing() == ["/a"]
 
 
-def test_who_commands_just_once_costs_no_miss_and_little_time() -> None:
+def test_controller_that_sends_a_single_command_causes_no_miss_and_little_waiting() -> None:
     lockstep = Lockstep()
     lockstep.commanded("/a")
     spent = 0.0
@@ -50,22 +50,24 @@ def test_who_commands_just_once_costs_no_miss_and_little_time() -> None:
 
 
 class Loop:
-    """rospy's Rate on simulated time, from a phase on: at which ticks its command comes."""
+    """A loop with rospy.Rate in simulated time, starting at a phase; tells at which ticks its command arrives."""
 
     def __init__(self, period: Fraction, phase: Fraction) -> None:
         self.period, self.next = period, phase
 
     def due(self, tick: int) -> bool:
-        """Whether it wakes up after the tick before and not after this one."""
+        """Whether it wakes up after the previous tick and no later than this one."""
         if self.next > tick:
             return False
         self.next += self.period
         return True
 
 
-@given(st.sampled_from([Fraction(hz) for hz in ("10", "8", "7", "5", "4", "3", "5/2", "2", "1", "4/5", "2/3")]),
-       st.fractions(0, 1, max_denominator=60))
-def test_a_loop_of_any_rate_is_waited_for_when_it_is_due_and_only_then(hz: Fraction, phase: Fraction) -> None:
+@given(
+    st.sampled_from([Fraction(hz) for hz in ("10", "8", "7", "5", "4", "3", "5/2", "2", "1", "4/5", "2/3")]),
+    st.fractions(0, 1, max_denominator=60),
+)
+def test_loop_of_any_rate_is_soon_awaited_exactly_when_it_is_due(hz: Fraction, phase: Fraction) -> None:
     lockstep, loop = Lockstep(), Loop(10 / hz, phase)
     misses, spent, answers = [], [], []
     for tick in range(1, 800):
@@ -80,13 +82,13 @@ def test_a_loop_of_any_rate_is_waited_for_when_it_is_due_and_only_then(hz: Fract
         elif missing:
             spent.append((tick, patience))
             misses += [tick for _ in lockstep.give_up()]
-    assert len(misses) <= 1, "once, when a rhythm looked simpler than it is"
+    assert len(misses) <= 1, "at most one, when the pattern looks simpler than it is"
     assert sum(patience for _, patience in spent) < 5.0
-    assert max([tick for tick, _ in spent], default=0) < 500, "it is still not known"
+    assert max([tick for tick, _ in spent], default=0) < 500, "its pattern is still not known"
     assert set(answers[-5:]) == {SURE}
 
 
-def test_a_steady_loop_is_known_to_be_slower_than_the_ticks_or_not() -> None:
+def test_steady_loop_slower_than_the_ticks_is_recognised() -> None:
     for every in (1, 3):
         lockstep = Lockstep()
         for tick in range(1, 30):
@@ -97,7 +99,7 @@ def test_a_steady_loop_is_known_to_be_slower_than_the_ticks_or_not() -> None:
     assert not Lockstep().slower_than_ticks()
 
 
-def test_a_faster_loop_is_one_driver() -> None:
+def test_loop_faster_than_the_ticks_is_awaited_once_per_tick() -> None:
     lockstep = Lockstep()
     for _ in range(5):
         for _ in range(3):
@@ -107,7 +109,7 @@ def test_a_faster_loop_is_one_driver() -> None:
         assert lockstep.missing() == ["/fast"]
 
 
-def test_a_stamped_answer_counts_for_its_own_tick_only() -> None:
+def test_stamped_answer_counts_only_for_its_own_tick() -> None:
     lockstep = Lockstep(7)
     lockstep.answered("/a", 6)
     assert lockstep.missing() == ["/a"]
@@ -117,7 +119,7 @@ def test_a_stamped_answer_counts_for_its_own_tick_only() -> None:
     assert lockstep.missing() == []
 
 
-def test_plain_commands_of_a_stamping_controller_are_no_answer() -> None:
+def test_plain_command_of_a_stamping_controller_is_not_an_answer() -> None:
     lockstep = Lockstep()
     lockstep.answered("/a", 0)
     lockstep.tick += 1
@@ -125,7 +127,7 @@ def test_plain_commands_of_a_stamping_controller_are_no_answer() -> None:
     assert lockstep.is_stamped("/a") and lockstep.missing() == ["/a"]
 
 
-def test_who_disconnects_is_forgotten() -> None:
+def test_disconnected_controller_is_forgotten() -> None:
     lockstep = Lockstep()
     lockstep.answered("/a", 0)
     lockstep.tick += 1
@@ -134,7 +136,7 @@ def test_who_disconnects_is_forgotten() -> None:
 
 
 @given(st.lists(st.sampled_from(["a", "b", "c", "pass", "stamp a"]), max_size=60))
-def test_giving_up_always_frees_the_way(events: "list[str]") -> None:
+def test_giving_up_leaves_no_controller_missing(events: "list[str]") -> None:
     lockstep = Lockstep()
     for event in events:
         if event == "pass":

@@ -1,4 +1,4 @@
-"""Obstacles that move: where they are is a function of simulated time, scans see them there, robots are pushed."""
+"""Moving obstacles: their pose is a function of simulated time, scans see them there, and they push robots."""
 
 import math
 
@@ -10,17 +10,19 @@ from support import analytic_distances, world_named
 from test_world import clearance, model, raised_by, write
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
-from aro_robocop_goto_as.kinematics import Kinematics
-from aro_robocop_goto_as.motion import Motion
-from aro_robocop_goto_as.shapes import Box, Cylinder, Obstacle, World
-from aro_robocop_goto_as.simulator import SCAN
+from aro_robocop_goto_as.physics.kinematic import KinematicEngine
+from aro_robocop_goto_as.simulation.simulator import SCAN
+from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.motion import Motion
 
 PATROL = Motion(Pose2D(1.0, 2.0, math.pi / 2), waypoints=((4.0, 2.0, 0.0), (6.0, 2.0, 1.0), (10.0, 0.0, 0.0)))
 
 
-@pytest.mark.parametrize(("time", "x", "y"), [
-    (0, 1, 2), (2, 1, 3), (4, 1, 4), (5, 0.5, 4), (6, 0, 4), (8, 0.5, 3), (10, 1, 2), (12, 1, 3), (1005, 0.5, 4)])
-def test_waypoints_are_passed_at_their_times_over_and_over(time, x, y):
+@pytest.mark.parametrize(
+    ("time", "x", "y"),
+    [(0, 1, 2), (2, 1, 3), (4, 1, 4), (5, 0.5, 4), (6, 0, 4), (8, 0.5, 3), (10, 1, 2), (12, 1, 3), (1005, 0.5, 4)],
+)
+def test_waypoints_are_passed_at_their_times_in_every_cycle(time, x, y):
     pose = PATROL.carry(Pose2D(1.0, 2.0), time)
     assert (pose.x, pose.y) == (pytest.approx(x), pytest.approx(y))
 
@@ -39,7 +41,7 @@ def test_pillars_of_stage_3_circle_and_those_of_stage_4_patrol():
 
 
 @pytest.mark.parametrize("name", ["stage_3", "stage_4"])
-def test_moving_pillars_hit_no_wall_and_never_reach_the_spawn(name):
+def test_moving_pillars_keep_clear_of_walls_and_spawn(name):
     world = world_named(name)
     walls = World("walls", tuple(o for o in world.obstacles if isinstance(o.geometry, Box)), Pose2D(), (), "")
     for time in np.linspace(0.0, 40.0, 401):
@@ -49,14 +51,19 @@ def test_moving_pillars_hit_no_wall_and_never_reach_the_spawn(name):
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_scans_see_moving_obstacles_where_they_are_at_that_time(simulator, drive):
+def test_scans_see_moving_obstacles_at_their_current_position(simulator, drive):
     sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive=drive, moving=True, physics_rate=60, clock_rate=60)
     for _ in range(60 * 4):
         sim.step({})
-    truth = analytic_distances(moved(sim.world, 4.0), sim.world_from_base().x - 0.032, sim.world_from_base().y,
-                               6.28319 / 359 * np.arange(360), 10.0)
+    truth = analytic_distances(
+        moved(sim.world, 4.0),
+        sim.world_from_footprint().x - 0.032,
+        sim.world_from_footprint().y,
+        6.28319 / 359 * np.arange(360),
+        10.0,
+    )
     near = np.abs(sim.exact_distances() - truth) < 1e-3
-    assert near.sum() >= 354  # all but beams that graze something
+    assert near.sum() >= 354  # all but grazing beams
     standing = analytic_distances(sim.world, -0.732, 0.0, 6.28319 / 359 * np.arange(360), 10.0)
     assert np.abs(sim.exact_distances() - standing).max() > 0.3
 
@@ -67,32 +74,32 @@ def moved(world, time):
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_standing_robot_is_pushed_by_what_moves_into_it(simulator, drive):
+def test_standing_robot_is_pushed_by_a_moving_obstacle(simulator, drive):
     sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
     touched = False
     for _ in range(240 * 5):
         sim.step({})
         touched = touched or sim.touching()
-    pose, pillar = sim.world_from_base(), sim.world.moving()[0].at(5.0).position
+    pose, pillar = sim.world_from_footprint(), sim.world.moving()[0].at(5.0).position
     assert touched
     assert math.hypot(pose.x - pillar[0], pose.y - pillar[1]) > 0.17
     assert math.hypot(pose.x - 0.4, pose.y) > 0.2
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_robot_that_meets_a_moving_obstacle_head_on_gets_no_further(simulator, drive):
+def test_robot_is_stopped_by_an_oncoming_obstacle(simulator, drive):
     sim = simulator("stage_4", Pose2D(0.4, -0.45, math.pi / 2), drive=drive, moving=True, cmd_vel_timeout=0.0)
     sim.command(Twist2D(0.2))
     farthest = -1.0
     for _ in range(240 * 3):
         sim.step({})
-        farthest = max(farthest, sim.world_from_base().y)
+        farthest = max(farthest, sim.world_from_footprint().y)
     assert -0.2 < farthest < 0.0  # they meet half way, the pillar from 0.5 m
-    assert sim.touching() and sim.world_from_base().y < sim.world.moving()[0].at(3.0).position[1] - 0.14
+    assert sim.touching() and sim.world_from_footprint().y < sim.world.moving()[0].at(3.0).position[1] - 0.14
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_reset_starts_moving_obstacles_anew_and_the_run_repeats(simulator, drive):
+def test_reset_restarts_moving_obstacles_and_repeats_the_run(simulator, drive):
     sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
     runs = []
     for _ in range(2):
@@ -102,7 +109,7 @@ def test_reset_starts_moving_obstacles_anew_and_the_run_repeats(simulator, drive
     assert len(runs[0]) == 30 and runs[0] == runs[1]
 
 
-def test_nothing_moves_unless_it_is_asked_for(simulator):
+def test_obstacles_stand_still_by_default(simulator):
     sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive="kinematic")
     before = sim.exact_distances()
     for _ in range(240):
@@ -110,32 +117,37 @@ def test_nothing_moves_unless_it_is_asked_for(simulator):
     assert (sim.exact_distances() == before).all() and sim.world.moving() == ()
 
 
-def test_pushed_robot_is_not_pushed_through_a_wall(burger):
+def test_robot_is_not_pushed_through_a_wall(burger):
     wall = Obstacle("wall", Pose3D((0.2, 0.0, 0.25)), Box((0.1, 4.0, 0.5)))
     motion = Motion(Pose2D(-1.0, 0.0), waypoints=((10.0, 2.0, 0.0), (20.0, 0.0, 0.0)))
     post = Obstacle("post", Pose3D((-1.0, 0.02, 0.25)), Cylinder(0.2, 0.5), motion)
-    drive = Kinematics(World("w", (wall, post), Pose2D(), (), ""), 100, 0.105)
+    drive = KinematicEngine(World("w", (wall, post), Pose2D(), (), ""), 100, 0.105)
     drive.add_robot(burger, Pose2D())
     for step in range(1000):
         drive.step()
-        drive.move(step / 100)
-        assert drive.state(0).world_from_base.x <= 0.15 - 0.105
+        drive.move_obstacles(step / 100)
+        assert drive.state(0).world_from_footprint.x <= 0.15 - 0.105
 
 
 MOVER = '<plugin name="p" filename="robocop_motion">{}</plugin>'
-POST = ('<collision name="c"><pose>{}</pose>'
-        "<geometry><cylinder><radius>0.1</radius><length>1</length></cylinder></geometry></collision>")
+POST = (
+    '<collision name="c"><pose>{}</pose>'
+    "<geometry><cylinder><radius>0.1</radius><length>1</length></cylinder></geometry></collision>"
+)
 
 
-@pytest.mark.parametrize(("motion", "shape", "named"), [
-    ("<spin>1</spin>", "", ["<spin>", "turn, waypoint"]),
-    ("<waypoint>1 2</waypoint>", "", ["'1 2'", "3 finite numbers"]),
-    ("<waypoint>1 1 0</waypoint><waypoint>1 0 0</waypoint>", "", ["at 1 s", "later"]),
-    ("<waypoint>1 1 0</waypoint>", "", ["'1 0'", "back home"]),
-    ("<turn>1</turn></plugin>" + MOVER[:-len("</plugin>")].format(""), "", ["second", "robocop_motion"]),
-    ("<turn>1</turn>", POST.format("0 0 0 1 0 0"), ["m/l/c", "upright cylinders, spheres"]),
-])
-def test_motion_that_cannot_be_is_refused(tmp_path, motion, shape, named):
+@pytest.mark.parametrize(
+    ("motion", "shape", "named"),
+    [
+        ("<spin>1</spin>", "", ["<spin>", "turn, waypoint"]),
+        ("<waypoint>1 2</waypoint>", "", ["'1 2'", "3 finite numbers"]),
+        ("<waypoint>1 1 0</waypoint><waypoint>1 0 0</waypoint>", "", ["at 1 s", "later"]),
+        ("<waypoint>1 1 0</waypoint>", "", ["'1 0'", "0 0, where the cycle starts again"]),
+        ("<turn>1</turn></plugin>" + MOVER[: -len("</plugin>")].format(""), "", ["second", "robocop_motion"]),
+        ("<turn>1</turn>", POST.format("0 0 0 1 0 0"), ["m/l/c", "upright cylinders, spheres"]),
+    ],
+)
+def test_invalid_motion_is_refused(tmp_path, motion, shape, named):
     text = model(shape, pose=MOVER.format(motion))
     message = raised_by(write(tmp_path, text))
     assert [word for word in named if word not in message] == [], message

@@ -1,4 +1,4 @@
-"""Scanners with the quirks of the real ones."""
+"""Scan profiles: figures, quirks of real drivers, and overrides by parameters."""
 
 import math
 from dataclasses import replace
@@ -11,7 +11,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
-from aro_robocop_goto_as.simulator import Simulator
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
 
@@ -36,16 +36,17 @@ def test_the_default_is_the_labs_gazebo_sensor() -> None:
     assert _measured("gazebo", [0.1, 1.0, math.inf]) == [-math.inf, 1.0, math.inf]
 
 
-def test_an_lds01_turns_five_times_a_second_and_its_beams_are_a_degree_apart() -> None:
+def test_an_lds01_scans_at_5_hz_with_one_beam_per_degree() -> None:
     rate, spec = SimParams(scan_profile="lds01").scanner()
     assert (rate, spec.samples, spec.range_min, spec.range_max) == (5, 360, 0.12, 3.5)
     assert spec.angle_max == pytest.approx(2.0 * math.pi - spec.increment)
     assert spec.increment == pytest.approx(math.radians(1.0))
 
 
-def test_an_lds01_tells_of_no_return_as_zero_and_of_the_rest_in_whole_millimetres() -> None:
+def test_an_lds01_reports_no_return_as_zero_and_ranges_in_whole_millimetres() -> None:
     assert _measured("lds01", [0.119, 0.12, 1.23449, 3.5, 3.51, math.inf]) == pytest.approx(
-        [0.0, 0.12, 1.234, 3.5, 0.0, 0.0], abs=1e-12)
+        [0.0, 0.12, 1.234, 3.5, 0.0, 0.0], abs=1e-12
+    )
 
 
 def test_ideal_scans_are_exact(simulator: Make) -> None:
@@ -55,16 +56,16 @@ def test_ideal_scans_are_exact(simulator: Make) -> None:
 
 
 @pytest.mark.parametrize("distance, limit", [(0.2, 0.010), (0.3, 0.010), (1.0, 0.03), (6.0, 0.18), (7.0, 0.35)])
-def test_an_lds02_is_off_by_its_accuracy_at_the_most(distance: float, limit: float) -> None:
+def test_an_lds02s_error_stays_within_its_accuracy(distance: float, limit: float) -> None:
     for noise, share in ((5.0, 1.0), (1.0, 0.5), (0.0, 0.0), (-2.5, -1.0)):
         assert _measured("lds02", [distance, 3.0], noise)[0] == pytest.approx(distance + share * limit)
 
 
-def test_an_lds02_tells_of_no_return_as_zero() -> None:
+def test_an_lds02_reports_no_return_as_zero() -> None:
     assert _measured("lds02", [0.1, math.inf, 9.0]) == [0.0, 0.0, 0.0]
 
 
-def test_an_lds02_has_another_number_of_beams_in_each_turn_and_the_same_in_each_run(simulator: Make) -> None:
+def test_an_lds02s_number_of_beams_varies_reproducibly(simulator: Make) -> None:
     def run() -> "list[np.ndarray]":
         return _scans(simulator("stage_1", scan_profile="lds02"), 20)
 
@@ -74,7 +75,7 @@ def test_an_lds02_has_another_number_of_beams_in_each_turn_and_the_same_in_each_
     assert all((one == other).all() for one, other in zip(scans, run()))
 
 
-def test_beams_of_any_number_are_spread_over_the_same_turn(simulator: Make) -> None:
+def test_any_number_of_beams_covers_the_same_full_turn(simulator: Make) -> None:
     spec = PROFILES["lds02"].spec
     for samples in (225, 230, 235):
         turned = spec.with_samples(samples)
@@ -85,8 +86,8 @@ def test_beams_of_any_number_are_spread_over_the_same_turn(simulator: Make) -> N
         assert scan[round(len(scan) / 2)] == pytest.approx(1.85 + 0.5 - 0.032, abs=2e-3)
 
 
-def test_a_figure_that_is_given_wins_over_the_profile_and_can_be_told() -> None:
-    p = SimParams(scan_profile="lds02", scan_rate=5, scan_noise=0.02, scan_angle_max=3.0)
+def test_explicit_value_overrides_the_profile_and_is_listed() -> None:
+    p = SimParams(scan_profile="lds02", scan_rate=5, scan_noise=0.02, scan_angle_min=0.0, scan_angle_max=3.0)
     assert p.given_scan() == {"scan_rate": 5, "scan_noise": 0.02, "scan_angle_min": 0.0, "scan_angle_max": 3.0}
     rate, spec = p.scanner()
     assert (rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)

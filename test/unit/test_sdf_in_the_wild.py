@@ -1,21 +1,23 @@
-"""World files as people have them: included and nested models, saved states, meshes of every format."""
+"""World files as found in practice: included and nested models, saved states, meshes of every format."""
 
 import numpy as np
 import pytest
 import trimesh
-from support import world_named
+from support import bullet_rays, world_named
 
 from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, rotation_matrix
 from aro_robocop_goto_as.params import SimParams
-from aro_robocop_goto_as.physics import Physics
-from aro_robocop_goto_as.raycast import Fan
-from aro_robocop_goto_as.simulator import RobotSpec, Simulator
-from aro_robocop_goto_as.slice import Slice
-from aro_robocop_goto_as.world import Mesh, Plane, load_world
+from aro_robocop_goto_as.physics.bullet import BulletEngine
+from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.world.load import load_world
+from aro_robocop_goto_as.world.model import Mesh, Plane
 
 BOX = '<link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link>'
-# A triangle that stands upright on the x axis; the unit is centimetres and x is said to be up, which Gazebo ignores.
+# An upright triangle on the x axis; the unit is centimetres, and x is declared to be up, which Gazebo ignores.
 TRIANGLE_DAE = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
   <asset><unit name="centimeter" meter="0.01"/><up_axis>X_UP</up_axis></asset>
@@ -63,13 +65,13 @@ def raised_by(path):
 
 @pytest.fixture
 def chair(tmp_path, monkeypatch):
-    """A model directory that GAZEBO_MODEL_PATH leads to, with two versions of the model."""
+    """A model directory in GAZEBO_MODEL_PATH with two versions of the model."""
     home = tmp_path / "models" / "chair"
     sdf_file(home / "old.sdf", '<model name="old"/>', "1.4")
     sdf_file(home / "new.sdf", f'<model name="chair"><pose>5 5 5 0 0 0</pose>{BOX}</model>')
     (home / "model.config").write_text(
-        "<model><sdf version='1.6'>new.sdf</sdf><sdf version='1.4'>old.sdf</sdf>"
-        "<sdf version='1.9'>no.sdf</sdf></model>")
+        "<model><sdf version='1.6'>new.sdf</sdf><sdf version='1.4'>old.sdf</sdf><sdf version='1.9'>no.sdf</sdf></model>"
+    )
     monkeypatch.setenv("GAZEBO_MODEL_PATH", f"{tmp_path / 'none'}:{tmp_path / 'models'}")
     return home
 
@@ -77,38 +79,41 @@ def chair(tmp_path, monkeypatch):
 # Includes
 
 
-def test_included_model_stands_where_the_include_puts_it_under_the_name_it_gives(tmp_path, chair):
+def test_include_overrides_the_models_pose_and_name(tmp_path, chair):
     seat = "<include><uri>model://chair</uri><name>{}</name><pose>{} 0 0 0 0 0</pose></include>"
     world = load_world(world_file(tmp_path / "worlds", seat.format("a", 1) + seat.format("b", 2)))
     assert [(o.name, o.pose.position) for o in world.obstacles] == [("a/l/c", (1, 0, 0)), ("b/l/c", (2, 0, 0))]
     assert {name: pose.position for name, pose in world.models.items()} == {"a": (1, 0, 0), "b": (2, 0, 0)}
 
 
-def test_included_model_keeps_its_own_name_and_pose_where_the_include_says_nothing(tmp_path, chair):
+def test_included_model_keeps_its_pose_and_name_unless_overridden(tmp_path, chair):
     obstacle = only_obstacle(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
     assert (obstacle.name, obstacle.pose.position) == ("chair/l/c", (5, 5, 5))
 
 
-@pytest.mark.parametrize("uri", ["model://chair/new.sdf", "file://{}", "file://{}/new.sdf", "../models/chair"])
+@pytest.mark.parametrize(
+    "uri", ["model://chair/new.sdf", "model:///chair/", "file://{}", "file://{}/new.sdf", "../models/chair"]
+)
 def test_model_may_be_included_by_any_kind_of_uri(tmp_path, chair, uri):
     include = f"<include><uri>{uri.format(chair)}</uri></include>"
     assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "chair/l/c"
 
 
-def test_models_beside_a_world_are_found_without_any_variable(tmp_path, chair, monkeypatch):
+def test_models_beside_a_world_are_found_without_environment_variables(tmp_path, chair, monkeypatch):
     monkeypatch.delenv("GAZEBO_MODEL_PATH")
     include = "<include><uri>model://chair</uri></include>"
     for directory in (tmp_path, tmp_path / "worlds", tmp_path / "models"):
         assert only_obstacle(world_file(directory, include)).name == "chair/l/c"
 
 
-def test_models_of_ros_packages_are_found_by_package_and_by_what_it_exports(tmp_path, chair, monkeypatch):
+def test_models_of_ros_packages_are_found_by_package_name_and_exported_path(tmp_path, chair, monkeypatch):
     package = tmp_path / "checkout"
     sdf_file(package / "sdf" / "desk" / "model.sdf", f'<model name="desk">{BOX}</model>')
     (package / "package.xml").write_text(
         '<package format="2"><name>office</name><version>1.0.0</version><description>d</description>'
         '<maintainer email="a@b.c">m</maintainer><license>BSD</license>'
-        '<export><gazebo_ros gazebo_model_path="${prefix}/sdf"/></export></package>')
+        '<export><gazebo_ros gazebo_model_path="${prefix}/sdf"/></export></package>'
+    )
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(package))
     for uri in ("package://office/sdf/desk", "model://office/sdf/desk", "model://desk"):
         assert only_obstacle(world_file(tmp_path / "far", f"<include><uri>{uri}</uri></include>")).name == "desk/l/c"
@@ -120,31 +125,31 @@ def test_file_uris_are_also_looked_up_in_the_resource_path(tmp_path, chair, monk
     assert only_obstacle(world_file(tmp_path / "far" / "away", include)).name == "chair/l/c"
 
 
-def test_places_that_were_looked_in_are_told_when_a_model_is_not_found(tmp_path, chair):
+def test_missing_model_is_reported_with_the_searched_places(tmp_path, chair):
     message = raised_by(world_file(tmp_path / "worlds", "\n<include><uri>model://stool</uri></include>"))
     assert message.startswith(f"{tmp_path}/worlds/w.world:4: 'model://stool' was not found; looked for: ")
     for place in (f"{tmp_path}/models/stool (GAZEBO_MODEL_PATH)", ".gazebo/models/stool", "stool (no such package"):
         assert place in message
 
 
-def test_error_in_an_included_file_names_that_file_and_who_included_it(tmp_path, chair):
+def test_error_in_an_included_file_names_that_file_and_the_including_one(tmp_path, chair):
     sdf_file(chair / "new.sdf", '<model name="chair"><lnik name="l"/></model>')
     message = raised_by(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
     assert message.startswith(f"{chair}/new.sdf:2: in 'chair': <lnik> 'l' in <model> is not supported")
     assert message.endswith(f"; included by {tmp_path}/worlds/w.world:3")
 
 
-def test_model_that_includes_itself_is_refused_in_one_short_message(tmp_path, chair):
+def test_model_that_includes_itself_is_refused_with_a_single_message(tmp_path, chair):
     include = "<include><uri>model://chair</uri></include>"
     sdf_file(chair / "new.sdf", f'<model name="chair">\n{include}</model>')
     world = world_file(tmp_path / "worlds", include)
     file = f"{chair}/new.sdf"
-    told = f"{file}:3: in 'chair': 'model://chair' is {file} again, within itself; expected another model"
-    assert raised_by(world) == f"{told}; included by {world}:3"
-    assert raised_by(str(chair / "new.sdf")) == told
+    message = f"{file}:3: in 'chair': 'model://chair' is {file} again, within itself; expected another model"
+    assert raised_by(world) == f"{message}; included by {world}:3"
+    assert raised_by(str(chair / "new.sdf")) == message
 
 
-def test_models_that_include_each_other_are_refused_with_the_way_around(tmp_path, chair):
+def test_models_that_include_each_other_are_refused_with_the_chain_of_includes(tmp_path, chair):
     desk = tmp_path / "models" / "desk"
     sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://desk</uri></include></model>')
     sdf_file(desk / "model.sdf", '<model name="desk">\n\n<include><uri>model://chair</uri></include></model>')
@@ -154,19 +159,19 @@ def test_models_that_include_each_other_are_refused_with_the_way_around(tmp_path
     assert message.endswith(f"; included by {chair}/new.sdf:2; included by {world}:3")
 
 
-def test_same_model_may_be_included_side_by_side_and_below_another(tmp_path, chair):
+def test_same_model_can_be_included_repeatedly_and_nested(tmp_path, chair):
     seat = "<include><uri>model://chair</uri><name>{}</name></include>"
     body = f'{seat.format("a")}{seat.format("b")}<model name="m">{seat.format("c")}</model>'
     world = load_world(world_file(tmp_path / "worlds", body))
     assert [o.name for o in world.obstacles] == ["a/l/c", "b/l/c", "m/c/l/c"]
 
 
-def test_models_nested_without_end_are_refused(tmp_path):
+def test_models_nested_too_deeply_are_refused(tmp_path):
     body = '<model name="m">' * 30 + "</model>" * 30
     assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
 
 
-def test_model_file_is_a_world_of_its_one_model(chair):
+def test_model_file_can_be_loaded_as_a_world(chair):
     world = load_world(str(chair / "new.sdf"))
     assert (world.name, [o.name for o in world.obstacles], world.spawn) == ("chair", ["chair/l/c"], Pose2D())
 
@@ -174,7 +179,7 @@ def test_model_file_is_a_world_of_its_one_model(chair):
 # Models
 
 
-def test_poses_of_nested_models_compose_and_names_tell_the_nesting(tmp_path):
+def test_poses_of_nested_models_compose_and_names_show_the_nesting(tmp_path):
     inner = f'<model name="in"><pose>1 0 0 0 0 0</pose>{BOX}</model>'
     body = f'<model name="out"><static>1</static><pose>0 0 1 0 0 1.5707963267948966</pose>{inner}</model>'
     obstacle = only_obstacle(world_file(tmp_path, body))
@@ -183,14 +188,14 @@ def test_poses_of_nested_models_compose_and_names_tell_the_nesting(tmp_path):
     assert rotation_matrix(obstacle.pose.orientation)[:, 0] == pytest.approx([0, 1, 0])
 
 
-def test_model_that_could_move_stands_still_and_is_told_once(tmp_path):
+def test_non_static_model_is_treated_as_static_and_listed_once(tmp_path):
     body = f'<model name="cart">\n{BOX}<model name="load"/></model><model name="wall"><static>1</static></model>'
     world = load_world(world_file(tmp_path, body))
     assert [o.name for o in world.obstacles] == ["cart/l/c"]
     assert world.ignored == ("motion of model 'cart', which is not static (line 3)",)
 
 
-def test_what_is_ignored_in_an_included_file_is_told_with_that_file(tmp_path, chair):
+def test_ignored_elements_of_an_included_file_are_listed_with_that_file(tmp_path, chair):
     sdf_file(chair / "new.sdf", '<model name="chair"><static>1</static><plugin name="p"/></model>')
     world = load_world(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
     assert world.ignored == (f"plugin 'p' ({chair}/new.sdf:2)",)
@@ -199,7 +204,7 @@ def test_what_is_ignored_in_an_included_file_is_told_with_that_file(tmp_path, ch
 def test_saved_state_moves_models_and_links_as_in_gazebo(tmp_path):
     still = "<model name='{}'><static>1</static>" + BOX + "</model>"
     state = """<state world_name="w"><sim_time>1 2</sim_time><iterations>3</iterations>
-      <model name="a"><pose frame="">1 2 3 0 0 0</pose><scale>1 1 1</scale></model>
+      <model name="a"><static>1</static><pose frame="">1 2 3 0 0 0</pose><scale>1 1 1</scale></model>
       <model name="b"><pose>9 9 9 0 0 0</pose><link name="l"><pose>4 5 6 0 0 0</pose><wrench>0 0 0 0 0 0</wrench></link>
       </model><model name="gone"><pose>0 0 0 0 0 0</pose></model><light name="sun"/></state>"""
     world = load_world(world_file(tmp_path, still.format("a") + still.format("b") + state))
@@ -210,7 +215,7 @@ def test_saved_state_moves_models_and_links_as_in_gazebo(tmp_path):
 # Meshes
 
 
-def test_collada_is_read_with_its_unit_and_its_scene_and_scaled(tmp_path):
+def test_collada_mesh_is_read_with_unit_scene_and_scale(tmp_path):
     (tmp_path / "t.dae").write_text(TRIANGLE_DAE)
     obstacle = only_obstacle(mesh_world(tmp_path, "t.dae", "<scale>2 1 1</scale>"))
     assert isinstance(obstacle.geometry, Mesh)
@@ -219,7 +224,7 @@ def test_collada_is_read_with_its_unit_and_its_scene_and_scaled(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj"])
-def test_mesh_of_a_box_is_the_same_for_scans_and_for_physics_as_the_box(tmp_path, kind):
+def test_mesh_of_a_box_equals_the_box_for_scans_and_physics(tmp_path, kind):
     name = "box." + kind[:3]
     trimesh.creation.box((0.5, 1.0, 1.5)).export(str(tmp_path / name), file_type=kind)
     pose = "<pose>1.5 0.2 0.3 0.2 0.3 0.4</pose>"
@@ -232,8 +237,8 @@ def test_mesh_of_a_box_is_the_same_for_scans_and_for_physics_as_the_box(tmp_path
     for path in (as_box, as_mesh):
         world = load_world(path)
         seen.append(fan.cast(np.zeros((1, 3)), Slice(world, 0.182))[0])
-        physics = Physics(world, 240)
-        met.append(physics.cast_rays((0.0, 0.0, 0.182), ends))
+        physics = BulletEngine(world, 240)
+        met.append(bullet_rays(physics, (0.0, 0.0, 0.182), ends))
         physics.close()
     assert np.isfinite(seen[0]).sum() > 50
     np.testing.assert_allclose(seen[1], seen[0], atol=1e-6)
@@ -244,27 +249,31 @@ CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 0 1\n"
 A, B, C = (0, 0, 0), (1, 0, 0), (0, 0, 1)
 
 
-@pytest.mark.parametrize(("rest", "expected"), [
-    (b"f 1 2 3", [(A, B, C)]),
-    (b"f 3/9/9 2//9 1/9  # a comment\r\nvt 0\nl 1 2\n\xff", [(C, B, A)]),
-    (b"f 1 \\\n2 3\n", [(A, B, C)]),
-    (b"v 1 0 1 0.5 0.5 0.5\nf 1 2 4 3", [(A, B, (1, 0, 1)), (A, (1, 0, 1), C)]),
-    (b"f -3 -2 -1\nv 5 0 0\nf -4 -3 -1\nf 1 2 5\nv 6 0 0", [(A, B, C), (A, B, (5, 0, 0)), (A, B, (6, 0, 0))]),
-])
-def test_obj_is_read_by_its_corners_and_faces_alone(tmp_path, rest, expected):
+@pytest.mark.parametrize(
+    ("rest", "expected"),
+    [
+        (b"f 1 2 3", [(A, B, C)]),
+        (b"f 3/9/9 2//9 1/9  # a comment\r\nvt 0\nl 1 2\n\xff", [(C, B, A)]),
+        (b"f 1 \\\n2 3\n", [(A, B, C)]),
+        (b"\tv\t1\t0\t1\n  f\t1 2 4  # \xe9", [(A, B, (1, 0, 1))]),
+        (b"v 1 0 1 0.5 0.5 0.5\nf 1 2 4 3", [(A, B, (1, 0, 1)), (A, (1, 0, 1), C)]),
+        (b"f -3 -2 -1\nv 5 0 0\nf -4 -3 -1\nf 1 2 5\nv 6 0 0", [(A, B, C), (A, B, (5, 0, 0)), (A, B, (6, 0, 0))]),
+    ],
+)
+def test_only_vertices_and_faces_of_an_obj_are_read(tmp_path, rest, expected):
     (tmp_path / "m.obj").write_bytes(CORNERS + rest)
     assert only_obstacle(mesh_world(tmp_path, "m.obj")).geometry.corners.tolist() == np.array(expected).tolist()
 
 
-def test_mesh_with_more_triangles_than_bullet_takes_at_once_is_whole(tmp_path):
+def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=6, radius=1.0)
     assert len(ball.faces) > 60000
     ball.export(str(tmp_path / "ball.stl"))
     world = load_world(mesh_world(tmp_path, "ball.stl"))
-    physics = Physics(world, 240)
+    physics = BulletEngine(world, 240)
     turns = np.linspace(0.0, 6.2, 50)
     starts_far = np.stack([3.0 * np.cos(turns), 3.0 * np.sin(turns), np.full(50, 0.1)], axis=1)
-    met = [physics.cast_rays(tuple(start), np.array([[0.0, 0.0, 0.1]]))[0] for start in starts_far.tolist()]
+    met = [bullet_rays(physics, tuple(start), np.array([[0.0, 0.0, 0.1]]))[0] for start in starts_far.tolist()]
     physics.close()
     assert np.array(met) == pytest.approx(2.0 / 3.0, abs=0.003)
     cut = Slice(world, 0.1)
@@ -275,13 +284,13 @@ def test_mesh_with_more_triangles_than_bullet_takes_at_once_is_whole(tmp_path):
 def test_robot_is_stopped_by_a_mesh_where_its_scan_sees_it(tmp_path, burger, drive):
     trimesh.creation.box((0.1, 2.0, 0.6)).export(str(tmp_path / "wall.stl"))
     world = load_world(mesh_world(tmp_path, "wall.stl", pose="<pose>0.5 0 0.3 0 0 0</pose>"))
-    sim = Simulator(SimParams(drive=drive, cmd_vel_timeout=0.0), world, [RobotSpec("", burger, Pose2D())])
+    sim = make_simulator(SimParams(drive=drive, cmd_vel_timeout=0.0), world, [RobotSpec("", burger, Pose2D())])
     ahead = sim.exact_distances()[0]
     sim.command(Twist2D(0.2))
     for _ in range(240 * 5):
         sim.step({})
     assert ahead == pytest.approx(0.45 + 0.032, abs=0.001)
-    assert 0.2 < sim.world_from_base().x < 0.45 and sim.touching()
+    assert 0.2 < sim.world_from_footprint().x < 0.45 and sim.touching()
     sim.close()
 
 
@@ -291,12 +300,12 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
     "nan.obj": (b"v 0 0 0\nv 1 0 0\nv nan 0 1\nf 1 2 3\n", ["nan.obj:3: v is 'nan 0 1', expected 3 finite numbers"]),
     "words.obj": (b"v 0 0 0\nv 1 a 0\n", ["words.obj:2: v is '1 a 0', expected 3 finite numbers"]),
     "flat.obj": (b"v 0 0\n", ["flat.obj:1: v is '0 0', expected 3 finite numbers"]),
-    "beyond.obj": (CORNERS + b"f 1 2 9\n", ["beyond.obj:4: f has corner 9, expected one of the file's 3"]),
-    "zero.obj": (CORNERS + b"f 0 1 2\n", ["zero.obj:4: f is '0 1 2', expected 3 or more corners, whole numbers"]),
+    "beyond.obj": (CORNERS + b"f 1 2 9\n", ["beyond.obj:4: f has vertex 9, expected one of the file's 3"]),
+    "zero.obj": (CORNERS + b"f 0 1 2\n", ["zero.obj:4: f is '0 1 2', expected 3 or more vertices, whole numbers"]),
     "before.obj": (CORNERS + b"f -4 1 2\n", ["before.obj:4: f is '-4 1 2', expected", "below 0, of the 3 before it"]),
-    "part.obj": (CORNERS + b"f 1 2 3.5\n", ["part.obj:4: f is '1 2 3.5', expected 3 or more corners"]),
-    "edge.obj": (CORNERS + b"f 1 2\n", ["edge.obj:4: f is '1 2', expected 3 or more corners"]),
-    "binary.obj": (b"f " + bytes(range(128, 256)) * 9, ["binary.obj:1: f is '\\\\x80", "expected 3 or more corners"]),
+    "part.obj": (CORNERS + b"f 1 2 3.5\n", ["part.obj:4: f is '1 2 3.5', expected 3 or more vertices"]),
+    "edge.obj": (CORNERS + b"f 1 2\n", ["edge.obj:4: f is '1 2', expected 3 or more vertices"]),
+    "binary.obj": (b"f " + bytes(range(128, 256)) * 9, ["binary.obj:1: f is '\\\\x80", "expected 3 or more vertices"]),
     "cut.dae": (TRIANGLE_DAE[:700].encode(), ["cut.dae", "XML"]),
     "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), ["unit.dae", "meter='0'"]),
     "entity.dae": (b"<!DOCTYPE COLLADA [<!ENTITY e SYSTEM 'file:///etc/hostname'>]><COLLADA/>", ["DOCTYPE"]),
@@ -305,7 +314,7 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
 
 
 @pytest.mark.parametrize("name", BROKEN_MESHES)
-def test_mesh_that_cannot_be_read_is_refused_where_it_is_used(tmp_path, name):
+def test_unreadable_mesh_is_refused_with_the_line_that_uses_it(tmp_path, name):
     content, named = BROKEN_MESHES[name]
     (tmp_path / name).write_bytes(content)
     path = mesh_world(tmp_path, name)
@@ -319,12 +328,12 @@ def test_mesh_with_no_extent_along_an_axis_is_refused(tmp_path):
     assert "<scale> is '1 0 1'" in raised_by(mesh_world(tmp_path, "t.dae", "<scale>1 0 1</scale>"))
 
 
-def test_ground_plane_needs_no_model_and_may_be_renamed(tmp_path):
+def test_ground_plane_needs_no_model_file_and_can_be_renamed(tmp_path):
     include = "<include><uri>model://ground_plane</uri><name>floor</name><pose>0 0 -1 0 0 0</pose></include>"
     obstacle = only_obstacle(world_file(tmp_path, include))
     assert (obstacle.name, obstacle.pose.position) == ("floor/link/collision", (0, 0, -1))
     assert obstacle.geometry == Plane((0.0, 0.0, 1.0))
 
 
-def test_shipped_world_knows_where_its_models_are():
+def test_world_lists_the_poses_of_its_models():
     assert world_named("stage_4").models["pillar_1"].position == (0.4, 0.5, 0.25)

@@ -1,4 +1,4 @@
-"""The simulator against the ideal differential drive, the analytic ray cast, and its own promises."""
+"""The simulator, compared with an ideal differential drive and an analytic ray cast; rates, seeds and resets."""
 
 import math
 from typing import Callable
@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support import analytic_distances, world_named
+from support import analytic_distances, lean, world_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
-from aro_robocop_goto_as.simtime import due
-from aro_robocop_goto_as.simulator import Simulator
+from aro_robocop_goto_as.simulation.clock import due
+from aro_robocop_goto_as.simulation.simulator import Simulator, everything
 
 Make = Callable[..., Simulator]
 NOTHING: "dict[str, list[int]]" = {}
@@ -20,28 +20,28 @@ NOTHING: "dict[str, list[int]]" = {}
 
 def _drive(sim: Simulator, twist: Twist2D, seconds: float) -> None:
     """Command a velocity for a time, then stop and come to rest."""
-    for _ in range(int(round(seconds * sim.params.physics_rate))):
+    for _ in range(int(round(seconds * sim.config.rates.physics))):
         sim.command(twist)
         sim.step(NOTHING)
-    for _ in range(sim.params.physics_rate):
+    for _ in range(sim.config.rates.physics):
         sim.command(STANDSTILL)
         sim.step(NOTHING)
 
 
 @pytest.mark.parametrize("v", [0.2, -0.2])
-def test_two_metres_straight_end_within_one_percent(simulator: Make, v: float) -> None:
+def test_driving_two_metres_is_accurate_to_one_percent(simulator: Make, v: float) -> None:
     sim = simulator()
     _drive(sim, Twist2D(v, 0.0), 10.0)
-    pose = sim.world_from_base()
+    pose = sim.world_from_footprint()
     assert math.hypot(pose.x - 10.0 * v, pose.y) < 0.02
     assert abs(pose.yaw) < math.radians(2.0)
 
 
 @pytest.mark.parametrize("w", [1.0, -2.5])
-def test_a_full_turn_in_place_ends_within_two_degrees(simulator: Make, w: float) -> None:
+def test_full_turn_in_place_is_accurate_to_two_degrees(simulator: Make, w: float) -> None:
     sim = simulator()
     _drive(sim, Twist2D(0.0, w), abs(2.0 * math.pi / w))
-    pose = sim.world_from_base()
+    pose = sim.world_from_footprint()
     assert abs(pose.yaw) < math.radians(2.0)
     assert math.hypot(pose.x, pose.y) < 0.01
 
@@ -51,23 +51,23 @@ def test_a_robot_without_a_command_does_not_drift(simulator: Make, before: float
     sim = simulator()
     if before:
         _drive(sim, Twist2D(0.15, 0.4), before)
-    start = sim.world_from_base()
+    start = sim.world_from_footprint()
     for _ in range(60 * 240):
         sim.step(NOTHING)
-    end = sim.world_from_base()
+    end = sim.world_from_footprint()
     assert math.hypot(end.x - start.x, end.y - start.y) < 1e-3
     assert abs(wrap_angle(end.yaw - start.yaw)) < math.radians(0.1)
 
 
-def test_a_wall_stops_the_robot_upright_and_it_can_back_out(simulator: Make) -> None:
+def test_robot_stops_upright_at_a_wall_and_can_back_out(simulator: Make) -> None:
     sim = simulator("stage_1", Pose2D(1.5, 0.0))
     _drive(sim, Twist2D(0.22, 0.0), 5.0)
-    stuck = sim.world_from_base()
+    stuck = sim.world_from_footprint()
     assert stuck.x < 1.85 - 0.033, "the robot is in the wall"
     assert sim.touching()
-    assert sim.leaning() < math.radians(3.0)
+    assert lean(sim) < math.radians(3.0)
     _drive(sim, Twist2D(-0.2, 0.0), 3.0)
-    assert sim.world_from_base().x < stuck.x - 0.4
+    assert sim.world_from_footprint().x < stuck.x - 0.4
     assert not sim.touching()
 
 
@@ -81,11 +81,11 @@ def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world
     while tried < 10:
         x, y, yaw = rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-math.pi, math.pi)
         ring = analytic_distances(description, x, y, np.linspace(0, 2 * math.pi, 90), 50.0)
-        if not (0.3 < ring.min() and np.isfinite(ring).all()):  # too near to something, or outside
+        if not (0.3 < ring.min() and np.isfinite(ring).all()):  # too close to an obstacle, or outside the walls
             continue
         sim.place(Pose2D(x, y, yaw))
         _drive(sim, Twist2D(0.1, rng.uniform(-1.0, 1.0)), 1.0)
-        pose = sim.world_from_base()
+        pose = sim.world_from_footprint()
         scan_x, scan_y = pose.x - 0.032 * math.cos(pose.yaw), pose.y - 0.032 * math.sin(pose.yaw)
         angles = pose.yaw + np.arange(360) * sim.lidar.spec.increment
         expected = analytic_distances(description, scan_x, scan_y, angles, 10.0)
@@ -94,51 +94,60 @@ def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world
         tried += 1
 
 
-def test_everything_of_one_step_carries_its_time_and_rates_hold_over_a_second(simulator: Make) -> None:
+def test_observations_of_a_step_carry_its_stamp_and_rates_are_exact_over_one_second(simulator: Make) -> None:
     sim = simulator("stage_1")
-    seen = [it for it in (sim.step(sim.everything()) for _ in range(240)) if it is not None]
-    counts = {name: sum(getattr(it, name) not in (None, {}) for it in seen)
-              for name in ("scans", "odometry", "joints", "imus", "ground_truth", "bumpers", "fields")}
-    assert counts == {"scans": 10, "odometry": 30, "joints": 30, "imus": 200, "ground_truth": 30, "bumpers": 30,
-                      "fields": 0}
+    seen = [it for it in (sim.step(everything(len(sim.robots))) for _ in range(240)) if it is not None]
+    counts = {
+        name: sum(getattr(it, name) not in (None, {}) for it in seen)
+        for name in ("scans", "odometry", "joints", "imus", "ground_truth", "bumpers", "magnetic_fields")
+    }
+    assert counts == {
+        "scans": 10,
+        "odometry": 30,
+        "joints": 30,
+        "imus": 200,
+        "ground_truth": 30,
+        "bumpers": 30,
+        "magnetic_fields": 0,
+    }
     assert sum(it.clock for it in seen) == 60
     assert seen[-1].stamp_ns == 1000000000
     assert all(it.stamp_ns % 100000000 == 0 for it in seen if it.scans)
 
 
 @given(st.integers(1, 240), st.integers(0, 10**6))
-def test_a_rate_that_need_not_divide_has_an_exact_mean(rate: int, first: int) -> None:
+def test_rate_that_does_not_divide_the_physics_rate_has_an_exact_mean(rate: int, first: int) -> None:
     assert sum(due(step, rate, 240) for step in range(first + 1, first + 241)) == rate
 
 
-def test_the_same_seed_gives_the_same_run_whoever_listens(simulator: Make) -> None:
+def test_same_seed_gives_the_same_run_whatever_is_subscribed(simulator: Make) -> None:
     def run(seed: int, listening: bool) -> "tuple[list[float], Pose2D]":
         sim = simulator("stage_2", seed=seed)
         for step in range(480):
             sim.command(Twist2D(0.2, 0.3))
-            seen = sim.step(sim.everything() if listening or step == 479 else NOTHING)
+            seen = sim.step(everything(len(sim.robots)) if listening or step == 479 else NOTHING)
         assert seen is not None
-        return list(seen.scans[0]), sim.world_from_base()
+        return list(seen.scans[0]), sim.world_from_footprint()
 
     assert run(1, True) == run(1, False)
     assert run(1, True)[0] != run(2, True)[0]
     assert run(1, True)[1] == run(2, True)[1]
 
 
-def test_reset_puts_the_robot_back_and_lets_time_go_on(simulator: Make) -> None:
+def test_reset_returns_the_robot_to_its_spawn_while_time_continues(simulator: Make) -> None:
     sim = simulator("stage_4", Pose2D(-0.7, 0.0))
     _drive(sim, Twist2D(0.2, 0.5), 2.0)
     before = sim.stamp_ns
     sim.reset()
-    observed = [sim.step(sim.everything()) for _ in range(8)][-1]
-    truth = sim.world_from_base()
+    observed = [sim.step(everything(len(sim.robots))) for _ in range(8)][-1]
+    truth = sim.world_from_footprint()
     assert observed is not None and observed.stamp_ns > before
     assert (truth.x, truth.y, truth.yaw) == pytest.approx((-0.7, 0.0, 0.0), abs=1e-4)
     assert observed.odometry is not None
-    assert observed.odometry[0].odom_from_base.x == pytest.approx(0.0, abs=1e-4)
+    assert observed.odometry[0].odom_from_footprint.x == pytest.approx(0.0, abs=1e-4)
 
 
-def test_placing_the_robot_moves_map_from_odom_and_not_the_odometry(simulator: Make) -> None:
+def test_placing_the_robot_changes_map_from_odom_instead_of_odometry(simulator: Make) -> None:
     sim = simulator("stage_4", Pose2D(-0.7, 0.0))
     _drive(sim, Twist2D(0.2, 0.0), 1.0)
     for _ in range(8):
@@ -152,13 +161,13 @@ def test_encoders_and_ground_truth_differ_when_the_wheels_slip(simulator: Make) 
     sim = simulator("stage_1", Pose2D(1.7, 0.0))
     for _ in range(480):
         sim.command(Twist2D(0.22, 0.0))
-        seen = sim.step(NOTHING)
+        seen = sim.step({"odom": [0]})
     assert seen is not None and seen.odometry is not None
-    travelled = sim.world_from_base().x - 1.7
-    assert seen.odometry[0].odom_from_base.x > travelled + 0.05
+    travelled = sim.world_from_footprint().x - 1.7
+    assert seen.odometry[0].odom_from_footprint.x > travelled + 0.05
 
 
-def test_a_bad_command_leaves_the_good_one_in_force(simulator: Make) -> None:
+def test_invalid_command_leaves_the_previous_one_in_force(simulator: Make) -> None:
     sim = simulator()
     sim.command(Twist2D(0.2, 0.0))
     with pytest.raises(CommandError):
@@ -168,12 +177,12 @@ def test_a_bad_command_leaves_the_good_one_in_force(simulator: Make) -> None:
     assert sim.velocity().v == pytest.approx(0.2, rel=0.02)
 
 
-def test_a_reset_starts_the_noise_anew(simulator: Make) -> None:
+def test_reset_restarts_the_noise_sequence(simulator: Make) -> None:
     sim = simulator("stage_2")
 
     def first_scan() -> "list[float]":
         for _ in range(24):
-            seen = sim.step(sim.everything())
+            seen = sim.step(everything(len(sim.robots)))
         assert seen is not None
         return list(seen.scans[0])
 
@@ -185,7 +194,7 @@ def test_a_reset_starts_the_noise_anew(simulator: Make) -> None:
     assert once == again and once != other
 
 
-def test_time_goes_back_only_where_it_is_asked_to(simulator: Make) -> None:
+def test_reset_sets_time_back_only_on_request(simulator: Make) -> None:
     sim = simulator("empty")
     for _ in range(10):
         sim.step(NOTHING)

@@ -1,4 +1,4 @@
-"""World files: the shipped ones fit the robot, poses compose, and each broken one is refused by name and line."""
+"""World files: shipped ones suit the robot, poses compose, broken ones are refused with file and line."""
 
 import itertools
 import math
@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import WorldError
-from aro_robocop_goto_as.geometry import Pose2D, rotation_matrix
-from aro_robocop_goto_as.world import Box, Cylinder, Plane, Sphere, find_world, load_world
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
+from aro_robocop_goto_as.world.load import find_world, load_world
+from aro_robocop_goto_as.world.model import Box, Cylinder, Plane, Sphere
 
 WORLDS = Path(__file__).resolve().parents[2] / "worlds"
 SHIPPED = {  # name: (boxes, cylinders, spawn), each with a ground plane besides
@@ -27,7 +28,7 @@ SHIPPED = {  # name: (boxes, cylinders, spawn), each with a ground plane besides
     "bench": (8, 5, Pose2D(1.0, 0.0)),
 }
 BURGER_RADIUS = 0.105  # [m]
-CELL = 0.05  # [m] of the occupancy raster
+CELL = 0.05  # [m] side of a raster cell
 HALF = 160  # raster cells from the origin to each border: 8 m, outside of every wall
 
 
@@ -76,6 +77,9 @@ def free_cells(world):
     return clearance(world, np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1)) > BURGER_RADIUS
 
 
+RELATIVE = "<pose relative_to='{}'>1 0 0 0 0 0</pose>"
+
+
 def write(directory, body, version="1.7"):
     """A world file with the body from line 3 on."""
     path = directory / "w.sdf"
@@ -97,12 +101,12 @@ SPHERE = "<sphere><radius>0.5</radius></sphere>"
 # The shipped worlds
 
 
-def test_every_shipped_world_is_listed_here():
+def test_every_shipped_world_is_tested():
     assert {path.stem for path in WORLDS.glob("*.sdf")} == set(SHIPPED)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_shipped_world_has_its_obstacles_and_spawn(name):
+def test_shipped_world_has_the_expected_obstacles_and_spawn(name):
     world = shipped(name)
     kinds = [type(obstacle.geometry) for obstacle in world.obstacles]
     boxes, cylinders, spawn = SHIPPED[name]
@@ -135,17 +139,17 @@ def test_robot_in_stage_4_can_drive_one_metre_straight_ahead():
 
 
 @pytest.mark.parametrize("name", [name for name in SHIPPED if name != "empty"])
-def test_robot_reaches_every_free_place_within_the_walls_and_none_beyond(name):
+def test_free_space_within_the_walls_is_connected_and_enclosed(name):
     world = shipped(name)
     free = free_cells(world)
     inside = flood(free, cell_of(world.spawn.x, world.spawn.y))
     outside = flood(free, (0, 0))
     assert inside.any() and not (inside & outside).any(), "the outer wall has a gap"
-    assert (inside | outside)[free].all(), "a place within the walls is cut off"
+    assert (inside | outside)[free].all(), "a place within the walls is unreachable"
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_goals_that_a_world_file_documents_can_be_reached(name):
+def test_documented_goals_of_a_world_are_reachable(name):
     world = shipped(name)
     goals = re.findall(r"\(([^,()]+), ([^()]+)\)", Path(world.path).read_text(encoding="utf-8").split("Free goals:")[1])
     inside = flood(free_cells(world), cell_of(world.spawn.x, world.spawn.y))
@@ -153,7 +157,7 @@ def test_goals_that_a_world_file_documents_can_be_reached(name):
     assert [goal for goal in goals if not inside[cell_of(*map(float, goal))]] == []
 
 
-def test_every_cell_of_the_maze_can_be_reached():
+def test_every_cell_of_the_maze_is_reachable():
     world = shipped("maze_1")
     inside = flood(free_cells(world), cell_of(world.spawn.x, world.spawn.y))
     assert all(inside[cell_of(column, row)] for column, row in itertools.product(range(6), range(6)))
@@ -168,7 +172,7 @@ six_numbers = st.tuples(coordinate, coordinate, coordinate, angle, angle, angle)
 
 
 def matrix(x, y, z, roll, pitch, yaw):
-    """The (4, 4) transform of SDF's six numbers: turn about the fixed x, y, z in this order, then shift."""
+    """The (4, 4) transform of SDF's six numbers: rotations about the fixed x, y, z in that order, then a shift."""
     (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
     about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
@@ -189,7 +193,7 @@ def test_poses_of_model_link_and_collision_compose(tmp_path_factory, in_world, i
     np.testing.assert_allclose(rotation_matrix(obstacle.pose.orientation), expected[:3, :3], atol=1e-9)
 
 
-def test_each_geometry_is_read_with_its_figures(tmp_path):
+def test_each_geometry_is_read_with_its_dimensions(tmp_path):
     shapes = {
         "box": ("<box><size>1 2e-1 +.3</size></box>", Box((1.0, 0.2, 0.3))),
         "cylinder": ("<cylinder><length>2.</length><radius>0.5</radius></cylinder>", Cylinder(0.5, 2.0)),
@@ -203,7 +207,7 @@ def test_each_geometry_is_read_with_its_figures(tmp_path):
 
 
 @pytest.mark.parametrize("version", ["1.4", "1.5", "1.6", "1.7"])
-def test_gazebos_ground_plane_and_sun_may_be_included(tmp_path, version):
+def test_gazebos_ground_plane_and_sun_can_be_included(tmp_path, version):
     includes = "<include><uri>model://sun</uri></include>\n<include><uri> model://ground_plane </uri></include>"
     world = load_world(write(tmp_path, includes, version))
     (ground,) = world.obstacles
@@ -212,31 +216,31 @@ def test_gazebos_ground_plane_and_sun_may_be_included(tmp_path, version):
     assert world.ignored == ("include 'sun' (line 3)",)
 
 
-def test_spawn_is_the_frame_robot_spawn(tmp_path):
+def test_spawn_is_the_pose_of_the_frame_robot_spawn(tmp_path):
     frames = '<frame name="other"/><frame name="robot_spawn"><pose>1 -2 0 0 0 4</pose></frame>'
     spawn = load_world(write(tmp_path, frames)).spawn
     assert (spawn.x, spawn.y, spawn.yaw) == (1.0, -2.0, pytest.approx(4.0 - 2.0 * math.pi))
 
 
-def test_spawn_is_the_origin_unless_the_world_says_otherwise(tmp_path):
+def test_spawn_defaults_to_the_origin(tmp_path):
     assert load_world(write(tmp_path, "")).spawn == Pose2D(0.0, 0.0, 0.0)
 
 
-def test_what_is_left_out_and_could_be_missed_is_told_once_the_worlds_own_first(tmp_path):
+def test_ignored_elements_are_listed_once_with_those_of_the_world_first(tmp_path):
     mover = '<model name="m"><static>1</static>\n<plugin name="mover"/><plugin name="mover"/></model>'
     silent = '<gravity>0 0 -9.8</gravity><gui><plugin name="p"/></gui>'
     world = load_world(write(tmp_path, f'<light name="lamp"/>\n{mover}\n{silent}\n<sensor name="eye"/>'))
     assert world.ignored == ("light 'lamp' (line 3)", "sensor 'eye' (line 7)", "plugin 'mover' (line 5)")
 
 
-def test_frames_that_nothing_can_be_placed_in_are_told_but_not_the_spawn(tmp_path):
+def test_frames_of_links_are_told_but_not_those_that_poses_can_be_relative_to(tmp_path):
     in_model = '<frame name="handle"/>\n<link name="l"><frame name="tip"/></link>'
     in_world = '<frame name="robot_spawn"/><frame name="door"/>'
     world = load_world(write(tmp_path, f'{in_world}\n<model name="m"><static>1</static>{in_model}</model>'))
-    assert world.ignored == ("frame 'door' (line 3)", "frame 'handle' (line 4)", "frame 'tip' (line 5)")
+    assert world.ignored == ("frame 'tip' (line 5)",)
 
 
-def test_visuals_comments_foreign_elements_and_empty_frames_do_no_harm(tmp_path):
+def test_visuals_comments_foreign_elements_and_empty_frames_are_accepted(tmp_path):
     visual = '<visual name="v"><geometry><mesh><uri>model://a.dae</uri></mesh></geometry></visual>'
     shape = f'<x:colour xmlns:x="urn:x"/>{SPHERE}'
     pose = "<pose frame=''>1 2 <!-- three --> 3 0 0 -0</pose>"
@@ -245,16 +249,53 @@ def test_visuals_comments_foreign_elements_and_empty_frames_do_no_harm(tmp_path)
 
 
 @pytest.mark.parametrize("attribute", ["relative_to", "frame"])
-def test_pose_may_name_the_frame_that_it_is_in_anyway(tmp_path, attribute):
+def test_pose_may_name_its_default_frame(tmp_path, attribute):
     world, own, empty = (f"<pose {attribute}='{name}'>1 0 0 0 0 0</pose>" for name in ("world", "__model__", ""))
     spawn = f'<frame name="robot_spawn">{world}</frame>'
     include = f"<include><uri>model://ground_plane</uri>{world}</include>"
     link = f'<link name="l">{own}{collision(SPHERE, pose=empty)}</link>'
     body = f'<model name="m">{world}<model name="in">{own}{link}</model></model>'
-    found = load_world(write(tmp_path, spawn + include + body))
-    assert found.spawn == Pose2D(1.0, 0.0, 0.0)
-    assert {o.name: o.pose.position for o in found.obstacles} == {
-        "ground_plane/link/collision": (1, 0, 0), "m/in/l/c": (4, 0, 0)}
+    world_read = load_world(write(tmp_path, spawn + include + body))
+    assert world_read.spawn == Pose2D(1.0, 0.0, 0.0)
+    assert {o.name: o.pose.position for o in world_read.obstacles} == {
+        "ground_plane/link/collision": (1, 0, 0),
+        "m/in/l/c": (4, 0, 0),
+    }
+
+
+def test_pose_relative_to_the_world_counts_from_the_world_at_any_depth(tmp_path):
+    in_world = "<pose relative_to='world'>1 2 3 0 0 0</pose>"
+    moved = "<pose>10 20 30 0 0 1</pose>"
+    link = f'<link name="l">{in_world}{collision(SPHERE)}</link>'
+    inner = f'<model name="in">{in_world}<link name="l">{collision(SPHERE)}</link></model>'
+    include = f"<include><uri>model://ground_plane</uri>{in_world}</include>"
+    found = load_world(
+        write(tmp_path, f'<model name="m"><static>1</static>{moved}{link}{inner}{include}</model>', "1.8")
+    )
+    assert [o.pose for o in found.obstacles] == [Pose3D((1.0, 2.0, 3.0))] * 3
+
+
+def test_poses_relative_to_what_is_beside_compose(tmp_path):
+    quarter = "0 0 1.5707963267948966"
+    frame = f'<frame name="f"><pose>1 0 0 {quarter}</pose></frame><frame name="g" attached_to="f"/>'
+    link = f'<link name="a"><pose relative_to="b">1 0 0 0 0 0</pose>{collision(SPHERE)}</link>'
+    other = f'<link name="b"><pose>0 0 0 {quarter}</pose>{collision(SPHERE, pose=RELATIVE.format("a"))}</link>'
+    own = f'<link name="c"><pose>5 5 5 1 1 1</pose>{collision(SPHERE, pose=RELATIVE.format("__model__"))}</link>'
+    links = model("", pose="").replace('<link name="l">\n\n</link>', link + other + own)
+    body = frame + model(collision(SPHERE), "n", '<pose relative_to="g">2 0 0 0 0 0</pose>') + links
+    found = {o.name: o.pose for o in load_world(write(tmp_path, body, "1.8")).obstacles}
+    expected = {"n/l/c": (1, 2, 0), "m/a/c": (0, 1, 0), "m/b/c": (0, 2, 0), "m/c/c": (1, 0, 0)}
+    assert set(found) == set(expected)
+    for name, position in expected.items():
+        np.testing.assert_allclose(found[name].position, position, atol=1e-12)
+    np.testing.assert_allclose(rotation_matrix(found["m/c/c"].orientation), np.eye(3), atol=1e-12)
+
+
+def test_last_of_several_static_counts(tmp_path):
+    body = model(collision(SPHERE)).replace("</static>", "</static><static>0</static>")
+    assert "motion of model 'm'" in load_world(write(tmp_path, body)).ignored[0]
+    body = model(collision(SPHERE)).replace("<static>", "<static>0</static><static>")
+    assert load_world(write(tmp_path, body)).ignored == ()
 
 
 def test_saved_pose_may_name_the_world_at_any_depth(tmp_path):
@@ -275,7 +316,11 @@ def raised_by(path):
 
 BROKEN = {  # case: (body from line 3 on, line of the error, what the message must name)
     "static neither true nor false": ('<model name="m"><static>yes</static></model>', 3, ["yes", "true or false"]),
-    "two static": ('<model name="m"><static>1</static>\n<static>0</static></model>', 4, ["second <static>"]),
+    "second static neither true nor false": (
+        '<model name="m"><static>1</static>\n<static>no</static></model>',
+        4,
+        ["no", "true or false"],
+    ),
     "model without a name": ("<model><static>true</static></model>", 3, ["<model> has no name"]),
     "model named twice": (f'{model("", "a")}\n<model name="a"><static>true</static></model>', 6, ["'a'", "taken"]),
     "include named as a model": (
@@ -285,17 +330,29 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
     ),
     "collision named twice": (model(collision(SPHERE) + "\n" + collision(SPHERE)), 5, ["m/l/c", "'c'", "taken"]),
     "nested model named twice": (
-        '<model name="m"><model name="in"/>\n<model name="in"/></model>', 4, ["m/in", "'in'", "taken"]),
+        '<model name="m"><model name="in"/>\n<model name="in"/></model>',
+        4,
+        ["m/in", "'in'", "taken"],
+    ),
     "misspelt element": (model('<colision name="wall"/>'), 4, ["<colision>", "wall", "collision"]),
     "state that adds a model": ('<state world_name="w">\n<insertions/></state>', 4, ["<insertions>", "model"]),
     "state that scales": (
-        '<state><model name="m"><pose>0 0 0 0 0 0</pose>\n<scale>1 2 1</scale></model></state>', 4, ["1 2 1", "'m'"]),
+        '<state><model name="m"><pose>0 0 0 0 0 0</pose>\n<scale>1 2 1</scale></model></state>',
+        4,
+        ["1 2 1", "'m'"],
+    ),
     "include of nothing known": (
-        "\n<include><uri>model://cafe</uri></include>", 4, ["model://cafe", "beside the file", ".gazebo/models"]),
+        "\n<include><uri>model://cafe</uri></include>",
+        4,
+        ["model://cafe", "beside the file", ".gazebo/models"],
+    ),
     "include from the web": ("<include><uri>https://fuel.org/cafe</uri></include>", 3, ["https://fuel", "model://"]),
     "include without uri": ("<include><name>i</name></include>", 3, ["<uri>"]),
     "mesh that isn't there": (
-        model(collision("<mesh>\n<uri>model://a/b.dae</uri></mesh>")), 5, ["model://a/b.dae", "m/l/c", "not found"]),
+        model(collision("<mesh>\n<uri>model://a/b.dae</uri></mesh>")),
+        5,
+        ["model://a/b.dae", "m/l/c", "not found"],
+    ),
     "mesh without uri": (model(collision("<mesh/>")), 4, ["<mesh>", "<uri>", "m/l/c"]),
     "part of a mesh": (model(collision("<mesh><uri>a</uri><submesh/></mesh>")), 4, ["<submesh>", "m/l/c", "scale"]),
     "heightmap": (model(collision("<heightmap/>")), 4, ["<heightmap>", "m/l/c", "box"]),
@@ -307,14 +364,43 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         4,
         ["relative_to='door'", "m/l", "parent"],
     ),
+    "poses relative to each other": (
+        "\n".join(
+            f'<model name="{a}"><static>1</static><pose relative_to="{b}">1 0 0 0 0 0</pose></model>'
+            for a, b in ("ab", "ba")
+        ),
+        3,
+        ["'a'", "relative to itself"],
+    ),
+    "pose relative to an include that says no pose": (
+        "<include><name>i</name><uri>model://ground_plane</uri></include>\n"
+        + model("", pose="<pose relative_to='i'>0 0 0 0 0 0</pose>"),
+        4,
+        ["'i'", "without <pose>"],
+    ),
+    "frame attached to nothing known": (
+        '<frame name="f" attached_to="a::b"/>\n' + model("", pose="<pose relative_to='f'>0 0 0 0 0 0</pose>"),
+        3,
+        ["attached_to='a::b'"],
+    ),
+    "model placed by a frame of its own": ('<model name="m" placement_frame="l"/>', 3, ["placement_frame", "'m'"]),
+    "include that is merged": ("<include merge='1'><uri>model://sun</uri></include>", 3, ["merge"]),
+    "model from Gazebo Fuel": (
+        "<include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun</uri></include>",
+        3,
+        ["models/Sun'", "Gazebo Fuel", "nothing is downloaded"],
+    ),
     "pose in a frame of SDF 1.4": (model('\n<pose frame="hall">0 0 0 0 0 0</pose>'), 5, ["frame='hall'"]),
-    "pose of a link in the world": (
-        model("\n<pose relative_to='world'>0 0 0 0 0 0</pose>"), 5, ["relative_to='world'", "m/l"]),
-    "pose of a collision in its model": (
-        model(collision(SPHERE, pose="<pose relative_to='__model__'>0 0 0 0 0 0</pose>")),
-        4, ["relative_to='__model__'", "m/l/c"]),
+    "pose of a link in the world of SDF 1.4": (
+        model("\n<pose frame='world'>0 0 0 0 0 0</pose>"),
+        5,
+        ["frame='world'", "m/l"],
+    ),
     "pose of a model in itself": (
-        model("", pose="<pose frame='__model__'>0 0 0 0 0 0</pose>"), 3, ["frame='__model__'", "'m'", "parent"]),
+        model("", pose="<pose frame='__model__'>0 0 0 0 0 0</pose>"),
+        3,
+        ["frame='__model__'", "'m'", "parent"],
+    ),
     "pose in degrees": (model('<pose degrees="true">0 0 0 0 0 90</pose>'), 4, ["degrees='true'"]),
     "pose of five numbers": (model("<pose>0 0 0\n0 0</pose>"), 4, ["<pose>", "'0 0 0 0 0'", "6 finite numbers"]),
     "pose that isn't a number": (model("<pose>nan 0 0 0 0 0</pose>"), 4, ["'nan 0 0 0 0 0'"]),
@@ -354,12 +440,12 @@ BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message 
     "light outside of a world": ("<sdf version='1.7'>\n<light name='stray'/></sdf>", 2, ["<light>", "stray"]),
     "world without a name": ("<sdf version='1.7'>\n<world/></sdf>", 2, ["<world> has no name"]),
     "empty file": ("", 1, ["XML"]),
-    "entity that nobody declares": ("<sdf version='1.7'>\n<world name='w'>&x;</world></sdf>", 2, ["'x'", "XML"]),
+    "undeclared entity": ("<sdf version='1.7'>\n<world name='w'>&x;</world></sdf>", 2, ["'x'", "XML"]),
 }
 
 
 @pytest.mark.parametrize(("text", "line", "named"), BROKEN_FRAMES.values(), ids=BROKEN_FRAMES.keys())
-def test_file_that_is_no_world_is_refused_with_file_line_and_name(tmp_path, text, line, named):
+def test_file_that_is_not_a_world_is_refused_with_file_line_and_name(tmp_path, text, line, named):
     path = tmp_path / "w.sdf"
     path.write_text(text, encoding="utf-8")
     message = raised_by(path)
@@ -379,34 +465,34 @@ def test_doctype_is_refused_whatever_it_declares(tmp_path, dtd):
     assert message.startswith(f"{path}: ") and "DOCTYPE" in message
 
 
-def test_entities_that_would_grow_without_bound_are_refused(tmp_path):
+def test_exponentially_expanding_entities_are_refused(tmp_path):
     path = tmp_path / "w.sdf"
     levels = "".join(f"<!ENTITY e{n + 1} '{f'&e{n};' * 10}'>" for n in range(20))
     path.write_text(f"<!DOCTYPE sdf [<!ENTITY e0 'a'>{levels}]>\n<sdf version='&e20;'/>", "utf-8")
     assert raised_by(path).startswith(f"{path}:")
 
 
-def test_file_that_cannot_be_read_is_refused_by_name(tmp_path):
+def test_unreadable_file_is_refused_by_name(tmp_path):
     assert "nowhere.sdf" in raised_by(tmp_path / "nowhere.sdf")
     assert str(tmp_path) in raised_by(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["bludiště č. 1.sdf", "50%25.sdf", "100 %.sdf", "a#b?c:d.sdf"])
-def test_file_name_stays_readable_in_messages(tmp_path, name):
+def test_special_characters_in_file_names_are_shown_unchanged(tmp_path, name):
     path = tmp_path / name
     path.write_text("<sdf/>", encoding="utf-8")
     assert raised_by(path).startswith(f"{path}:1: ")
 
 
 @given(st.one_of(st.binary(max_size=60), st.text(max_size=60).map(lambda text: text.encode("utf-8", "replace"))))
-def test_no_content_leads_to_any_error_but_a_world_error(tmp_path_factory, content):
+def test_arbitrary_content_raises_only_world_errors(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "any.sdf"
     path.write_bytes(content)
     raised_by(path)
 
 
 @given(st.text(alphabet="0123456789 .eE+-_xinfa\n", max_size=30))
-def test_no_pose_leads_to_any_error_but_a_world_error(tmp_path_factory, pose):
+def test_arbitrary_pose_text_raises_only_world_errors(tmp_path_factory, pose):
     path = write(tmp_path_factory.getbasetemp(), model(f"<pose>{pose}</pose>" + collision(SPHERE)))
     try:
         (obstacle,) = load_world(path).obstacles
@@ -418,11 +504,11 @@ def test_no_pose_leads_to_any_error_but_a_world_error(tmp_path_factory, pose):
 # Where worlds are found
 
 
-def test_bare_name_is_looked_up_in_the_directory():
+def test_bare_name_is_looked_up_in_the_worlds_directory():
     assert find_world("stage_4", str(WORLDS)) == str(WORLDS / "stage_4.sdf")
 
 
-def test_anything_else_is_a_path(tmp_path, monkeypatch):
+def test_file_name_with_an_extension_is_a_path(tmp_path, monkeypatch):
     (tmp_path / "mine.world").touch()
     assert find_world(str(tmp_path / "mine.world"), str(WORLDS)) == str(tmp_path / "mine.world")
     monkeypatch.chdir(tmp_path)
@@ -430,13 +516,13 @@ def test_anything_else_is_a_path(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["hause", "./stage_4", "stage_4.sdf", ""])
-def test_unknown_world_is_refused_with_the_names_of_those_that_exist(name):
+def test_unknown_world_is_refused_with_the_known_names(name):
     with pytest.raises(WorldError) as caught:
         find_world(name, str(WORLDS))
     assert f"'{name}'" in str(caught.value)
     assert "empty, maze_1, stage_1, stage_2, stage_3, stage_4, world" in str(caught.value)
 
 
-def test_directory_without_worlds_is_named_as_such(tmp_path):
+def test_missing_worlds_directory_is_reported_as_having_none(tmp_path):
     with pytest.raises(WorldError, match="none"):
         find_world("stage_4", str(tmp_path / "missing"))

@@ -1,7 +1,6 @@
-"""The client of a measurement: a process that empties its connections as fast as data comes, and counts messages.
+"""The client of a measurement: a process that reads its connections as fast as data arrives, and counts messages.
 
-It is told what to do on its standard input: each line asks for one line on the standard output, a Tally as JSON; at the
-end of input it ends.
+For each line on its standard input it prints a Tally as one line of JSON; it ends at the end of its input.
 """
 
 import argparse
@@ -17,39 +16,39 @@ from typing import Dict, List
 from .frames import Count, FrameCounter
 from .subscribe import Subscription
 
-READ_SIZE = 1 << 18  # [bytes] at most at a time
+READ_SIZE = 1 << 18  # [bytes] per call
 
 
 @dataclass(frozen=True)
 class Tally:
-    """What has arrived until now."""
+    """The messages received so far."""
 
-    time: float  # [s] of the monotonic clock, which all processes share
-    cpu: float  # [s] that this process has used
+    time: float  # [s] of the monotonic clock, the same in all processes
+    cpu: float  # [s] processor time of this process
     open: int  # connections
     counts: Dict[str, Count]  # topic -> messages
-    first_at: Dict[str, float]  # topic -> when its first message was there, on the same clock
+    first_at: Dict[str, float]  # topic -> time of its first message [s], same clock
 
     @staticmethod
     def from_json(text: str) -> "Tally":
-        """The tally of a line of JSON."""
+        """From a line of JSON."""
         fields = json.loads(text)
         fields["counts"] = {topic: Count(**count) for topic, count in fields["counts"].items()}
         return Tally(**fields)
 
     @property
     def messages(self) -> int:
-        """Of all topics."""
+        """Number of messages of all topics."""
         return sum(count.messages for count in self.counts.values())
 
     @property
     def newest_ns(self) -> int:
-        """The latest stamp [ns] of any topic; 0 before there is one."""
+        """The latest stamp [ns] of any topic; 0 if there is none."""
         return max((count.last_ns or 0 for count in self.counts.values()), default=0)
 
 
 class Drain:
-    """Connections by topic, one each, with a counter."""
+    """One connection and one counter for each topic."""
 
     def __init__(self) -> None:
         self._epoll = select.epoll()
@@ -60,30 +59,30 @@ class Drain:
         self._server = socket.socket()
 
     def listen(self) -> int:
-        """Take whoever connects to this port of loopback; their topics are called "0", "1", ... as they come."""
+        """Accept connections on a loopback port, which is returned; their topics are called "0", "1", ... in order."""
         self._server.bind(("127.0.0.1", 0))
         self._server.listen(socket.SOMAXCONN)
         self._epoll.register(self._server, select.EPOLLIN)
         return int(self._server.getsockname()[1])
 
     def add(self, topic: str, link: socket.socket) -> None:
-        """Read from this connection from now on; from any thread."""
+        """Read from this connection from now on; may be called from any thread."""
         link.setblocking(False)
         self._counters[topic] = FrameCounter()
         self._topics[link.fileno()] = topic
         self._links[link.fileno()] = link
         self._epoll.register(link, select.EPOLLIN)
 
-    def run(self, questions: int) -> None:
-        """Read until the file descriptor with the questions is at its end."""
-        self._epoll.register(questions, select.EPOLLIN)
+    def run(self, requests: int) -> None:
+        """Read connections until the file descriptor `requests` is at its end."""
+        self._epoll.register(requests, select.EPOLLIN)
         while True:
             for ready, _ in self._epoll.poll():
                 if ready in self._links:
                     self._read(ready)
                 elif ready == self._server.fileno():
                     self.add(str(len(self._topics)), self._server.accept()[0])
-                elif os.read(questions, 1):
+                elif os.read(requests, 1):
                     print(json.dumps(asdict(self.tally())), flush=True)
                 else:
                     return
@@ -106,16 +105,16 @@ class Drain:
             self._links.pop(ready).close()
 
     def tally(self) -> Tally:
-        """The state of things."""
+        """The messages received so far."""
         counts = {topic: counter.count for topic, counter in list(self._counters.items())}
         return Tally(time.monotonic(), time.process_time(), len(self._links), counts, dict(self._first_at))
 
 
 def main(argv: List[str]) -> None:
-    """Entry point of the process; the first line that it writes means that it is ready."""
+    """Entry point of the process; its first line of output means that it is ready."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--master", help="URI; subscribe to TOPICS there")
-    parser.add_argument("--listen", action="store_true", help="take bare connections instead; says at which port")
+    parser.add_argument("--listen", action="store_true", help="accept plain connections instead; prints the port")
     parser.add_argument("topics", nargs="*")
     args = parser.parse_args(argv)
     drain = Drain()

@@ -1,7 +1,7 @@
-"""Bytes of a topic's connection -> how many messages, and the stamps of the first and the last one; no more.
+"""Counts the messages in the bytes of a topic's connection, with the stamps of the first and the last one.
 
-A message is its length, four bytes little-endian, then itself; all messages counted here begin with a std_msgs/Header:
-seq, secs, nsecs. https://wiki.ros.org/ROS/Connection%20Header, https://wiki.ros.org/ROS/TCPROS
+A frame is a length of four bytes, little-endian, then the message; all messages here begin with a std_msgs/Header: seq,
+secs, nsecs. https://wiki.ros.org/ROS/Connection%20Header, https://wiki.ros.org/ROS/TCPROS
 """
 
 import struct
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Mapping, Optional, Tuple
 
 from ..errors import BenchError
-from ..simtime import NANOSECONDS
+from ..simulation.clock import NANOSECONDS
 
 _LENGTH, _START = struct.Struct("<I"), struct.Struct("<IIII")  # length; length, seq, secs, nsecs
 ROUNDING = 2  # [ns]
@@ -17,13 +17,13 @@ _STAMP_BYTES = _START.size - _LENGTH.size
 
 
 def framed(message: bytes) -> bytes:
-    """A serialised message as it goes over a connection."""
+    """A serialised message as it is sent over a connection."""
     return _LENGTH.pack(len(message)) + message
 
 
 @dataclass(frozen=True)
 class Count:
-    """What has arrived of one topic: so many messages, the first and the last with these stamps [ns]."""
+    """The number of messages of one topic, and the stamps [ns] of the first and the last."""
 
     messages: int = 0
     first_ns: Optional[int] = None
@@ -35,17 +35,17 @@ class FrameCounter:
 
     def __init__(self) -> None:
         self.messages = 0
-        self._rest = b""  # the beginning of a message whose end has not arrived
+        self._rest = b""  # the beginning of an incomplete frame
         self._first: Optional[int] = None
         self._last: Optional[int] = None
 
     @property
     def count(self) -> Count:
-        """The state of the count."""
+        """The messages so far."""
         return Count(self.messages, self._first, self._last)
 
     def feed(self, data: bytes) -> None:
-        """Count what is complete with these bytes; BenchError on a message too short for a header."""
+        """Count the messages that these bytes complete; BenchError on a message too short for a header."""
         if self._rest:
             data = self._rest + data
         at = newest = 0
@@ -66,22 +66,22 @@ class FrameCounter:
 
 
 def _stamp(data: bytes, at: int) -> int:
-    """The stamp [ns] of the message whose frame starts there."""
+    """The stamp [ns] of the message whose frame starts at this offset."""
     _, _, secs, nsecs = _START.unpack_from(data, at)
     return int(secs * NANOSECONDS + nsecs)
 
 
 def deliveries(counts: Mapping[str, Count], rates: Mapping[str, int]) -> Tuple[int, int]:
-    """Messages expected and delivered on topics that come at rates [Hz], from each one's first to the newest stamp.
+    """Numbers of messages expected and delivered on topics with these rates [Hz], from each first to the newest stamp.
 
-    Messages with that very stamp are left out: the simulator may have been ended while it sent them.
+    Messages with the newest stamp are not counted: the simulator may have been ended while it sent them.
     """
     newest = max((count.last_ns or 0 for count in counts.values()), default=0)
     expected = delivered = 0
     for topic, rate in rates.items():
         count = counts[topic]
         if count.first_ns is not None:
-            # Stamps are whole steps rounded down to nanoseconds: one that seems that much early is the newest itself.
+            # Stamps are rounded down to nanoseconds: one that seems ROUNDING too early is the newest itself.
             expected += max(0, -(-(newest - count.first_ns - ROUNDING) * rate // NANOSECONDS))
             delivered += count.messages - (count.last_ns == newest)
     return expected, delivered

@@ -1,81 +1,79 @@
-"""The processes of a measurement: master, simulator, client; started, asked, watched, ended."""
+"""The child processes of a measurement: master, simulator, client."""
 
 import contextlib
 import ctypes
 import os
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Optional
+from subprocess import PIPE, TimeoutExpired
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional
 
 import rosgraph
 
 from ..errors import BenchError
-from ..loopback import free_port
+from ..process import child
+from ..process.ports import free_port
 from .drain import Tally
 
-PATIENCE = 60.0  # [s, wall] for a process to start or to answer; a busy machine is slow, but not that slow
-END_PATIENCE = 10.0  # [s, wall] for a process to end by itself
+TIMEOUT = 60.0  # [s, wall] for a process to start or to answer, on a busy machine too
+END_TIMEOUT = 10.0  # [s, wall] for a process to end by itself
 POLL = 0.02  # [s, wall]
 
 
 class Child:
-    """A process in a session of its own, so that Ctrl-C reaches only the bench, which then ends it."""
+    """A child process with a name; if `piped`, its input and output are pipes."""
 
-    def __init__(self, name: str, command: List[str], log: Path, talk: bool = False) -> None:
+    def __init__(
+        self,
+        name: str,
+        command: List[str],
+        log: Path,
+        piped: bool = False,
+        environment: Optional[Mapping[str, str]] = None,
+    ) -> None:
         self.name = name
         self.log = log
-        pipe: Optional[int] = subprocess.PIPE if talk else None
+        pipes: Dict[str, Any] = {"stdin": PIPE, "stdout": PIPE} if piped else {}
         self.started = time.monotonic()
-        with open(log, "wb") as output:
-            self.process = subprocess.Popen(command, stdin=pipe or subprocess.DEVNULL, stdout=pipe or output,
-                                            stderr=output, start_new_session=True, text=True)
+        self.process = child.start(command, log, environment, text=True, **pipes)
 
-    def check(self) -> None:
-        """BenchError when it has ended by itself, with the last it had to say."""
+    def require_running(self) -> None:
+        """BenchError, with the last line of its log, when it has ended."""
         status = self.process.poll()
         if status is not None:
             words = self.log.read_text(errors="replace").split("\n")
-            last = next((line.strip() for line in reversed(words) if line.strip()), "it said nothing")
+            last = next((line.strip() for line in reversed(words) if line.strip()), "its log is empty")
             raise BenchError(f"{self.name} ended with status {status}: {last}")
 
     def wait_until(self, condition: Callable[[], bool], what: str) -> None:
-        """Wait for something that this process is to bring about; BenchError when it dies or takes too long."""
-        deadline = time.monotonic() + PATIENCE
+        """Wait for a condition that this process brings about; BenchError when it ends or takes too long."""
+        deadline = time.monotonic() + TIMEOUT
         while not condition():
-            self.check()
+            self.require_running()
             if time.monotonic() > deadline:
-                raise BenchError(f"{what}: not within {PATIENCE:g} s")
+                raise BenchError(f"{what}: not within {TIMEOUT:g} s")
             time.sleep(POLL)
 
     def line(self) -> str:
-        """The next line it writes; BenchError when it ends instead."""
+        """The next line of its output; BenchError when it ends instead."""
         assert self.process.stdout is not None
         text = self.process.stdout.readline()
         if not text:
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self.process.wait(END_PATIENCE)
-            self.check()
-            raise BenchError(f"{self.name} says no more")
+            with contextlib.suppress(TimeoutExpired):
+                self.process.wait(END_TIMEOUT)
+            self.require_running()
+            raise BenchError(f"{self.name} closed its output")
         return str(text)
 
     def end(self) -> None:
-        """Interrupt it; kill it when that does not help."""
-        for number in (signal.SIGINT, signal.SIGKILL):
-            if self.process.poll() is None:
-                self.process.send_signal(number)
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    self.process.wait(END_PATIENCE)
-        for pipe in (self.process.stdin, self.process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(BrokenPipeError):
-                    pipe.close()
+        """Interrupt it; kill it if it does not end."""
+        child.end(self.process, signal.SIGINT, END_TIMEOUT)
 
     def cpu(self) -> float:
-        """Processor time [s] it has used, user and system, all threads, to the nanosecond."""
+        """Processor time [s] of all threads, user and system, to the nanosecond (psutil: to a tick of 10 ms)."""
         clock = ctypes.c_int()
         error = ctypes.CDLL(None).clock_getcpuclockid(self.process.pid, ctypes.byref(clock))
         if error:
@@ -83,7 +81,7 @@ class Child:
         return time.clock_gettime(clock.value)
 
     def peak_memory(self) -> int:
-        """The most memory [bytes] it ever had resident."""
+        """Peak resident memory [bytes], which psutil does not have on Linux."""
         for line in Path(f"/proc/{self.process.pid}/status").read_text().splitlines():
             if line.startswith("VmHWM:"):
                 return int(line.split()[1]) * 1024
@@ -97,38 +95,40 @@ class Client(Child):
         super().__init__("the client", [sys.executable, "-m", "aro_robocop_goto_as.bench.drain", *arguments], log, True)
 
     def tally(self) -> Tally:
-        """What has arrived until now."""
+        """The messages received so far."""
         assert self.process.stdin is not None
         self.process.stdin.write("\n")
         self.process.stdin.flush()
         return Tally.from_json(self.line())
 
     def end(self) -> None:
-        """The end of its input ends it; only then it takes leave of the master."""
-        if self.process.stdin is not None:
-            with contextlib.suppress(BrokenPipeError):
-                self.process.stdin.close()
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self.process.wait(END_PATIENCE)
-        super().end()
+        """Close its input, upon which it unregisters from the master and ends."""
+        assert self.process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
+        child.end(self.process, None, END_TIMEOUT)
 
 
 @contextlib.contextmanager
-def running(child: Child) -> Iterator[Any]:
-    """Have a process end with the block."""
+def running(process: Child) -> Iterator[Any]:
+    """End a process when the block ends."""
     try:
-        yield child
+        yield process
     finally:
-        child.end()
+        process.end()
 
 
 @contextlib.contextmanager
 def own_ros() -> Iterator[Path]:
-    """A master on a free port of loopback, a ROS home of its own; yields the directory of both, gone at the end."""
+    """A master on a free port of loopback, with a temporary ROS home; yields that directory."""
     with tempfile.TemporaryDirectory(prefix="robocop_bench_") as name:
         port = free_port()
-        own: Dict[str, str] = {"ROS_MASTER_URI": f"http://localhost:{port}", "ROS_HOSTNAME": "localhost",
-                               "ROS_HOME": name, "ROS_LOG_DIR": os.path.join(name, "log")}
+        own: Dict[str, str] = {
+            "ROS_MASTER_URI": f"http://localhost:{port}",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": name,
+            "ROS_LOG_DIR": os.path.join(name, "log"),
+        }
         for variable in ("ROS_IP", "ROS_NAMESPACE"):
             os.environ.pop(variable, None)
         os.environ.update(own)

@@ -1,4 +1,4 @@
-"""Measurements -> a table, or JSON, with the machine that they come from."""
+"""Measurements -> a table or JSON, with a description of the machine."""
 
 import json
 import os
@@ -15,7 +15,7 @@ from .results import Measured
 
 @dataclass(frozen=True)
 class Conditions:
-    """Where and how it was measured."""
+    """The machine and the settings of a measurement."""
 
     cpu: str
     cores: int
@@ -23,35 +23,50 @@ class Conditions:
     numpy: str
     pybullet: str
     load_before: Sequence[float]  # over 1, 5, 15 minutes
-    seconds: float  # of wall time for each measurement
+    seconds: float  # [s, wall] of each measurement
     repeats: int
 
     def lines(self) -> List[str]:
-        """In words."""
+        """As text."""
         load = " ".join(f"{value:.2f}" for value in self.load_before)
         return [
             f"{self.cpu}, {self.cores} cores; Python {self.python}, numpy {self.numpy}, pybullet {self.pybullet}; "
             f"load before: {load}",
             f"A client on every robot's /scan ({SCAN_SAMPLES} beams, {SCAN_RATE} Hz) and /odom ({ODOM_RATE} Hz); "
-            f"{self.seconds:g} s a measurement; medians of {self.repeats}, lowest to highest in brackets."]
+            f"{self.seconds:g} s per measurement; medians of {self.repeats}, with lowest and highest in brackets.",
+        ]
 
 
 def conditions(seconds: float, repeats: int) -> Conditions:
-    """Those of now."""
-    model = next((line.partition(":")[2].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
-                  if line.startswith("model name")), platform.machine())
-    return Conditions(model, len(os.sched_getaffinity(0)), platform.python_version(), metadata.version("numpy"),
-                      metadata.version("pybullet"), os.getloadavg(), seconds, repeats)
+    """The present conditions."""
+    model = next(
+        (
+            line.partition(":")[2].strip()
+            for line in Path("/proc/cpuinfo").read_text().splitlines()
+            if line.startswith("model name")
+        ),
+        platform.machine(),
+    )
+    return Conditions(
+        model,
+        len(os.sched_getaffinity(0)),
+        platform.python_version(),
+        metadata.version("numpy"),
+        metadata.version("pybullet"),
+        os.getloadavg(),
+        seconds,
+        repeats,
+    )
 
 
 def spread(values: Sequence[float], digits: int) -> str:
-    """The median, and beside it the lowest and the highest where there are several."""
+    """The median, followed by the lowest and the highest if there are several values."""
     middle = f"{median(values):.{digits}f}"
     return middle if len(values) == 1 else f"{middle} ({min(values):.{digits}f}-{max(values):.{digits}f})"
 
 
 def _digits(values: Sequence[float]) -> int:
-    """Decimals that keep three figures."""
+    """Decimals for three significant figures."""
     return 0 if median(values) >= 100.0 else 1 if median(values) >= 10.0 else 2
 
 
@@ -68,8 +83,8 @@ PARTS_HEAD = ["the floor's parts", "robots", "step, all robots [us]", "scan, one
 
 
 def row(measured: Measured) -> List[str]:
-    """A case's cells; the notes below the table say why one failed."""
-    case = [f"{measured.case.drive} {measured.case.physics_rate} Hz", str(measured.case.robots)]
+    """A case's cells; the notes below the table say why it failed."""
+    case = [f"{measured.case.drive} {measured.case.physics_rate} Hz", measured.case.name.partition(":")[2]]
     if measured.error is not None:
         return case + ["failed"] + ["-"] * (len(HEAD) - 3)
     figures = measured.figures()
@@ -77,21 +92,24 @@ def row(measured: Measured) -> List[str]:
 
 
 def parts_row(measured: Measured) -> List[str]:
-    """What a step, a scan and a message take in the floor [us]."""
+    """Durations of a step, a scan and a message in the floor [us]."""
     values = [[getattr(floor, part) * 1e6 for floor in measured.floors] for part in ("step", "scan", "message")]
-    return [f"{measured.case.drive} {measured.case.physics_rate} Hz", str(measured.case.robots),
-            *(spread(value, _digits(value)) for value in values)]
+    return [
+        f"{measured.case.drive} {measured.case.physics_rate} Hz",
+        str(measured.case.robots),
+        *(spread(value, _digits(value)) for value in values),
+    ]
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> List[str]:
-    """A table that reads as it is and as Markdown: the first row is the head."""
+    """An aligned Markdown table; the first row is the head."""
     widths = [max(len(cells[column]) for cells in rows) for column in range(len(rows[0]))]
     lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(cells, widths)) + " |" for cells in rows]
     return [lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]]
 
 
 def table(results: Sequence[Measured], where: Conditions) -> str:
-    """All of it, to be read."""
+    """The results as text."""
     lines = [*where.lines(), "", *aligned([HEAD] + [row(measured) for measured in results])]
     with_floor = [measured for measured in results if measured.floors]
     if with_floor:
@@ -103,13 +121,25 @@ def table(results: Sequence[Measured], where: Conditions) -> str:
 
 
 def as_json(results: Sequence[Measured], where: Conditions) -> str:
-    """All of it, for machines; `median` has the table's figures, its units in their names."""
+    """The results as JSON; `median` has the table's figures, with units in their names."""
     cases: List[Dict[str, Any]] = []
     for measured in results:
         figures = {name: median(values) for name, values in measured.figures().items() if values}
-        runs = {"floors": measured.floors, "fastest": measured.fastest, "paced": measured.paced}
-        cases.append({
-            "drive": measured.case.drive, "robots": measured.case.robots, "physics_rate": measured.case.physics_rate,
-            "error": measured.error, "median": figures, "delivered": measured.delivered, "lost": measured.lost,
-            **{name: [asdict(run) for run in done] for name, done in runs.items()}})
+        runs: Dict[str, Sequence[Any]] = {
+            "floors": measured.floors,
+            "fastest": measured.fastest,
+            "paced": measured.paced,
+        }
+        cases.append(
+            {
+                "drive": measured.case.drive,
+                "robots": measured.case.robots,
+                "physics_rate": measured.case.physics_rate,
+                "error": measured.error,
+                "median": figures,
+                "delivered": measured.delivered,
+                "lost": measured.lost,
+                **{name: [asdict(run) for run in values] for name, values in runs.items()},
+            }
+        )
     return json.dumps({"conditions": asdict(where), "cases": cases}, indent=1)

@@ -1,41 +1,41 @@
-"""What was measured: one simulation, one floor, all repeats of a case."""
+"""Results: of one simulation, of one floor, of all repeats of a case."""
 
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional
 
 from .cases import Case
 
-BUSY = 0.9  # share of a processor from which on the client may be what limits
-KEPT_UP = 0.95  # a real-time factor below this share of the one asked for is said
+BUSY = 0.9  # share of a processor from which on the client may limit the speed
+KEPT_UP = 0.95  # a lower share of the requested real-time factor is noted
 
 
 @dataclass(frozen=True)
 class Run:
-    """One simulation."""
+    """The result of one simulation."""
 
-    factor: float  # simulated seconds in a second of the wall clock
-    cpu: float  # [s] of processor time for a simulated second, user and system
-    memory: int  # [bytes] at its peak
-    first_scan: float  # [s, wall] from the process's start until the first scan was there
-    expected: int  # messages, by simulated time
+    factor: float  # simulated seconds per second of the wall clock
+    cpu: float  # [s] of processor time per simulated second, user and system
+    memory: int  # [bytes] peak
+    first_scan: float  # [s, wall] from the process's start to the first scan
+    expected: int  # messages, from simulated time and rates
     delivered: int
-    client_busy: float  # share of a processor that the client took; near 1 it would be what is measured
+    client_busy: float  # share of a processor; near 1 the client limits the speed
 
 
 @dataclass(frozen=True)
 class Floor:
-    """What the bare parts take."""
+    """The result of the bare parts."""
 
-    factor: float  # simulated seconds in a second of the wall clock
-    cpu: float  # [s] of processor time for a simulated second
-    step: float  # [s, wall] a physics step of all robots
-    scan: float  # [s, wall] a robot's scan
-    message: float  # [s, wall] a message written
+    factor: float  # simulated seconds per second of the wall clock
+    cpu: float  # [s] of processor time per simulated second
+    step: float  # [s, wall] per physics step of all robots
+    scan: float  # [s, wall] per scan of one robot
+    message: float  # [s, wall] per message
 
 
 @dataclass
 class Measured:
-    """All repeats of a case: its floor, at the highest factor, at factor 1; or why there are not as many."""
+    """All repeats of a case: floor, as fast as possible, at real-time factor 1; or the error that stopped them."""
 
     case: Case
     floors: List[Floor] = field(default_factory=list)
@@ -44,18 +44,19 @@ class Measured:
     error: Optional[str] = None
 
     def figures(self) -> Dict[str, List[float]]:
-        """What the table shows medians of: a value for each repeat."""
+        """The figures of the table, with a value for each repeat."""
         return {
             "factor": [run.factor for run in self.fastest],
             "floor": [floor.factor for floor in self.floors],
             "of_floor": [run.factor / floor.factor for run, floor in zip(self.fastest, self.floors)],
             "cpu_ms": [run.cpu * 1e3 for run in self.paced],
             "memory_mb": [max(run.memory, other.memory) / 1e6 for run, other in zip(self.fastest, self.paced)],
-            "first_scan_s": [run.first_scan for run in self.paced]}
+            "first_scan_s": [run.first_scan for run in self.paced],
+        }
 
     @property
     def delivered(self) -> int:
-        """Messages, of all runs."""
+        """Messages of all runs."""
         return sum(run.delivered for run in self.fastest + self.paced)
 
     @property
@@ -64,13 +65,13 @@ class Measured:
         return sum(run.expected for run in self.fastest + self.paced) - self.delivered
 
     def notes(self) -> List[str]:
-        """What a reader has to know about the figures."""
-        found = []
+        """Remarks on the figures."""
+        notes = []
         if self.error is not None:
-            found.append(f"{self.case.name} failed: {self.error}")
+            notes.append(f"{self.case.name} failed: {self.error}")
         if any(run.client_busy > BUSY for run in self.fastest):
-            found.append(f"{self.case.name}: the client was busy all the time, so the factor may be the client's")
+            notes.append(f"{self.case.name}: the client was busy all the time, so it may limit the factor")
         slowest = min((run.factor for run in self.paced), default=1.0)
         if slowest < KEPT_UP:
-            found.append(f"{self.case.name}: factor 1 was asked for and only {slowest:.2f} reached")
-        return found
+            notes.append(f"{self.case.name}: only {slowest:.2f} of the requested factor 1 reached")
+        return notes

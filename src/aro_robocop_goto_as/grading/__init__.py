@@ -1,15 +1,17 @@
-"""The judge: somebody's go-to server and bridge -> points, each with its reason.
+"""The judge: runs a student's go-to server and bridge and awards points with reasons.
 
-Data flows in this order; only `probe/` uses ROS:
+Data flows in this order; only probe/ uses ROS:
 
-    submission  path -> what is there to grade, built (building) in a cage (sandbox) under guard
-    plan        config/grading.yaml -> scenarios, limits, points
-    probe/      drives the scenarios against the submission, in lockstep -> records
-    record      what was recorded in one scenario
-    checks/     record -> one verdict; one contract of the handout each
-    judge       records + plan -> a grade
-    report      grade -> report.json, junit.xml, report.html
-    exam        all of it for one submission
-    main        robocop grade
-    classroom/  robocop grade-class: all of it for many, on dask workers
+    submission        path -> the scripts to grade, built (sandboxed_build) in a sandbox under a resource guard
+    plan              config/grading.yaml -> scenarios, limits, points
+    probe/            runs the scenarios against the submission in lockstep -> records
+    record            the recording of one scenario
+    checks/           record -> verdict, one function for each contract of the handout
+    judge             records + plan -> grade
+    report            grade -> report.json, junit.xml, report.html
+    grade_submission  all of this for one submission
+    main              robocop grade
+    classroom/        robocop grade-class: many submissions on dask workers
+
+handout holds the handout's names and figures, limits the tolerances around them.
 """

@@ -1,27 +1,28 @@
-"""What a process and all its descendants take together, watched; who takes too much is ended, with the reason.
+"""Kill a process tree that exceeds its memory or disk limit, and record why.
 
-The kernel limits each process; only a control group limits many at once, and few machines let users make one. psutil
-reads the same figures everywhere.
+The kernel's limits are per process; a limit for many needs a control group, which few machines let users create.
 """
 
+import contextlib
 import os
-import signal
 import threading
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence
+from typing import Optional, Sequence
 
 import psutil
 
-MEMORY = 2 * 1024 ** 3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
-DISK = 512 * 1024 ** 2  # bytes that a build may write; the lab's takes 2 MB
-SMALLEST = 4096  # bytes that a file counts at least
+from ..process.child import kill_tree
+
+MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
+MAX_DISK = 512 * 1024**2  # bytes that a build may write; the lab's takes 2 MB
+MIN_FILE = 4096  # bytes that every file counts at least
 PERIOD = 0.1  # [s, wall]
 
 
 class Guard:
-    """Watches over a process that leads a process group, until `stop`; `reason` says why it was ended, if it was."""
+    """Watches a process and its descendants until `stop`; `reason` says why they were killed, if they were."""
 
-    def __init__(self, pid: int, folder: Optional[Path] = None, memory: int = MEMORY, disk: int = DISK) -> None:
+    def __init__(self, pid: int, folder: Optional[Path] = None, memory: int = MAX_MEMORY, disk: int = MAX_DISK) -> None:
         self.reason = ""
         self._pid, self._folder, self._memory, self._disk = pid, folder, memory, disk
         self._stopped = threading.Event()
@@ -29,76 +30,68 @@ class Guard:
         self._thread.start()
 
     def stop(self) -> None:
-        """No more watching; `reason` is final."""
+        """Stop watching; from now on `reason` does not change."""
         self._stopped.set()
         self._thread.join()
 
     def _watch(self) -> None:
         while not self._stopped.wait(PERIOD):
-            if together(self._pid, self._memory) > self._memory:
-                self.reason = f"its processes together took more than {self._memory / 1024 ** 2:g} MB of memory"
-            elif self._folder is not None and size(self._folder) > self._disk:
-                self.reason = f"it wrote more than {self._disk / 1024 ** 2:g} MB"
+            if _exceeds(self._pid, self._memory):
+                self.reason = f"its processes together took more than {self._memory / 1024**2:g} MB of memory"
+            elif self._folder is not None and disk_usage(self._folder) > self._disk:
+                self.reason = f"it wrote more than {self._disk / 1024**2:g} MB"
             if self.reason:
-                kill_group(self._pid)
+                kill_tree(self._pid)
                 return
 
 
-def kill_group(leader: int) -> None:
-    """End a process group at once, if there still is one."""
-    try:
-        os.killpg(leader, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+def _exceeds(pid: int, limit: int) -> bool:
+    """Whether a process and its descendants take more than `limit` bytes of memory.
 
-
-def together(pid: int, enough: int) -> int:
-    """Bytes of memory of a process and its descendants.
-
-    Resident sizes count shared pages once for each process, which is quick and enough below `enough`; beyond it,
-    proportional sizes count them once for all.
+    Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
+    once, are only read when the resident sizes exceed the limit.
     """
     try:
         top = psutil.Process(pid)
-        family = [top, *top.children(recursive=True)]
+        tree = [top, *top.children(recursive=True)]
     except psutil.NoSuchProcess:
-        return 0
-    unmapped = _unmapped(family)
-    resident = sum(_of(process, False) for process in family) + unmapped
-    return resident if resident <= enough else sum(_of(process, True) for process in family) + unmapped
+        return False
+    unmapped = _memfd_size(tree)
+    if sum(_memory(process, proportional=False) for process in tree) + unmapped <= limit:
+        return False
+    return sum(_memory(process, proportional=True) for process in tree) + unmapped > limit
 
 
-def _of(process: "psutil.Process", proportional: bool) -> int:
+def _memory(process: "psutil.Process", proportional: bool) -> int:
     try:
-        return int(process.memory_full_info().pss if proportional else process.memory_info().rss)
-    except psutil.AccessDenied:
+        with contextlib.suppress(psutil.AccessDenied):
+            if proportional:
+                return int(process.memory_full_info().pss)
         return int(process.memory_info().rss)
     except psutil.NoSuchProcess:
         return 0
 
 
-def _unmapped(family: Sequence["psutil.Process"]) -> int:
-    """Bytes of files that are memory only (memfd), which belong to no process's size unless it has them mapped."""
-    found: Dict[int, int] = {}
-    for process in family:
-        folder = f"/proc/{process.pid}/fd"
-        try:
-            for entry in os.scandir(folder):
+def _memfd_size(tree: Sequence["psutil.Process"]) -> int:
+    """Bytes of files that exist in memory only (memfd): not part of any RSS or PSS unless they are mapped.
+
+    Read from /proc, as psutil's open_files lists only files that have a path.
+    """
+    sizes = {}
+    for process in tree:
+        with contextlib.suppress(OSError):  # the process has ended, or is another user's
+            for entry in os.scandir(f"/proc/{process.pid}/fd"):
                 if os.readlink(entry.path).startswith("/memfd:"):
                     status = os.stat(entry.path)
-                    found[status.st_ino] = status.st_blocks * 512
-        except OSError:  # it has ended, or is not ours to look into
-            pass
-    return sum(found.values())
+                    sizes[status.st_ino] = status.st_blocks * 512
+    return sum(sizes.values())
 
 
-def size(folder: Path) -> int:
-    """Bytes of disk that a folder's files take, an empty one a little too; links are not followed."""
-    found: List[int] = []
+def disk_usage(folder: Path) -> int:
+    """Bytes of disk that the files in a folder occupy; links are not followed."""
+    total = 0
     for place, _, files in os.walk(folder):
         for name in files:
-            try:
-                found.append(max(SMALLEST, os.lstat(os.path.join(place, name)).st_blocks * 512))
-            except FileNotFoundError:
-                pass
-    return sum(found)
+            with contextlib.suppress(FileNotFoundError):
+                total += max(MIN_FILE, os.lstat(os.path.join(place, name)).st_blocks * 512)
+    return total

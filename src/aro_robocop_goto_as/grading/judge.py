@@ -1,16 +1,16 @@
-"""Records and plan -> a grade: per check one outcome, points, and where it was seen."""
+"""Applies the checks of a plan to records: for each one an outcome, points and a reason."""
 
 import enum
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import List, Mapping, Optional, Tuple
 
-from .checks import CHECKS, Failed, NotReached, Passed, sentence
+from .checks import CHECKS, Failed, NotReached, Passed, description, sentences
 from .plan import CheckPlan, Plan
 from .record import Record
 
 
 class Outcome(enum.Enum):
-    """What became of a check."""
+    """The outcome of a check."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -18,98 +18,107 @@ class Outcome(enum.Enum):
 
 
 @dataclass(frozen=True)
-class Line:
+class CheckResult:
     """One check's line in the report."""
 
     name: str
     part: str
-    sentence: str
+    sentence: str  # the contract
     outcome: Outcome
     points: float
-    of: float
+    points_available: float
     extra: bool
-    scenario: str = ""  # where it failed, or the first one it looked at
+    scenario: str = ""  # where it failed, or the first one that was examined
     failure: Optional[Failed] = None
-    why: str = ""  # it was not reached
+    why: str = ""  # reason for NOT_REACHED
 
-    def words(self) -> str:
-        """The outcome with its reason, for a person."""
-        if self.failure is not None:
-            it = self.failure
-            end = "" if it.cause.endswith(("?", ".")) else "."
-            return (f"failed: {it.cause}{end} Expected {it.expected}, seen {it.seen}, at {it.time:.1f} s of scenario "
-                    f"{self.scenario}")
-        return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
+    def explanation(self) -> str:
+        """The outcome with its reason."""
+        if self.failure is None:
+            return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
+        return (
+            f"failed: {sentences(self.failure.cause)} Expected {self.failure.expected}, got {self.failure.seen}, "
+            f"at {self.failure.time:.1f} s of scenario {self.scenario}"
+        )
 
 
 @dataclass(frozen=True)
 class Grade:
-    """All checks of what was there to grade."""
+    """The results of all checks of one submission, and the problems that kept parts of it from being run."""
 
     name: str
-    lines: Tuple[Line, ...]
+    checks: Tuple[CheckResult, ...]
     problems: Tuple[str, ...] = ()
 
     @property
     def points(self) -> float:
-        """Reached, extra ones included."""
-        return round(sum(line.points for line in self.lines), 6)
+        """Points scored, extra ones included."""
+        return round(sum(check.points for check in self.checks), 6)
 
     @property
-    def of(self) -> float:
-        """Points that could be reached, extra ones left out."""
-        return round(sum(line.of for line in self.lines if not line.extra), 6)
+    def points_available(self) -> float:
+        """Points available, extra ones excluded."""
+        return round(sum(check.points_available for check in self.checks if not check.extra), 6)
 
     @property
     def all_right(self) -> bool:
         """Whether every check that is not extra passed."""
-        return all(line.outcome is Outcome.PASSED for line in self.lines if not line.extra)
+        return all(check.outcome is Outcome.PASSED for check in self.checks if not check.extra)
 
     def failed(self) -> List[str]:
-        """Names of the checks that failed."""
-        return [line.name for line in self.lines if line.outcome is Outcome.FAILED]
+        """Names of the failed checks."""
+        return [check.name for check in self.checks if check.outcome is Outcome.FAILED]
 
 
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
 
 
 def printable(text: str) -> str:
-    """A text on one line, without characters that do something to a terminal or that XML does not allow."""
+    """One line without characters that control a terminal or are not allowed in XML."""
     return "".join(character if character.isprintable() else " " for character in text)
 
 
+def printable_lines(text: str) -> str:
+    """The same for a text that may have several lines."""
+    return "\n".join(printable(line) for line in text.split("\n"))
+
+
 def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
-    """The grade for the parts that there are records of; `problems` (part -> words) says why some lack."""
-    lines = [_line(check, plan, records[check.part], problems.get(check.part, ""))
-             for check in plan.checks if check.part in records]
-    return Grade(name, tuple(lines), tuple(f"{part}: {words}" for part, words in problems.items() if words))
+    """Grade the parts that have records; `problems` (part -> text) explains records that are missing."""
+    checks = [
+        _judge(check, plan, records[check.part], problems.get(check.part, ""))
+        for check in plan.checks
+        if check.part in records
+    ]
+    return Grade(name, tuple(checks), tuple(f"{part}: {text}" for part, text in problems.items() if text))
 
 
-def _line(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> Line:
-    """Failed where one scenario says so; passed where one says so and none failed."""
-    function, passed, why, seen = CHECKS[check.name], False, "", ""
+def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
+    """A check fails if it fails in one scenario, and passes if it passes in at least one."""
+    passed, why, examined = False, "", ""
     for name in check.scenarios:
         if name not in records:
             if problem:
-                return _made(check, Outcome.FAILED, name, Failed("the scenario is driven to its end", "it was not", 0.0,
-                                                                 problem))
-            why = why or "the server did not come up"
+                failure = Failed("a complete scenario", "an incomplete one", 0.0, problem)
+                return _result(check, Outcome.FAILED, name, failure)
+            why = why or "the server did not start"
             continue
-        verdict = function(records[name], plan.limits)
-        seen = seen or name
+        verdict = CHECKS[check.name](records[name], plan.limits)
+        examined = examined or name
         if isinstance(verdict, Failed):
-            return _made(check, Outcome.FAILED, name, verdict)
+            return _result(check, Outcome.FAILED, name, verdict)
         passed = passed or isinstance(verdict, Passed)
-        why = verdict.why if isinstance(verdict, NotReached) and not why else why
-    return _made(check, Outcome.PASSED if passed else Outcome.NOT_REACHED, seen, None, "" if passed else why)
+        if isinstance(verdict, NotReached):
+            why = why or verdict.why
+    if passed:
+        return _result(check, Outcome.PASSED, examined)
+    return _result(check, Outcome.NOT_REACHED, examined, why=why)
 
 
-def _made(check: CheckPlan, outcome: Outcome, scenario: str, failure: Optional[Failed], why: str = "") -> Line:
-    points = check.points if outcome is Outcome.PASSED else 0.0
-    return Line(check.name, check.part, sentence(check.name), outcome, points, check.points, check.extra, scenario,
-                failure, why)
-
-
-def not_reached(lines: Sequence[Line]) -> Dict[str, str]:
-    """Name -> why, of the checks that were not reached."""
-    return {line.name: line.why for line in lines if line.outcome is Outcome.NOT_REACHED}
+def _result(
+    check: CheckPlan, outcome: Outcome, scenario: str, failure: Optional[Failed] = None, why: str = ""
+) -> CheckResult:
+    points, contract = check.points if outcome is Outcome.PASSED else 0.0, description(check.name)
+    return CheckResult(
+        check.name, check.part, contract, outcome, points, check.points, check.extra, scenario, failure, why
+    )

@@ -1,4 +1,4 @@
-"""robocop grade: a submission -> a line per check, points, a report; exit status 0 when all is right."""
+"""robocop grade: judge a submission and write a report."""
 
 import argparse
 import os
@@ -7,69 +7,70 @@ import zlib
 from pathlib import Path
 
 from ..errors import RobocopError
-from ..hosting.workspace import alone
-from ..interruption import as_ctrl_c, check, the_end
-from . import display
-from .exam import examine
+from ..hosting.scratch import scratch_folder
+from ..hosting.workspace import exclusive
+from ..process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from .display import require_rviz
+from .grade_submission import grade_submission
 from .judge import Grade, Outcome, printable
 from .plan import load
-from .sandbox import CPU_TIME, WATCHED_CPU_TIME, cage
-from .submission import take
+from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
+from .submission import prepare_submission
 
-INTERRUPTED = 130  # as shells have it for who is ended by Ctrl-C
-SIGNS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
+INTERRUPTED = 130  # the shells' exit status for Ctrl-C
+LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
-def _progress(part: str, scenario: str) -> None:
-    check()
+def _show_progress(part: str, scenario: str) -> None:
+    reraise_if_interrupted()
     if sys.stderr.isatty():
         print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
 
 
-def show(result: Grade) -> str:
+def as_text(grade: Grade) -> str:
     """The grade for a terminal."""
     lines = []
-    for line in result.lines:  # words may hold what a submission says, which must not write lines of its own
-        lines.append(
-            f"{SIGNS[line.outcome]:11}  {line.points:4g} / {line.of:<4g}  {line.sentence}"
-            + (" (extra)" if line.extra else "")
-        )
-        if line.outcome is not Outcome.PASSED:
-            lines.append(f"{'':11}  {line.words()}")
-    lines += [f"problem: {problem}" for problem in result.problems]
-    lines.append(f"{result.name}: {result.points:g} of {result.of:g} points")
-    return "\n".join(printable(line) for line in lines)
+    for result in grade.checks:
+        extra = " (extra)" if result.extra else ""
+        points = f"{result.points:4g} / {result.points_available:<4g}"
+        lines.append(f"{LABELS[result.outcome]:11}  {points}  {result.sentence}{extra}")
+        if result.outcome is not Outcome.PASSED:
+            lines.append(f"{'':11}  {result.explanation()}")
+    lines += [f"problem: {problem}" for problem in grade.problems]
+    lines.append(f"{grade.name}: {grade.points:g} of {grade.points_available:g} points")
+    return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
 
 
 def main() -> None:
-    """Exit status 0: every check passed; 1: not, or there is nothing to grade; 130: interrupted."""
+    """Exit status 0: every check passed; 1: a check failed or nothing could be graded; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__)
-    parser.add_argument("path", help="a package, a robocop_goto_as.py, or a robocop_rviz_goto_ac.py")
-    parser.add_argument("--report", metavar="DIR", help="where the report goes (default: .robocop/reports/NAME)")
+    parser.add_argument("path", help="a package, a server (robocop_goto_as.py) or a bridge (robocop_rviz_goto_ac.py)")
+    parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
-    parser.add_argument("--unsafe", action="store_true", help="run the code without bubblewrap around it")
-    parser.add_argument("--watch", action="store_true", help="show the run in RViz, at real time")
+    parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
+    parser.add_argument("--watch", action="store_true", help="show the run in RViz in real time")
     args = parser.parse_args()
-    as_ctrl_c()
+    interrupt_on_signal()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
-    plan_path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
     try:
-        load(plan_path)  # complains now, and not after the build
-        around = cage(args.unsafe, [state / "venv", state / "compat"], WATCHED_CPU_TIME if args.watch else CPU_TIME)
+        plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml")
+        cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
+        sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
         if args.watch:
-            display.require(around)
-        with alone(state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"):
-            submission = take(args.path, share, state, state / "grade", around)
+            require_rviz(sandbox)
+        folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
+        with scratch_folder(), exclusive(folder_in_use):
+            submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
             folder = Path(args.report) if args.report else state / "reports" / submission.name
-            result = examine(submission, plan_path, folder, state, around, _progress, args.watch)
+            grade = grade_submission(submission, plan, folder, state, sandbox, _show_progress, args.watch)
     except RobocopError as error:
         print(f"robocop grade: {error}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
-        the_end()
+        ignore_all()
         sys.exit(INTERRUPTED)
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
-    print(show(result))
+    print(as_text(grade))
     print(f"report: {folder / 'report.html'}")
-    sys.exit(0 if result.all_right else 1)
+    sys.exit(0 if grade.all_right else 1)

@@ -1,70 +1,46 @@
-"""config/grading.yaml -> scenarios, limits and points; nothing in it is repaired silently."""
+"""Reads the grading plan (config/grading.yaml): limits, scenarios, and the checks with their points."""
 
 import dataclasses
 import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import AbstractSet, Any, Dict, List, Mapping, Sequence, Tuple
+from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
 
 import yaml
 
-from ..errors import GradingError
+from ..errors import PlanError
 from ..geometry import Pose2D, Pose3D, compose3, lifted
-from ..params import from_dict
-from ..world import Box, Cylinder, Geometry, Obstacle, Plane, World
+from ..param_loading import from_dict
+from ..world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
+from .checks import CHECKS
+from .limits import Limits
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
-SPACING = 40.0  # [m] between scenarios' sites: nothing of one is seen from another by a 10 m lidar
-HEADING = 0.7  # [rad] of every site's odom frame in the world, so that the two can't be mistaken for one another
+SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m
+HEADING = 0.7  # [rad] yaw of each site's odom frame in the world, so that confusing the two frames has an effect
 PARTS = ("server", "bridge")
-FARTHEST = SPACING / 2.0  # [m] of anything from a scenario's start
-START = "start"  # the node's start, whose record is there for every server
-BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame")  # what a bridge is taken through is not in the file
-STEPS = {"goal", "of", "ends", "for", "cancel", "place"}
-
-
-@dataclass(frozen=True)
-class Limits:
-    """The figures that checks go by; config/grading.yaml says what each one means."""
-
-    feedback_low: float = 7.0
-    feedback_high: float = 35.0
-    position_tolerance: float = 0.06
-    angle_tolerance: float = 0.12
-    turn_beyond: float = 0.16
-    straight_within: float = 0.07
-    driving: float = 0.02
-    straight_turn: float = 0.35
-    reached: float = 0.12
-    abort_nearest: float = 0.2
-    abort_farthest: float = 0.36
-    preempt_within: float = 1.5
-    stop_within: float = 1.0
-    standing_v: float = 0.01
-    standing_w: float = 0.05
-    status_reports: int = 2
-    status_span: float = 20.0
-    stall: float = 8.0
-    goal_time: float = 120.0
-    wall_time: float = 60.0
+FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
+START = "start"  # the recording of the node's start; every server has one
+BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame")  # fixed, not in the plan's file
+STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
 
 
 @dataclass(frozen=True)
 class Step:
     """One line of a server scenario's script."""
 
-    goal: Tuple[float, ...] = ()  # [m] in odom, or ahead and left of the robot
-    of: str = "odom"  # or robot
-    ends: str = ""  # the ending to wait for
-    run: float = 0.0  # [s] instead of waiting for an ending
+    goal: Tuple[float, ...] = ()  # x, y [m] in the frame `of`
+    of: str = "odom"  # odom, or robot (x ahead, y left)
+    ends: str = ""  # the terminal state to wait for
+    run: float = 0.0  # [s] time to let pass instead of waiting for a terminal state
     cancel: bool = False
-    place: Tuple[float, ...] = ()  # x, y [m], yaw [rad] in odom's place at the start
+    place: Tuple[float, ...] = ()  # x, y [m], yaw [rad] in the odom frame of the scenario's start
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """One run from a fresh start."""
+    """A script that starts with the robot at odom's origin."""
 
     name: str
     about: str
@@ -75,7 +51,7 @@ class Scenario:
 
 @dataclass(frozen=True)
 class CheckPlan:
-    """Which scenarios a check looks at, for how many points."""
+    """The points of a check and the scenarios that it examines."""
 
     name: str
     part: str
@@ -86,99 +62,102 @@ class CheckPlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """All that is in the file."""
+    """The contents of the plan's file."""
 
+    path: Path
     limits: Limits
     scenarios: Tuple[Scenario, ...]
     checks: Tuple[CheckPlan, ...]
 
-    def of_part(self, part: str) -> List[CheckPlan]:
-        """Checks of the server or of the bridge."""
-        return [check for check in self.checks if check.part == part]
+    @property
+    def points(self) -> float:
+        """The points of all checks that are not extra."""
+        return round(sum(check.points for check in self.checks if not check.extra), 6)
 
 
 def load(path: Path) -> Plan:
-    """GradingError names the file and what is wrong in it; ParameterError likewise for the limits."""
+    """Read the plan; PlanError, or ParameterError for the limits, names the file and the mistake in it."""
     try:
         raw = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, yaml.YAMLError) as error:
-        raise GradingError(f"{path}: {error}") from error
+        raise PlanError(f"{path}: {error}") from error
     keys = {"limits", "scenarios", "checks"}
     _expect(raw, keys, str(path), keys)
-    for name, kind, words in (("limits", dict, "a mapping"), ("scenarios", list, "a list"),
-                              ("checks", dict, "a mapping")):
+    for name, kind, words in (
+        ("limits", dict, "a mapping"),
+        ("scenarios", list, "a list"),
+        ("checks", dict, "a mapping"),
+    ):
         if not isinstance(raw[name], kind):
-            raise GradingError(f"{path}: {name}: expected {words}, got {raw[name]!r}")
+            raise PlanError(f"{path}: {name}: expected {words}, got {raw[name]!r}")
     limits = from_dict(Limits, raw["limits"], f"{path}: limits")
     for name, value in dataclasses.asdict(limits).items():
         if not 0.0 <= value < math.inf:
-            raise GradingError(f"{path}: limits: {name}: expected a finite number of 0 or more, got {value!r}")
+            raise PlanError(f"{path}: limits: {name}: expected a finite number of 0 or more, got {value!r}")
     scenarios = tuple(_scenario(entry, f"{path}: scenarios") for entry in raw["scenarios"])
     names = [scenario.name for scenario in scenarios]
     for name in names:
         if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS):
-            raise GradingError(f"{path}: scenarios: {name}: expected a name of its own")
+            raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
     known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
-    checks = tuple(_check(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
-    return Plan(limits, scenarios, checks)
+    checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
+    return Plan(path, limits, scenarios, checks)
 
 
 def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[str] = frozenset()) -> None:
     if not isinstance(raw, Mapping):
-        raise GradingError(f"{where}: expected keys {', '.join(sorted(known))}, got {raw!r}")
+        raise PlanError(f"{where}: expected keys {', '.join(sorted(known))}, got {raw!r}")
     for wrong, word in ((set(raw) - set(known), "unknown"), (set(needed) - set(raw), "missing")):
         if wrong:
-            raise GradingError(
-                f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}"
-            )
+            raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
 
 
 def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-        raise GradingError(f"{where}: expected a number from {least:g} to {most:g}, got {value!r}")
+        raise PlanError(f"{where}: expected a number from {least:g} to {most:g}, got {value!r}")
     return float(value)
 
 
 def _numbers(value: Any, count: int, where: str) -> Tuple[float, ...]:
     if not isinstance(value, list) or len(value) != count:
-        raise GradingError(f"{where}: expected {count} numbers, got {value!r}")
-    return tuple(_number(it, where, -FARTHEST, FARTHEST) for it in value)
+        raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
+    return tuple(_number(number, where, -FARTHEST, FARTHEST) for number in value)
 
 
 def _list(value: Any, where: str, of: str) -> List[Any]:
     if not isinstance(value, list) or not value:
-        raise GradingError(f"{where}: expected a list of {of}, got {value!r}")
+        raise PlanError(f"{where}: expected a list of {of}, got {value!r}")
     return value
 
 
 def _scenario(raw: Any, where: str) -> Scenario:
     _expect(raw, {"name", "about", "script", "obstacles", "odd_scan"}, where, {"name", "about", "script"})
     if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
-        raise GradingError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
+        raise PlanError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
     where = f"{where}: {raw['name']}"
     obstacles = []
     for entry in _list(raw["obstacles"], f"{where}: obstacles", "boxes and cylinders") if "obstacles" in raw else []:
         _expect(entry, {"box", "cylinder"}, where)
         for kind, value in entry.items():
             numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}")
-            if min(numbers[{"box": 3, "cylinder": 2}[kind]:]) <= 0.0:
-                raise GradingError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
+            if min(numbers[{"box": 3, "cylinder": 2}[kind] :]) <= 0.0:
+                raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
             obstacles.append((kind, numbers))
     steps = tuple(_step(step, where) for step in _list(raw["script"], f"{where}: script", "steps"))
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
-            raise GradingError(f"{where}: cancel: expected a goal before it")
+            raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
     return Scenario(raw["name"], str(raw["about"]), steps, tuple(obstacles), bool(raw.get("odd_scan", False)))
 
 
 def _step(raw: Any, where: str) -> Step:
-    _expect(raw, STEPS, where)
+    _expect(raw, STEP_KEYS, where)
     if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
-        raise GradingError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
+        raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
     if raw.get("of", "odom") not in ("odom", "robot"):
-        raise GradingError(f"{where}: of: expected odom or robot, got {raw['of']!r}")
+        raise PlanError(f"{where}: of: expected odom or robot, got {raw['of']!r}")
     if raw.get("ends", "SUCCEEDED") not in ("SUCCEEDED", "ABORTED", "PREEMPTED"):
-        raise GradingError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
+        raise PlanError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
     return Step(
         goal=_numbers(raw["goal"], 2, f"{where}: goal") if "goal" in raw else (),
         of=raw.get("of", "odom"),
@@ -189,31 +168,30 @@ def _step(raw: Any, where: str) -> Step:
     )
 
 
-def _check(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:
-    from .checks import CHECKS  # here, as checks go by this module's limits
-
+def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:
     if name not in CHECKS:
-        raise GradingError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
+        raise PlanError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
     where = f"{where}: {name}"
     _expect(raw, {"part", "points", "extra", "scenarios"}, where, {"part", "points", "scenarios"})
     if raw["part"] not in PARTS:
-        raise GradingError(f"{where}: part: expected server or bridge, got {raw['part']!r}")
+        raise PlanError(f"{where}: part: expected server or bridge, got {raw['part']!r}")
     scenarios = _list(raw["scenarios"], f"{where}: scenarios", "names")
     for scenario in scenarios:
         if scenario not in known[raw["part"]]:
-            raise GradingError(f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: "
-                               f"{', '.join(known[raw['part']])}")
+            raise PlanError(
+                f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: {', '.join(known[raw['part']])}"
+            )
     points = _number(raw["points"], f"{where}: points")
     return CheckPlan(name, raw["part"], points, bool(raw.get("extra", False)), tuple(scenarios))
 
 
 def site(index: int) -> Pose2D:
-    """world_from_odom of a scenario at its start. Site 0 is the world's own origin, where no two frames differ."""
+    """world_from_odom at the start of a scenario. Site 0 is the world's origin, where all frames coincide."""
     return Pose2D() if index == 0 else Pose2D(SPACING * index, -15.0, HEADING)
 
 
 def world_of(plan: Plan) -> World:
-    """Every scenario's obstacles, each at its own site: scenario k at site k + 1, nothing at site 0."""
+    """The obstacles of all scenarios: those of the first one at site 1, and so on; site 0 is empty."""
     obstacles = [Obstacle("ground/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0)))]
     for index, scenario in enumerate(plan.scenarios, 1):
         for number, (kind, values) in enumerate(scenario.obstacles):
@@ -225,8 +203,3 @@ def world_of(plan: Plan) -> World:
 
 def _geometry(kind: str, values: Tuple[float, ...]) -> Geometry:
     return Box((values[3], values[4], HEIGHT)) if kind == "box" else Cylinder(values[2], HEIGHT)
-
-
-def summary(plan: Plan) -> Dict[str, float]:
-    """Points of each part, extra ones left out."""
-    return {part: round(sum(it.points for it in plan.of_part(part) if not it.extra), 6) for part in PARTS}

@@ -1,4 +1,4 @@
-"""A record -> plots as inline SVG, drawn by matplotlib: no script, no file, no network."""
+"""Draws a record as inline SVG plots, with matplotlib; they need no script, file or network."""
 
 import io
 import math
@@ -11,15 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MultipleLocator
 
-from .plan import Limits
-from .record import TERMINAL, Goal, Record, Sample, end_of, errors_at, status_name
+from .handout import GOAL_RADIUS, HEADING_TOLERANCE, STOP_DISTANCE
+from .record import TERMINAL, Goal, Record, Sample, errors_at, results_of, status_name
 
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
-WIDTH = 6.4  # [inch], as all sizes of matplotlib
+WIDTH = 6.4  # [inch]
 STYLE = {
-    "svg.fonttype": "none",  # text as text: smaller, and it can be searched
-    "svg.hashsalt": "robocop",  # the same plot is the same text
+    "svg.fonttype": "none",  # keep text as text: smaller and searchable
+    "svg.hashsalt": "robocop",  # reproducible ids
     "font.size": 8.5,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -35,10 +35,10 @@ STYLE = {
     "legend.frameon": False,
     "legend.borderaxespad": 0.2,
 }
-JUMP = 0.2  # [m] in a tick: no robot drives so fast
-MOST_POINTS = 600  # of a curve: more are not seen
-GAP = 0.5  # [s] without a value, and a curve is parted
-FARTHEST = 50.0  # [m] from odom's origin: a goal farther off is not in the picture
+JUMP = 0.2  # [m] per tick: faster than any robot drives, so it was moved by hand
+MOST_POINTS = 600  # of a curve
+GAP = 0.5  # [s] without a value interrupts a curve
+FARTHEST = 50.0  # [m] goals farther from odom's origin are not drawn
 MOST_GOALS = 6  # in a timeline
 NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclass="[^"]*"', re.DOTALL)
 
@@ -53,17 +53,17 @@ def _figure(height: float, rows: int = 1) -> Tuple[Figure, List[Axes]]:
 
 
 def _svg(figure: Figure) -> str:
-    """The figure as an element of a page."""
+    """The figure as an element of an HTML page."""
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = text.getvalue()
-    return NOT_INLINE.sub("", svg[svg.index("<svg"):])
+    return NOT_INLINE.sub("", svg[svg.index("<svg") :])
 
 
 def _plot(draw: Callable[..., None], height: float, rows: int = 1) -> "Plot":
-    """A function that draws into axes -> one that returns the SVG."""
+    """Turn a function that draws into axes into one that returns SVG."""
 
-    def plot(record: Record, limits: Limits, at: Sequence[float]) -> str:
+    def plot(record: Record, at: Sequence[float]) -> str:
         with matplotlib.rc_context(STYLE):
             figure, axes = _figure(height, rows)
             draw(axes, record, at)
@@ -73,34 +73,53 @@ def _plot(draw: Callable[..., None], height: float, rows: int = 1) -> "Plot":
     return plot
 
 
-def over_time(axes: Axes, title: str, curves: Sequence[Curve], levels: Sequence[Level], at: Sequence[float],
-              bound: float, held: bool = False) -> None:
-    """Curves over simulated time [s]; `levels` are limits to compare with, `at` moments to look at.
+def over_time(
+    axes: Axes,
+    title: str,
+    curves: Sequence[Curve],
+    levels: Sequence[Level],
+    at: Sequence[float],
+    bound: float,
+    stepped: bool = False,
+) -> None:
+    """Curves over simulated time [s], clipped to +-`bound`.
 
-    A value is cut at +-`bound`, and lasts until the next one if it is `held`.
+    `levels` are thresholds to compare with, `at` times to mark. A `stepped` curve keeps each value until the next one.
     """
     axes.set_title(title)
     for name, colour, points in curves:
         finite = [(t, max(-bound, min(bound, y))) for t, y in points if math.isfinite(t) and math.isfinite(y)]
-        shown = _parted(finite[::max(1, len(finite) // MOST_POINTS)], math.inf if held else GAP)
-        axes.plot([t for t, _ in shown], [y for _, y in shown], color=colour, label=name,
-                  drawstyle="steps-post" if held else "default")
+        shown = _parted(finite[:: max(1, len(finite) // MOST_POINTS)], math.inf if stepped else GAP)
+        axes.plot(
+            [t for t, _ in shown],
+            [y for _, y in shown],
+            color=colour,
+            label=name,
+            drawstyle="steps-post" if stepped else "default",
+        )
     for level, words in levels:
         axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
-        axes.annotate(words, (1.0, level), xycoords=("axes fraction", "data"), xytext=(3, 0),
-                      textcoords="offset points", va="center", color=GREY)
+        axes.annotate(
+            words,
+            (1.0, level),
+            xycoords=("axes fraction", "data"),
+            xytext=(3, 0),
+            textcoords="offset points",
+            va="center",
+            color=GREY,
+        )
     _mark(axes, at)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=len(curves))
 
 
 def _parted(points: Sequence[Tuple[float, float]], gap: float) -> List[Tuple[float, float]]:
-    """With a hole wherever there is nothing for longer than a gap [s]."""
-    found: List[Tuple[float, float]] = []
+    """The points with a NaN in each interval longer than a gap [s], which interrupts the curve."""
+    parted: List[Tuple[float, float]] = []
     for point in points:
-        if found and point[0] - found[-1][0] > gap:
-            found.append((point[0], math.nan))
-        found.append(point)
-    return found
+        if parted and point[0] - parted[-1][0] > gap:
+            parted.append((point[0], math.nan))
+        parted.append(point)
+    return parted
 
 
 def _mark(axes: Axes, at: Sequence[float]) -> None:
@@ -113,7 +132,7 @@ def _time_axis(axes: Axes) -> None:
 
 
 def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
-    """The way in parts, parted where the robot was set down elsewhere in the world."""
+    """The path, split where the robot was placed elsewhere in the world."""
     legs: List[List[Sample]] = [[]]
     for sample in samples:
         if legs[-1] and math.hypot(sample.world_x - legs[-1][-1].world_x, sample.world_y - legs[-1][-1].world_y) > JUMP:
@@ -123,38 +142,47 @@ def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
 
 
 def _near(x: float, y: float) -> bool:
-    """Whether a place can be shown beside the robot's."""
+    """Whether a goal is close enough to be drawn."""
     return math.hypot(x, y) < FARTHEST
 
 
 def _name(goal: Goal) -> str:
-    """What goes into a plot of what its sender called it."""
+    """A goal's id, shortened and without control characters."""
     return "".join(character for character in goal.id[-24:] if character.isprintable())
 
 
 def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
-    """The way over the world, seen from above, in odom."""
+    """The path in odom, seen from above."""
     axes = all_axes[0]
-    axes.set_title("the way in odom [m], seen from above")
+    axes.set_title("path in odom [m], seen from above")
     for outline in record.obstacles:
         axes.add_patch(Polygon(list(zip(outline[::2], outline[1::2])), facecolor="#bbbbbb", edgecolor="#888888"))
     for goal in record.goals:
         if _near(goal.x, goal.y):
-            axes.add_patch(Circle((goal.x, goal.y), 0.1, fill=False, edgecolor=GREEN, linewidth=1.5))
-            axes.annotate(f"goal {_name(goal)}", (goal.x, goal.y), xytext=(8, 6), textcoords="offset points",
-                          color=GREEN, parse_math=False)
+            axes.add_patch(Circle((goal.x, goal.y), GOAL_RADIUS, fill=False, edgecolor=GREEN, linewidth=1.5))
+            axes.annotate(
+                f"goal {_name(goal)}",
+                (goal.x, goal.y),
+                xytext=(8, 6),
+                textcoords="offset points",
+                color=GREEN,
+                parse_math=False,
+            )
     for number, leg in enumerate(_legs(record.samples)):
-        colour, name = (BLUE, "robot") if number == 0 else (GREY, "set down elsewhere")
-        axes.plot([it.x for it in leg], [it.y for it in leg], color=colour, label=name if leg else None)
+        colour, name = (BLUE, "robot") if number == 0 else (GREY, "placed elsewhere")
+        axes.plot([sample.x for sample in leg], [sample.y for sample in leg], color=colour, label=name if leg else None)
         if leg:
             axes.plot(leg[0].x, leg[0].y, "o", color=colour, markersize=4)
     for moment in at:
         near = min(record.samples, key=lambda sample: abs(sample.time - moment), default=None)
         if near is not None:
             axes.plot(near.x, near.y, "o", markersize=10, fillstyle="none", color=RED, markeredgewidth=1.8)
-    seen = ([(it.x, it.y) for it in record.samples] + [(it.x, it.y) for it in record.goals if _near(it.x, it.y)]
-            + [(it.odom_x, it.odom_y) for it in record.clicks])
-    if seen:  # and of obstacles what is near
+    seen = (
+        [(sample.x, sample.y) for sample in record.samples]
+        + [(goal.x, goal.y) for goal in record.goals if _near(goal.x, goal.y)]
+        + [(click.odom_x, click.odom_y) for click in record.clicks]
+    )
+    if seen:  # obstacles do not extend the view
         axes.set_xlim(min(x for x, _ in seen) - 0.6, max(x for x, _ in seen) + 0.6)
         axes.set_ylim(min(y for _, y in seen) - 0.6, max(y for _, y in seen) + 0.6)
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2)
@@ -165,46 +193,73 @@ def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> Non
 
 
 def _on_way(record: Record) -> List[Tuple[Sample, Goal]]:
-    """Samples with the goal that was being pursued."""
-    found = []
-    for number, goal in enumerate(record.goals):
-        ends = end_of(record, goal)
-        until = ends[0].time if ends else math.inf
-        if number + 1 < len(record.goals):
-            until = min(until, record.goals[number + 1].time)
-        found += [(sample, goal) for sample in record.samples if goal.time <= sample.time <= until]
-    return found
+    """Samples with the goal that was active."""
+    pairs = []
+    for goal, newer in zip(record.goals, [*record.goals[1:], None]):
+        ends = [result.time for result in results_of(record, goal)[:1]] + ([newer.time] if newer else [])
+        end = min(ends, default=math.inf)
+        pairs += [(sample, goal) for sample in record.samples if goal.time <= sample.time <= end]
+    return pairs
 
 
 def _errors(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
-    """Both errors, true and fed back."""
+    """Both errors: ground truth and feedback."""
     pairs = [(s.time, errors_at(s, g)) for s, g in _on_way(record)]
-    over_time(all_axes[0], "position error [m]",
-              [("true", BLUE, [(t, error[0]) for t, error in pairs]),
-               ("feedback", ORANGE, [(it.time, it.position_error) for it in record.feedback])],
-              [(0.1, "0.1")], at, 50.0)
-    over_time(all_axes[1], "angle error [rad]",
-              [("true", BLUE, [(t, error[1]) for t, error in pairs]),
-               ("feedback", ORANGE, [(it.time, it.angle_error) for it in record.feedback])],
-              [(0.1, "0.1"), (-0.1, "−0.1")], at, 50.0)
+    over_time(
+        all_axes[0],
+        "position error [m]",
+        [
+            ("true", BLUE, [(t, error[0]) for t, error in pairs]),
+            ("feedback", ORANGE, [(message.time, message.position_error) for message in record.feedback]),
+        ],
+        [(GOAL_RADIUS, f"{GOAL_RADIUS:g}")],
+        at,
+        50.0,
+    )
+    over_time(
+        all_axes[1],
+        "angle error [rad]",
+        [
+            ("true", BLUE, [(t, error[1]) for t, error in pairs]),
+            ("feedback", ORANGE, [(message.time, message.angle_error) for message in record.feedback]),
+        ],
+        [(HEADING_TOLERANCE, f"{HEADING_TOLERANCE:g}"), (-HEADING_TOLERANCE, f"−{HEADING_TOLERANCE:g}")],
+        at,
+        50.0,
+    )
     _time_axis(all_axes[1])
 
 
 def _distances(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
-    """To the goal and to what is ahead."""
-    over_time(all_axes[0], "distance [m]",
-              [("to the goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
-               ("to the nearest thing ahead", RED, [(s.time, s.ahead) for s in record.samples])],
-              [(0.3, "0.3"), (0.1, "0.1")], at, 4.0)
+    """The distances to the goal and to the nearest obstacle ahead."""
+    over_time(
+        all_axes[0],
+        "distance [m]",
+        [
+            ("to the goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
+            ("to the nearest obstacle ahead", RED, [(s.time, s.ahead) for s in record.samples]),
+        ],
+        [(level, f"{level:g}") for level in (STOP_DISTANCE, GOAL_RADIUS)],
+        at,
+        4.0,
+    )
     _time_axis(all_axes[0])
 
 
 def _speeds(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
-    """What was commanded."""
-    over_time(all_axes[0], "commands",
-              [("linear.x [m/s]", BLUE, [(it.time, it.v) for it in record.commands]),
-               ("angular.z [rad/s]", ORANGE, [(it.time, it.w) for it in record.commands])],
-              [], at, 10.0, held=True)
+    """The velocity commands."""
+    over_time(
+        all_axes[0],
+        "commands",
+        [
+            ("linear.x [m/s]", BLUE, [(command.time, command.v) for command in record.commands]),
+            ("angular.z [rad/s]", ORANGE, [(command.time, command.w) for command in record.commands]),
+        ],
+        [],
+        at,
+        10.0,
+        stepped=True,
+    )
     _time_axis(all_axes[0])
 
 
@@ -215,15 +270,31 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
     end = record.samples[-1].time if record.samples else 1.0
     axes.set_xlim(record.samples[0].time if record.samples else 0.0, end)
     for row, goal in enumerate(goals):
-        changes = sorted([(goal.time, "sent")] + [(it.time, status_name(it.status)) for it in record.statuses
-                                                  if it.id == goal.id], key=lambda change: change[0])
+        changes = sorted(
+            [(goal.time, "sent")]
+            + [(change.time, status_name(change.status)) for change in record.statuses if change.id == goal.id],
+            key=lambda change: change[0],
+        )
         for (start, name), (until, _) in zip(changes, [*changes[1:], (end, "")]):
-            terminal = name in [status_name(it) for it in TERMINAL]
-            axes.broken_barh([(start, until - start)], (row - 0.35, 0.7), color=STATE_COLOURS.get(name, GREY),
-                             alpha=0.35 if terminal else 0.85, linewidth=0)
+            terminal = name in [status_name(status) for status in TERMINAL]
+            axes.broken_barh(
+                [(start, until - start)],
+                (row - 0.35, 0.7),
+                color=STATE_COLOURS.get(name, GREY),
+                alpha=0.35 if terminal else 0.85,
+                linewidth=0,
+            )
             if name != "sent":
-                axes.annotate(name, (start, row), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.5,
-                              color="black" if terminal else "white", annotation_clip=False)
+                axes.annotate(
+                    name,
+                    (start, row),
+                    xytext=(3, 0),
+                    textcoords="offset points",
+                    va="center",
+                    fontsize=7.5,
+                    color="black" if terminal else "white",
+                    annotation_clip=False,
+                )
     axes.set_yticks(range(len(goals)), [_name(goal) for goal in goals], parse_math=False)
     axes.set_ylim(max(1, len(goals)) - 0.5, -0.5)
     axes.grid(False, axis="y")
@@ -231,7 +302,7 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
     _time_axis(axes)
 
 
-Plot = Callable[[Record, Limits, Sequence[float]], str]
+Plot = Callable[[Record, Sequence[float]], str]
 PLOTS: Dict[str, Plot] = {
     "track": _plot(_track, 3.6),
     "errors": _plot(_errors, 3.4, 2),

@@ -1,6 +1,6 @@
-"""What was recorded in one scenario: plain values, all times simulated [s], written as JSON and read back.
+"""The recording of one scenario, stored as JSON; all times are simulated [s].
 
-Frames: x, y, yaw are true poses in odom (which starts at the robot); world_* the same in the world, which is elsewhere.
+x, y and yaw are true poses in odom, whose origin is where the scenario starts; world_* are the same poses in world.
 """
 
 import dataclasses
@@ -8,20 +8,21 @@ import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Tuple, Type
+from typing import Any, Dict, List, Tuple, Type
 
 from ..geometry import wrap_angle
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
-STATUS_NAMES = ("PENDING", "ACTIVE", "PREEMPTED", "SUCCEEDED", "ABORTED", "REJECTED", "PREEMPTING", "RECALLING",
-                "RECALLED", "LOST")  # actionlib_msgs/GoalStatus
-MOST_TEXT = 2_000  # characters of anybody's words that are kept
+STATUS_NAMES = tuple(
+    "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
+)  # actionlib_msgs/GoalStatus
+MOST_TEXT = 2_000  # characters that are kept of a text from the submission
 TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 
 @dataclass(frozen=True)
 class Sample:
-    """The truth at one control tick: pose [m, rad], velocity [m/s, rad/s], nearest thing within +-30 degrees [m]."""
+    """Ground truth at a control tick: pose [m, rad], velocity [m/s, rad/s], distance [m] to the nearest thing ahead."""
 
     time: float
     x: float
@@ -38,7 +39,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Goal:
-    """A goal that was sent, in odom [m], with the ending that it has to have."""
+    """A goal that was sent, in odom [m], with its expected terminal state."""
 
     id: str
     x: float
@@ -49,7 +50,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Cancel:
-    """A cancel request; an empty id is for all goals."""
+    """A cancel request; an empty id cancels all goals."""
 
     time: float
     id: str
@@ -57,7 +58,7 @@ class Cancel:
 
 @dataclass(frozen=True)
 class Status:
-    """A goal's status has changed."""
+    """A change of a goal's status."""
 
     time: float
     id: str
@@ -66,7 +67,7 @@ class Status:
 
 @dataclass(frozen=True)
 class Result:
-    """A result message, with the goal's status in it."""
+    """A result message."""
 
     time: float
     id: str
@@ -96,7 +97,7 @@ class Command:
 
 @dataclass(frozen=True)
 class Click:
-    """A 2D Nav Goal in a frame [m], and the same place in odom."""
+    """A 2D Nav Goal [m] in its frame, and the same position in odom."""
 
     time: float
     frame: str
@@ -108,7 +109,7 @@ class Click:
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the node's output, or an error it logged."""
+    """A line of the node's output or log."""
 
     time: float
     text: str
@@ -116,7 +117,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Death:
-    """The node's process ended by itself, or, with a reason, was ended for what it took."""
+    """The end of the node's process; with a reason if it was killed for exceeding a resource limit."""
 
     time: float
     status: int
@@ -125,14 +126,14 @@ class Death:
 
 @dataclass(frozen=True)
 class Record:
-    """All of one scenario. In a bridge's record, goals are those that the bridge sent."""
+    """Everything recorded in one scenario; in a bridge's record, goals are those sent by the bridge."""
 
     name: str
     part: str  # server or bridge
-    up: bool = True  # the node connected to all it has to
-    servers: Tuple[str, ...] = ()  # action servers there were, by name
-    types: Tuple[str, ...] = ()  # and their types
-    problem: str = ""  # why the scenario was ended before its time
+    up: bool = True  # the node made all the connections it has to make
+    servers: Tuple[str, ...] = ()  # names of the action servers that were found
+    types: Tuple[str, ...] = ()  # of these servers, in the same order
+    problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()
     goals: Tuple[Goal, ...] = ()
@@ -148,24 +149,33 @@ class Record:
 
 
 _PARTS: Dict[str, Type[Any]] = {
-    "samples": Sample, "goals": Goal, "cancels": Cancel, "statuses": Status, "results": Result, "feedback": Feedback,
-    "commands": Command, "clicks": Click, "lines": Line, "deaths": Death}
+    "samples": Sample,
+    "goals": Goal,
+    "cancels": Cancel,
+    "statuses": Status,
+    "results": Result,
+    "feedback": Feedback,
+    "commands": Command,
+    "clicks": Click,
+    "lines": Line,
+    "deaths": Death,
+}
 
 
 def status_name(status: int) -> str:
-    """A status for a person, also one that there is none of."""
+    """The name of a status, also of an undefined one."""
     return STATUS_NAMES[status] if 0 <= status < len(STATUS_NAMES) else f"status {status}"
 
 
 def write(record: Record, path: Path) -> None:
-    """As JSON; infinity and NaN as Python's json has them."""
-    new = path.with_suffix(".new")  # there as a whole, or not
+    """Write a record as JSON, with Python's extensions Infinity and NaN."""
+    new = path.with_suffix(".new")  # renamed, so that a reader never sees half a file
     new.write_text(json.dumps(dataclasses.asdict(record)))
     new.replace(path)
 
 
 def read(path: Path) -> Record:
-    """What `write` wrote."""
+    """Read a record that `write` wrote."""
     raw = json.loads(path.read_text())
     for name, kind in _PARTS.items():
         raw[name] = tuple(kind(**entry) for entry in raw[name])
@@ -174,27 +184,22 @@ def read(path: Path) -> Record:
     return Record(**raw)
 
 
-def end_of(record: Record, goal: Goal) -> List[Result]:
-    """The results of a goal, in the order they came."""
+def results_of(record: Record, goal: Goal) -> List[Result]:
+    """The results of a goal in order of arrival; a correct server sends one."""
     return [result for result in record.results if result.id == goal.id]
 
 
 def samples_between(record: Record, start: float, end: float) -> List[Sample]:
-    """Samples within [start, end], a hair's breadth more to be sure of both ends."""
+    """Samples within [start, end]; both ends are included in spite of rounding."""
     return [sample for sample in record.samples if start - 1e-6 <= sample.time <= end + 1e-6]
 
 
 def wrapped(angle: float) -> float:
-    """The same angle [rad] within +-pi; NaN and infinity as they are."""
+    """An angle [rad] wrapped to +-pi; NaN and infinity are returned unchanged."""
     return wrap_angle(angle) if math.isfinite(angle) else angle
 
 
 def errors_at(sample: Sample, goal: Goal) -> Tuple[float, float]:
-    """The handout's position_error [m] and angle_error [rad], true at this sample."""
+    """The true position_error [m] and angle_error [rad], as the handout defines them."""
     dx, dy = goal.x - sample.x, goal.y - sample.y
     return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - sample.yaw)
-
-
-def output(records: Iterable[Record]) -> List[str]:
-    """All lines of some records."""
-    return [line.text for record in records for line in record.lines]

@@ -1,4 +1,4 @@
-"""robocop new NAME: the handout's package with its TODOs, in a folder of that name."""
+"""robocop new: create a package with the handout's TODOs."""
 
 import argparse
 import os
@@ -7,15 +7,15 @@ import shutil
 import sys
 from pathlib import Path
 
-from ..errors import GradingError, RobocopError
+from ..errors import GradingSetupError, RobocopError
 
-SUFFIX = ".in"  # hides the skeleton's files from rosrun and roslaunch, which search whole packages
+SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 
 
 def make(share: Path, folder: Path) -> None:
-    """The skeleton in `folder`, which must not exist yet; `share` is this package's own folder."""
+    """Copy the skeleton to `folder`, which must not exist yet; `share` is the folder of this package."""
     if folder.exists():
-        raise GradingError(f"{folder} is there already; expected a new name")
+        raise GradingSetupError(f"{folder} exists already; choose a new name")
     source = share / "skeleton"
     for path in sorted(source.rglob(f"*{SUFFIX}")):
         target = folder / path.relative_to(source).with_suffix("")
@@ -26,9 +26,11 @@ def make(share: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Exit status 1 when the folder is there already."""
+    """Exit status 1 if the folder exists already."""
     parser = argparse.ArgumentParser(prog="robocop new", description=__doc__)
-    parser.add_argument("name", help="folder to make; the package in it has the lab's name, aro_robocop_goto_as")
+    parser.add_argument(
+        "name", help="folder to create; the package itself is called aro_robocop_goto_as, as in the lab"
+    )
     folder = Path(parser.parse_args().name)
     try:
         make(Path(os.environ["ROBOCOP_SHARE"]), folder)
@@ -36,5 +38,8 @@ def main() -> None:
         print(f"robocop new: {error}", file=sys.stderr)
         sys.exit(1)
     path = shlex.quote(str(folder))
-    print(f"{folder}: follow the TODOs in its scripts/. It runs with: ./robocop sim --with {path}\n"
-          f"and is graded with: ./robocop grade {path}")
+    print(
+        f"Created {folder}. Complete the TODOs in its scripts/ folder.\n"
+        f"Run it:   ./robocop sim --with {path}\n"
+        f"Grade it: ./robocop grade {path}"
+    )

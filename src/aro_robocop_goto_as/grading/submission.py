@@ -1,5 +1,6 @@
-"""A path -> what of the lab is there, built, with the commands that start it."""
+"""A path -> the parts of the lab found there, built, with the commands that start them."""
 
+import contextlib
 import io
 import os
 import re
@@ -18,17 +19,18 @@ from ..hosting import workspace
 from ..hosting.compat import compat_environment
 from ..hosting.files import read_text, read_xml
 from ..hosting.package import NODES, Package, find_package
-from ..hosting.workspace import Environment, alone, sourced
-from . import building
-from .sandbox import Cage
+from ..hosting.workspace import Environment
+from .sandbox import Sandbox
+from .sandboxed_build import build, runner_in
 from .skeleton import make
 
 LAB = "aro_robocop_goto_as"
-PARTS = dict(zip((script for script, _ in NODES), ("server", "bridge")))
+SCRIPTS = dict(zip(("server", "bridge"), (script for script, _ in NODES)))
+PARTS = {script: part for part, script in SCRIPTS.items()}
 SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
 CLICKS = "move_base_simple"
-LAUNCH_PATIENCE = 30.0  # [s, wall]
-MOST_PARAMETERS = 100_000  # bytes of roslaunch's listing
+LAUNCH_TIMEOUT = 30.0  # [s, wall]
+MAX_PARAMETERS = 100_000  # bytes of roslaunch's output
 
 
 @dataclass(frozen=True)
@@ -37,28 +39,28 @@ class Script:
 
     part: str  # server or bridge
     path: Path
-    node: str  # its name
+    node: str  # name
     arguments: List[str] = field(default_factory=list)
 
     def command(self) -> List[str]:
-        """What starts it; this interpreter, whatever its first line says, as students' Pythons differ."""
+        """Its command line, with this interpreter whatever its first line says: students' Pythons differ."""
         return [sys.executable, str(self.path), *self.arguments, f"__name:={self.node}"]
 
 
 @dataclass(frozen=True)
 class Submission:
-    """What is to be graded."""
+    """A server, a bridge or both, ready to be run."""
 
     name: str
     path: Path
-    reads: Sequence[Path]  # all that it needs to read, besides the system and what everybody's code needs
+    reads: Sequence[Path]  # what it needs to read, besides the system and what every submission needs
     environment: Environment
     scripts: List[Script]
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
-def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cage]) -> Submission:
-    """The submission at `path`; a package is built, in the cage, in a folder of its own below `workshop`.
+def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
+    """The submission at `path`; a package is built, in the sandbox, in a folder of its own below `builds`.
 
     GradingError or HostingError says why there is none.
     """
@@ -66,41 +68,41 @@ def take(path: str, share: Path, state: Path, workshop: Path, cage: Optional[Cag
     if top.is_file():
         return _files([top], top, share, state)
     if not top.is_dir():
-        raise GradingError(f"{path}: expected a package, a server's or a bridge's file; there is nothing")
+        raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
     loose = [next(iter(sorted(top.rglob(script))), top) for script in PARTS]
     if loose != [top, top] and not list(top.rglob("package.xml")):
         return _files([path for path in loose if path != top], top, share, state)
-    return _package(find_package(str(top)), share, state, workshop, cage)
+    return _package(find_package(str(top)), share, state, builds, sandbox)
 
 
 def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission:
-    """Loose files in `top`, run where they are, with the skeleton's package around them."""
+    """Single files in `top`, run in place, on top of the skeleton's package."""
     scripts: List[Script] = []
     for path in paths:
         if not path.is_file() or top not in (path.resolve(), *path.resolve().parents):
-            raise GradingError(f"{path}: expected a file, and no link to one elsewhere")
+            raise GradingError(f"{path}: expected a file, not a link to one elsewhere")
         part = _part_of(path)
         if not part:
             raise GradingError(
-                f"{path}: neither a server nor a bridge: no ActionServer in it, and neither a client nor "
+                f"{path}: neither a server nor a bridge: it contains no ActionServer, no action client and no "
                 "/move_base_simple/goal"
             )
-        scripts.append(Script(part, path, dict(NODES)[_script(part)]))
+        scripts.append(Script(part, path, _node_name(part)))
     return Submission(
         top.stem if top.is_file() else top.name,
         top,
-        [top, state / "grade" / "lab"],  # helper modules beside them included
+        [top, _lab_folder(state)],  # `top` may contain helper modules
         lab_environment(share, state),
         scripts,
     )
 
 
-def _script(part: str) -> str:
-    return next(script for script, it in PARTS.items() if it == part)
+def _node_name(part: str) -> str:
+    return dict(NODES)[SCRIPTS[part]]
 
 
 def _part_of(path: Path) -> str:
-    """server, bridge, or nothing for a file that is neither."""
+    """ "server", "bridge", or "" for a file that is neither."""
     if path.name in PARTS:
         return PARTS[path.name]
     words = _names_in(read_text(path))
@@ -110,58 +112,49 @@ def _part_of(path: Path) -> str:
 
 
 def _names_in(code: str) -> Set[str]:
-    """Names and strings of a program, without its comments; of one that is broken, whatever comes before that."""
-    found: Set[str] = set()
-    try:
+    """Names and strings of a program, without its comments; up to the first syntax error, if there is one."""
+    names: Set[str] = set()
+    with contextlib.suppress(tokenize.TokenError, SyntaxError):
         for token in tokenize.generate_tokens(io.StringIO(code).readline):
             if token.type in (tokenize.NAME, tokenize.STRING):
-                found.add(token.string)
-    except (tokenize.TokenError, SyntaxError):
-        pass
-    return found
+                names.add(token.string)
+    return names
+
+
+def _lab_folder(state: Path) -> Path:
+    return state / "grade" / "lab"
 
 
 def lab_environment(share: Path, state: Path) -> Environment:
-    """The environment with the lab's action in it, and nothing else of anybody's; built once."""
-    folder = state / "grade" / "lab"
-    stamp = folder / "built-from"
-    wanted = " ".join(
-        f"{path.name}:{zlib.crc32(path.read_bytes()):x}"
-        for name in ("skeleton", "compat")
-        for path in sorted((share / name).rglob("*"))
-        if path.is_file()
-    )
-    underlay = compat_environment(share, state)
-    with alone(folder):
-        if stamp.is_file() and stamp.read_text() == wanted:
-            return sourced(folder / "devel" / "setup.bash", underlay)
-        stamp.unlink(missing_ok=True)
-        with tempfile.TemporaryDirectory() as made:
-            make(share, Path(made, LAB))
-            environment = workspace.build({LAB: Path(made, LAB)}, folder, underlay)
-        stamp.write_text(wanted)
-    return environment
+    """The environment with the lab's action and nothing written by anybody else; built once."""
+    folder, underlay = _lab_folder(state), compat_environment(share, state)
+
+    def build_lab() -> Environment:
+        with tempfile.TemporaryDirectory() as source:
+            make(share, Path(source, LAB))
+            return workspace.build({LAB: Path(source, LAB)}, folder, underlay)
+
+    return workspace.build_once(folder, workspace.checksums(share / "skeleton", share / "compat"), underlay, build_lab)
 
 
-def _package(package: Package, share: Path, state: Path, workshop: Path, cage: Optional[Cage]) -> Submission:
-    folder = workshop / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
-    below = [] if package.name == LAB else [state / "grade" / "lab"]
+def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
+    folder = builds / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
+    below = [] if package.name == LAB else [_lab_folder(state)]
     underlay = lab_environment(share, state) if below else compat_environment(share, state)
-    environment = building.build(package.name, package.path, folder, underlay, below, cage)
+    environment = build(package.name, package.path, folder, underlay, below, sandbox)
     copy = folder / "src" / package.name
-    launched = _launched(copy)
-    scripts: List[Script] = []
+    launch_nodes = _launch_nodes(copy)
+    scripts: Dict[str, Script] = {}
     for path in sorted(copy.rglob("*.py")):
-        part = _part_of(path) if path.name in {*PARTS, *launched} else ""
-        if part and part not in [script.part for script in scripts]:
-            entry = launched.get(path.name, {})
-            scripts.append(
-                Script(
-                    part,
-                    path,
-                    entry.get("name", dict(NODES)[_script(part)]),
-                    entry.get("args", "").split() if "$(" not in entry.get("args", "") else [],
-                )
+        part = _part_of(path) if path.name in {*PARTS, *launch_nodes} else ""
+        if part and part not in scripts:
+            attributes = launch_nodes.get(path.name, {})
+            arguments = attributes.get("args", "")
+            scripts[part] = Script(
+                part,
+                path,
+                attributes.get("name", _node_name(part)),
+                arguments.split() if "$(" not in arguments else [],
             )
     if not scripts:
         raise GradingError(f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}")
@@ -170,22 +163,22 @@ def _package(package: Package, share: Path, state: Path, workshop: Path, cage: O
         package.path,
         [folder, *below],
         environment,
-        scripts,
-        _parameters(package, copy, environment, building.run_in(cage, folder, below, LAUNCH_PATIENCE)),
+        list(scripts.values()),
+        _parameters(package, copy, environment, runner_in(sandbox, folder, below, LAUNCH_TIMEOUT)),
     )
 
 
-def _launched(copy: Path) -> Dict[str, Dict[str, str]]:
+def _launch_nodes(copy: Path) -> Dict[str, Dict[str, str]]:
     """Script -> attributes of its <node> in the package's launch files."""
-    found: Dict[str, Dict[str, str]] = {}
+    nodes: Dict[str, Dict[str, str]] = {}
     for path in sorted(copy.rglob("*.launch")):
         for node in read_xml(path).iter("node"):
-            found.setdefault(node.get("type", ""), dict(node.attrib))
-    return found
+            nodes.setdefault(node.get("type", ""), dict(node.attrib))
+    return nodes
 
 
-class _PlainLoader(yaml.SafeLoader):
-    """YAML without aliases: a few lines of them can stand for more than fits into memory."""
+class _PlainLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no types
+    """YAML without aliases: a few lines with them can expand to more than fits into memory."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         if self.check_event(yaml.AliasEvent):
@@ -194,21 +187,21 @@ class _PlainLoader(yaml.SafeLoader):
 
 
 def _parameters(package: Package, copy: Path, environment: Environment, run: workspace.Run) -> Mapping[str, Any]:
-    """What its launch file sets on the parameter server; launch files may run commands, so it is read in the cage."""
+    """The parameters that its launch file sets; launch files can run commands, so it is read in the sandbox."""
     if package.launch_file is None:
         return {}
     path = copy / package.launch_file.relative_to(package.path)
-    status, output, errors = building.output_of(run, ["roslaunch", "--dump-params", str(path)], environment,
-                                                MOST_PARAMETERS)
-    if status != 0 or not output.strip():  # roslaunch's status is 0 for a file that it can't load
+    command = ["roslaunch", "--dump-params", str(path)]
+    status, output, errors = workspace.output_of(run, command, environment, MAX_PARAMETERS)
+    if status != 0 or not output.strip():  # roslaunch exits with 0 for a file that it can't load
         raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(errors)}")
     try:
-        found = yaml.load(output, _PlainLoader) or {}
+        parameters = yaml.load(output.decode(errors="replace"), _PlainLoader) or {}
     except yaml.YAMLError as error:
         raise GradingError(f"{path.name}: its parameters can't be read: {error}") from error
-    return {name: value for name, value in found.items() if name != "/use_sim_time"}
+    return {name: value for name, value in parameters.items() if name != "/use_sim_time"}
 
 
 def _first_line(text: str) -> str:
-    """What roslaunch says first, without its colours."""
+    """The first line of roslaunch's output, without colours."""
     return next((re.sub("\x1b[^m]*m", "", line) for line in text.splitlines() if line.strip()), "no reason given")

@@ -1,1 +1,1 @@
-"""Other people's packages: found, built in a workspace of their own, run against this simulator."""
+"""Packages written by others: found, built in a workspace of their own, run against this simulator."""

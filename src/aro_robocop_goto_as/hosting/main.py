@@ -1,8 +1,9 @@
-"""robocop sim --with PATH: somebody's package, built in a workspace of its own, against this simulator."""
+"""robocop sim --with PATH: builds a package in a workspace of its own and runs it against this simulator."""
 
 import argparse
 import os
 import shlex
+import signal
 import sys
 import zlib
 from pathlib import Path
@@ -10,9 +11,13 @@ from typing import Dict, List, Tuple
 from xml.sax.saxutils import quoteattr
 
 from ..errors import HostingError, RobocopError
+from ..process.signals import ending_signals, ignore_all, interrupt_on_signal
 from .compat import compat_environment
 from .package import Package, arguments_of, find_package
+from .scratch import scratch_folder
 from .workspace import Environment, build
+
+INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
 def host(package: Package, share: Path, state: Path) -> Tuple[Path, Environment]:
@@ -22,65 +27,85 @@ def host(package: Package, share: Path, state: Path) -> Tuple[Path, Environment]
     for script, _ in package.nodes:
         for copy in (folder / "src" / package.name).rglob(script):
             if not os.access(copy, os.X_OK):
-                where = copy.relative_to(folder / "src")
-                print(f"robocop sim: {where} is not executable, so roslaunch could not start it; in the copy that runs "
-                      "here it is. Mend it with: chmod +x", file=sys.stderr, flush=True)
+                print(
+                    f"robocop sim: {copy.relative_to(folder / 'src')} is not executable, so roslaunch could not start "
+                    "it. The copy that runs here is made executable; fix the original with: chmod +x",
+                    file=sys.stderr,
+                    flush=True,
+                )
                 copy.chmod(0o755)
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}
 
 
 def launch_file(package: Package, folder: Path, arguments: Dict[str, str]) -> Path:
-    """A launch file that starts all of it, written into `folder`."""
+    """A launch file that starts the package and the simulator, written into `folder`."""
     parts = []
     if not package.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
     if package.launch_file is not None:
         copy = folder / "src" / package.name / package.launch_file.relative_to(package.path)
-        given = "".join(f"\n    <arg name={quoteattr(name)} value={quoteattr(value)}/>"
-                        for name, value in arguments.items())
-        parts.append(f"  <include file={quoteattr(str(copy))}>{given}\n  </include>")
+        values = "".join(
+            f"\n    <arg name={quoteattr(name)} value={quoteattr(value)}/>" for name, value in arguments.items()
+        )
+        parts.append(f"  <include file={quoteattr(str(copy))}>{values}\n  </include>")
     else:
-        parts += [f'  <node pkg="{package.name}" type="{script}" name="{node}" output="screen"/>'
-                  for script, node in package.nodes]
+        parts += [
+            f'  <node pkg="{package.name}" type="{script}" name="{node}" output="screen"/>'
+            for script, node in package.nodes
+        ]
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
     return path
 
 
-def sort_arguments(package: Package, given: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
-    """NAME:=VALUE for the package's own launch file, and those for the simulator's, which takes `simulator`."""
-    taken = package.launch_arguments()
-    own: Dict[str, str] = {}
-    others = []
-    for word in given:
+def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
+    """NAME:=VALUE words for the package's launch file, and those for the simulator's, which knows `simulator`."""
+    known = package.launch_arguments()
+    for_package: Dict[str, str] = {}
+    for_simulator = []
+    for word in words:
         name, _, value = word.partition(":=")
-        if name in taken:
-            own[name] = value
+        if name in known:
+            for_package[name] = value
         elif name in simulator:
-            others.append(word)
+            for_simulator.append(word)
         else:
-            raise HostingError(f"{word}: neither {package.name}'s launch file nor the simulator takes an argument of "
-                               f"that name; they take: {', '.join([*taken, *simulator])}")
-    if "rviz" in taken:
-        own.setdefault("rviz", os.environ.get("ROBOCOP_RVIZ", "true"))
-    return own, shlex.join(others)
+            raise HostingError(
+                f"{word}: neither {package.name}'s launch file nor the simulator's has an argument of this name; "
+                f"they have: {', '.join([*known, *simulator])}"
+            )
+    if "rviz" in known:
+        for_package.setdefault("rviz", os.environ.get("ROBOCOP_RVIZ", "true"))
+    return for_package, shlex.join(for_simulator)
 
 
 def prepare() -> Tuple[Path, Environment]:
-    """By this program's arguments: the launch file of it all, and the environment for it. Exits with 1 if it can't."""
+    """Build the package that the arguments name: the launch file to run, and its environment. Exits with 1 or 130."""
     parser = argparse.ArgumentParser(prog="robocop sim --with", description=__doc__)
     parser.add_argument("path", help="folder of a catkin package, or of a workspace with one in it")
     parser.add_argument("--launch", default="", help="which of its launch files (default robocop_goto_as.launch)")
     parser.add_argument("arguments", nargs="*", metavar="NAME:=VALUE", help="for its launch file or the simulator's")
     args = parser.parse_args()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
+    handlers = {number: signal.getsignal(number) for number in ending_signals()}
+    interrupt_on_signal()
     try:
         package = find_package(args.path, args.launch)
         print(f"robocop sim: building {package.name} from {package.path}", flush=True)
-        folder, environment = host(package, share, state)
-        own, others = sort_arguments(package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch"))
-        path = launch_file(package, folder, own)
+        with scratch_folder():
+            folder, environment = host(package, share, state)
+        for_package, for_simulator = sort_arguments(
+            package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch")
+        )
+        path = launch_file(package, folder, for_package)
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)
-    return path, {**environment, "ROBOCOP_SIM_ARGS": others}
+    except KeyboardInterrupt:
+        ignore_all()
+        sys.exit(INTERRUPTED)
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+    environment.pop("TMPDIR", None)  # the build's
+    tmpdir = {"TMPDIR": os.environ["TMPDIR"]} if "TMPDIR" in os.environ else {}
+    return path, {**environment, **tmpdir, "ROBOCOP_SIM_ARGS": for_simulator}

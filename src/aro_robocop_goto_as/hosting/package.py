@@ -1,4 +1,4 @@
-"""A path on disk -> the catkin package there, with what of it can be started."""
+"""A path on disk -> the catkin package there, with its launch file and nodes."""
 
 import os
 import re
@@ -9,70 +9,77 @@ from typing import Iterator, List, Optional, Tuple
 from ..errors import HostingError
 from .files import read_text, read_xml
 
-NODES = (("robocop_goto_as.py", "aro_robocop_goto_as_node"),  # the handout's scripts, and the names of their nodes
-         ("robocop_rviz_goto_ac.py", "robocop_rviz_goto_ac_node"))
+NODES = (
+    ("robocop_goto_as.py", "aro_robocop_goto_as_node"),  # the handout's scripts and their node names
+    ("robocop_rviz_goto_ac.py", "robocop_rviz_goto_ac_node"),
+)
 LAUNCH_FILE = "robocop_goto_as.launch"
-LEFT_OUT = {"build", "devel", "install", "logs", "__pycache__"}  # of a workspace: what is made, not written
+GENERATED = {"build", "devel", "install", "logs", "__pycache__"}  # folders of a workspace
 SIMULATOR = re.compile(r"aro_sim|robocop_sim")
 
 
 @dataclass(frozen=True)
 class Package:
-    """A catkin package of somebody's."""
+    """A catkin package to be hosted."""
 
     name: str
     path: Path
-    launch_file: Optional[Path]  # None: its nodes are started one by one
-    nodes: Tuple[Tuple[str, str], ...]  # script, name of the node: those of the handout's that are there
+    launch_file: Optional[Path]  # None: its nodes are started directly
+    nodes: Tuple[Tuple[str, str], ...]  # script, node name: of the handout's nodes, those present
 
     @property
     def starts_simulator(self) -> bool:
-        """Whether its own launch files bring the lab's simulator up."""
+        """Whether one of its launch files starts the lab's simulator."""
         return self.launch_file is not None and any(
-            SIMULATOR.search(read_text(path)) for path in self.path.rglob("*.launch"))
+            SIMULATOR.search(read_text(path)) for path in self.path.rglob("*.launch")
+        )
 
     def launch_arguments(self) -> List[str]:
-        """Names of the arguments that its launch file takes."""
+        """Names of its launch file's arguments."""
         return [] if self.launch_file is None else arguments_of(self.launch_file)
 
 
 def arguments_of(launch_file: Path) -> List[str]:
-    """Names of the arguments that a launch file takes."""
+    """Names of a launch file's arguments, without those that have a fixed value."""
     return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
 
 
 def find_package(path: str, launch: str = "") -> Package:
-    """The package at `path`, or the only one below it; of several, the one that has the lab's name.
+    """The package at `path`, or the only one below it; if there are several, the one with the lab's name.
 
-    `launch` names the launch file to start. HostingError says what is there instead.
+    `launch` is the name of the launch file to start. HostingError says what was found instead.
     """
     top = Path(path).expanduser()
     if not top.is_dir():
-        raise HostingError(f"{path}: expected the folder of a catkin package, there is none")
+        raise HostingError(f"{path}: expected the folder of a catkin package, but there is no folder")
     manifests = list(_manifests(top.resolve()))
     if not manifests:
         raise HostingError(f"{path}: no package.xml in it or below it; expected the folder of a catkin package")
     named = [(_name(manifest), manifest.parent) for manifest in manifests]
-    chosen = named if len(named) == 1 else [it for it in named if it[0] == "aro_robocop_goto_as"]
+    chosen = named if len(named) == 1 else [entry for entry in named if entry[0] == "aro_robocop_goto_as"]
     if len(chosen) != 1:
-        raise HostingError(f"{path}: {len(named)} packages are there, give the path of one: "
-                           + ", ".join(str(folder) for _, folder in named))
+        raise HostingError(
+            f"{path}: {len(named)} packages found, give the path of one: "
+            + ", ".join(str(folder) for _, folder in named)
+        )
     name, folder = chosen[0]
     nodes = tuple((script, node) for script, node in NODES if any(folder.rglob(script)))
     launch_file = _launch_file(folder, launch)
     if launch_file is None and not nodes:
-        raise HostingError(f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called "
-                           + " or ".join(script for script, _ in NODES))
+        raise HostingError(
+            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called "
+            + " or ".join(script for script, _ in NODES)
+        )
     return Package(name, folder, launch_file, nodes)
 
 
 def _manifests(top: Path) -> Iterator[Path]:
-    """Every package.xml in a folder or below it; a package's inside is not searched for more."""
+    """Every package.xml in a folder or below it, except inside another package."""
     for folder, folders, files in os.walk(top):
         if "package.xml" in files:
             yield Path(folder, "package.xml")
             folders.clear()
-        folders[:] = sorted(name for name in folders if name not in LEFT_OUT and not name.startswith("."))
+        folders[:] = sorted(name for name in folders if name not in GENERATED and not name.startswith("."))
 
 
 def _name(manifest: Path) -> str:
@@ -83,12 +90,15 @@ def _name(manifest: Path) -> str:
 
 
 def _launch_file(folder: Path, wanted: str) -> Optional[Path]:
-    found = sorted(path for path in folder.rglob("*.launch")
-                   if not any(part.startswith(".") for part in path.relative_to(folder).parts))
-    matching = [path for path in found if path.name == (wanted or LAUNCH_FILE)]
+    launch_files = sorted(
+        path
+        for path in folder.rglob("*.launch")
+        if not any(part.startswith(".") for part in path.relative_to(folder).parts)
+    )
+    matching = [path for path in launch_files if path.name == (wanted or LAUNCH_FILE)]
     if wanted and not matching:
-        known = ", ".join(path.name for path in found) or "none"
-        raise HostingError(f"{folder}: no launch file {wanted!r}; there are: {known}")
+        known = ", ".join(path.name for path in launch_files) or "none"
+        raise HostingError(f"{folder}: no launch file {wanted!r}; available: {known}")
     if matching:
         return matching[0]
-    return found[0] if len(found) == 1 else None
+    return launch_files[0] if len(launch_files) == 1 else None

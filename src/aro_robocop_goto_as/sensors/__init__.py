@@ -1,1 +1,1 @@
-"""One sensor a module: RobotState -> measurement, with seeded noise."""
+"""Sensor models: measurements from the states of robots and from exact distances, one sensor per file."""

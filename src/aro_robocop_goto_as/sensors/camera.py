@@ -1,20 +1,22 @@
-"""The geometry of an RGB-D camera's images: a pinhole without distortion, pixels' centres at whole numbers.
+"""The image geometry of an RGB-D camera: a pinhole camera without distortion, pixel centres at integer coordinates.
 
-Images have shape (height, width), row 0 at the top; the optical frame has z ahead, x to the right, y down (REP-103).
+Images have shape (height, width), row 0 at the top; the optical frame has z forward, x right, y down (REP-103).
 """
 
 import math
 from dataclasses import dataclass
-from typing import List
+from typing import List, Protocol, Sequence
 
 import numpy as np
 
-ROUNDING = 1e-3  # share of the farthest depth within which a depth buffer of single precision may miss it
+from ..geometry import Pose3D
+
+ROUNDING = 1e-3  # relative error of a single-precision depth buffer near the farthest depth
 
 
 @dataclass(frozen=True)
 class CameraSpec:
-    """Image size [pixels], horizontal angle of view [rad], nearest and farthest depth [m]."""
+    """Image size [pixels], horizontal field of view [rad], nearest and farthest depth [m]."""
 
     width: int
     height: int
@@ -40,31 +42,57 @@ class CameraSpec:
 
 @dataclass(frozen=True, eq=False)
 class CameraImage:
-    """rgb (height, width, 3) uint8; depth (height, width) float32 [m] along z of the optical frame, +inf = too far."""
+    """rgb (height, width, 3) uint8; depth (height, width) float32 [m] along the optical frame's z, +inf = no return."""
 
     rgb: np.ndarray
     depth: np.ndarray
 
 
 def projection(spec: CameraSpec) -> List[float]:
-    """OpenGL's projection matrix, column by column, for a renderer that samples at whole pixels from the lower left."""
+    """OpenGL's projection matrix, column-major, for a renderer that samples at integer pixels from the lower left."""
     x, y = 2.0 * spec.focal / spec.width, 2.0 * spec.focal / spec.height
     deep = spec.far - spec.near
-    return [x, 0.0, 0.0, 0.0,
-            0.0, y, 0.0, 0.0,
-            1.0 / spec.width, 1.0 / spec.height, -(spec.far + spec.near) / deep, -1.0,
-            0.0, 0.0, -2.0 * spec.far * spec.near / deep, 0.0]
+    return [
+        x,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        y,
+        0.0,
+        0.0,
+        1.0 / spec.width,
+        1.0 / spec.height,
+        -(spec.far + spec.near) / deep,
+        -1.0,
+        0.0,
+        0.0,
+        -2.0 * spec.far * spec.near / deep,
+        0.0,
+    ]
 
 
 def depth_of(buffer: np.ndarray, spec: CameraSpec) -> np.ndarray:
-    """Depth (height, width) float32 [m] from OpenGL's depth buffer of values 0 to 1; the background is +inf."""
+    """Depth (height, width) float32 [m] from an OpenGL depth buffer with values from 0 to 1; the background is +inf."""
     depth = spec.far * spec.near / (spec.far - (spec.far - spec.near) * buffer.astype(np.float64))
     return np.where(depth < spec.far * (1.0 - ROUNDING), depth, np.inf).astype(np.float32)
 
 
 def points_of(depth: np.ndarray, spec: CameraSpec) -> np.ndarray:
-    """Points (height, width, 3) float32 [m] in the optical frame; NaN where nothing is in reach."""
+    """Points (height, width, 3) float32 [m] in the optical frame; NaN where there is no return."""
     z = np.where(np.isfinite(depth), depth, np.nan)
     columns, rows = np.arange(spec.width), np.arange(spec.height)[:, None]
     x, y = z * (columns - spec.centre_x) / spec.focal, z * (rows - spec.centre_y) / spec.focal
     return np.stack([x, y, z], axis=-1).astype(np.float32)
+
+
+class ImageRenderer(Protocol):
+    """Renders what cameras see of one world and its robots; camera_renderer.py does it with Bullet."""
+
+    def render(
+        self, spec: CameraSpec, world_from_optical: Pose3D, robot: int, world_from_bases: Sequence[Pose3D], time: float
+    ) -> CameraImage:
+        """What the camera of one robot sees of the others and of the world, at `time` [s]."""
+
+    def close(self) -> None:
+        """Free the renderer's resources."""

@@ -1,16 +1,17 @@
-"""BodyState -> what a gyro with accelerometer measures."""
+"""The measurements of an IMU: orientation, angular velocity and specific force."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..component_params import ImuNoise
 from ..geometry import STANDARD_GRAVITY, Pose3D, Quaternion, compose3, rotation_matrix
-from ..robot import BodyState
+from ..robot.model import BodyState
 
 
 @dataclass(frozen=True)
 class ImuSample:
-    """Orientation of imu_link in the world; rates [rad/s] and specific force [m/s^2], (3,) each, in imu_link."""
+    """Orientation of imu_link in the world; angular velocity (3,) [rad/s], specific force (3,) [m/s^2] in imu_link."""
 
     orientation: Quaternion
     angular_velocity: np.ndarray
@@ -22,9 +23,15 @@ def _point_velocity(state: BodyState, offset: np.ndarray) -> np.ndarray:
     return np.array(state.linear_velocity) + np.cross(state.angular_velocity, offset)
 
 
-def measure(before: BodyState, after: BodyState, dt: float, base_from_imu: Pose3D,
-            gyro_noise: float, accelerometer_noise: float, rng: np.random.Generator) -> ImuSample:
-    """One sample over the step `dt` [s] between two states; at rest it reads +g upwards (REP-145)."""
+def measure(
+    before: BodyState,
+    after: BodyState,
+    dt: float,
+    base_from_imu: Pose3D,
+    noise: ImuNoise,
+    rng: np.random.Generator,
+) -> ImuSample:
+    """One sample from the states before and after a step of `dt` [s]; at rest it reads +g upwards (REP-145)."""
     base = np.array(base_from_imu.position)
     velocity_before = _point_velocity(before, rotation_matrix(before.world_from_base.orientation) @ base)
     velocity_after = _point_velocity(after, rotation_matrix(after.world_from_base.orientation) @ base)
@@ -33,6 +40,6 @@ def measure(before: BodyState, after: BodyState, dt: float, base_from_imu: Pose3
     force = (velocity_after - velocity_before) / dt + np.array([0.0, 0.0, STANDARD_GRAVITY])
     return ImuSample(
         orientation=world_from_imu.orientation,
-        angular_velocity=imu_from_world @ np.array(after.angular_velocity) + rng.normal(0.0, gyro_noise, 3),
-        linear_acceleration=imu_from_world @ force + rng.normal(0.0, accelerometer_noise, 3),
+        angular_velocity=imu_from_world @ np.array(after.angular_velocity) + rng.normal(0.0, noise.gyro, 3),
+        linear_acceleration=imu_from_world @ force + rng.normal(0.0, noise.accelerometer, 3),
     )

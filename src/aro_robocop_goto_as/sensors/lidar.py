@@ -1,11 +1,11 @@
-"""Poses + the world's cut at the scanner's height -> the ranges of a planar laser scanner."""
+"""A planar laser scanner: exact distances in a cross-section of the world, and ranges with the scanner's errors."""
 
 from typing import Dict, Optional
 
 import numpy as np
 
-from ..raycast import Fan
-from ..slice import Slice
+from ..raycast.beams import Fan
+from ..raycast.cross_section import Slice
 from .scan_profiles import LidarSpec
 
 
@@ -14,11 +14,11 @@ class Lidar:
 
     def __init__(self, spec: LidarSpec) -> None:
         self.spec = spec
-        self._fan = Fan(spec.angle_min, spec.increment, spec.samples)
-        self._turns: Dict[int, Lidar] = {}  # this scanner with other numbers of beams
+        self.fan = Fan(spec.angle_min, spec.increment, spec.samples)
+        self._turns: Dict[int, Lidar] = {}  # the same scanner by number of beams
 
     def next_turn(self, rng: np.random.Generator) -> "Lidar":
-        """This scanner with as many beams as one turn brings: a motor's speed may vary, that of measuring does not."""
+        """The scanner for one revolution, whose number of beams varies with the speed of the scanner's motor."""
         if not self.spec.varying:
             return self
         low, high = self.spec.samples - self.spec.varying, self.spec.samples + self.spec.varying
@@ -28,19 +28,19 @@ class Lidar:
         return self._turns[samples]
 
     def distances(self, world_from_scans: np.ndarray, walls: Slice, others: Optional[np.ndarray] = None) -> np.ndarray:
-        """Exact distances (r, samples) [m] from poses (r, 3); +inf where nothing is within range_max.
+        """Exact distances (r, samples) [m] from poses (r, [x, y, yaw]); +inf where nothing is within range_max.
 
-        Beams start at the scanner's centre, not at range_min, so that they carry no offset. `others` as in Fan.cast.
+        Beams start at the scanner's centre, not at range_min, so ranges have no offset. `others` as in Fan.cast.
         """
-        return self._fan.cast(world_from_scans, walls, others, self.spec.range_max)
+        return self.fan.cast(world_from_scans, walls, others, self.spec.range_max)
 
     def measure(self, distances: np.ndarray, noise: np.ndarray) -> np.ndarray:
-        """Ranges [m] of the same shape, from exact distances and standard normal noise, scaled here.
+        """Ranges [m] from exact distances [m] and standard normal noise, all of the same shape.
 
-        By REP-117 too near = -inf, no return = +inf; where the spec says so both are 0.0, as the LDS's drivers have it.
+        As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
         spec = self.spec
-        ranges = distances + (errors(distances, noise, spec) if spec.accuracy else spec.noise * noise)
+        ranges = distances + (range_noise(distances, noise, spec) if spec.accuracy else spec.noise * noise)
         near, far = ranges < spec.range_min, ranges > spec.range_max
         if spec.step:
             ranges = np.round(ranges / spec.step) * spec.step
@@ -49,8 +49,8 @@ class Lidar:
         return ranges
 
 
-def errors(distances: np.ndarray, noise: np.ndarray, spec: LidarSpec) -> np.ndarray:
-    """Errors [m] by a data sheet's accuracy, taken for two sigma, and never beyond it."""
+def range_noise(distances: np.ndarray, noise: np.ndarray, spec: LidarSpec) -> np.ndarray:
+    """Range errors [m] from a data sheet's accuracy, taken as two sigma and as the maximum."""
     bounds = np.array([entry.up_to for entry in spec.accuracy])
     entry = np.minimum(np.searchsorted(bounds, distances), len(bounds) - 1)
     metres, shares = (np.array([part[i] for part in spec.accuracy]) for i in (1, 2))

@@ -1,10 +1,10 @@
-"""Orientation -> the earth's magnetic field as a magnetometer measures it."""
+"""The Earth's magnetic field as a magnetometer measures it."""
 
 import numpy as np
 
 from ..geometry import Quaternion, rotation_matrix
 
-# [T] in the world, y to the north (REP-103) and z up: middle Europe's, 20 microtesla along the ground and 44 into it.
+# [T] in the world frame, y north and z up (REP-103): Central Europe, 20 microtesla horizontal and 44 downwards.
 FIELD = np.array([0.0, 20e-6, -44e-6])
 
 

@@ -1,26 +1,26 @@
-"""Wheel angles -> pose and twist, as dead reckoning from encoders gives them."""
+"""Wheel odometry: pose and twist by dead reckoning from wheel angles."""
 
 from typing import NamedTuple
 
 from ..geometry import STANDSTILL, Pose2D, Twist2D, arc, wrap_angle
-from ..robot import Pair
+from ..robot.model import Pair
 
 
 class Odometry(NamedTuple):
-    """Pose of the base in odom, mean twist since the update before, and the wheel angles both came from."""
+    """Pose of base_footprint in odom, mean twist since the previous update, and the wheel angles at this update."""
 
-    odom_from_base: Pose2D
+    odom_from_footprint: Pose2D
     twist: Twist2D
     wheel_angles: Pair  # left, right [rad], never wrapped
 
 
 def starting(wheel_angles: Pair) -> Odometry:
-    """Odometry at zero, with the wheels wherever they are."""
+    """Odometry at zero, whatever the wheel angles."""
     return Odometry(Pose2D(), STANDSTILL, wheel_angles)
 
 
 def integrate(before: Odometry, wheel_angles: Pair, dt: float, radius: float, separation: float) -> Odometry:
-    """Odometry `dt` [s] later: an exact circular arc through the wheels' travel, radius and separation in [m]."""
+    """Odometry `dt` [s] later, along the circular arc that the wheels' travel implies; radius and separation in [m]."""
     pose, _, (left_before, right_before) = before
     left, right = (wheel_angles[0] - left_before) * radius, (wheel_angles[1] - right_before) * radius
     distance, turn = (left + right) / 2.0, (right - left) / separation

@@ -1,6 +1,6 @@
-"""One function per contract of the handout, over one scenario's record: passed, failed, or not reached."""
+"""The contracts of the handout, one check function each: a scenario's record -> passed, failed or not reached."""
 
-from . import bridge, endings, feedback, life, motion  # noqa: F401  each registers its checks
-from .verdict import CHECKS, PLOTS, Check, Failed, NotReached, Passed, Verdict, sentence
+from . import bridge, endings, feedback, life, motion, obstacles, preemption  # noqa: F401  they register their checks
+from .verdict import CHECKS, PLOTS, Failed, NotReached, Passed, description, sentences
 
-__all__ = ["CHECKS", "PLOTS", "Check", "Failed", "NotReached", "Passed", "Verdict", "sentence"]
+__all__ = ["CHECKS", "PLOTS", "Failed", "NotReached", "Passed", "description", "sentences"]

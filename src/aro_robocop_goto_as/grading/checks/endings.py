@@ -1,246 +1,156 @@
-"""How goals end: with which state, with which result, where, and how often."""
+"""Checks of a goal's terminal state and result."""
 
-from typing import Optional
+from typing import Optional, Sequence
 
-from ..plan import Limits
+from ..handout import GOAL_RADIUS
+from ..limits import Limits
 from ..record import (
     ABORTED,
     PREEMPTED,
-    RECALLED,
-    STATUS_NAMES,
     SUCCEEDED,
     TERMINAL,
     Goal,
     Record,
-    end_of,
     errors_at,
+    results_of,
     samples_between,
     status_name,
 )
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
 
-NO_RESULT = "No terminal", "without setting", "did not set the goal to a terminal status", "user should have"
-DOUBLE = "must be in a preempting or active state", "must be in a pending or recalling state", "currently in state"
-GONE_ON = ("its wheels went on turning until odometry said that it was there. Is the distance ahead looked at in each "
-           "iteration?")
-EXCEPTION = "xception in your execute callback", "Traceback"
-
-
-def _text(record: Record) -> str:
-    return "\n".join(line.text for line in record.lines)
-
-
-def ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
-    """None when a goal ended as it should; else what happened instead."""
-    ends = end_of(record, goal)
-    name = status_name(wanted)
-    if not ends:
-        last = record.samples[-1].time if record.samples else goal.time
-        cause = record.problem or "the goal got no terminal state and no result"
-        return Failed(name, "no result", last, _hit(record, goal, last) + cause)
-    end = ends[0]
-    if end.status == wanted:
-        return None
-    hit = _hit(record, goal, end.time)
-    why = (GONE_ON if hit and (wanted, end.status) == (ABORTED, SUCCEEDED) else _why(record, end.status, wanted))
-    return Failed(name, f"{status_name(end.status)}{': ' + end.message if end.message else ''}", end.time, hit + why)
+# Parts of the messages that actionlib's SimpleActionServer and rospy log.
+NO_STATE_LOGGED = "No terminal", "without setting", "did not set the goal to a terminal status", "user should have"
+TWO_STATES_LOGGED = (
+    "must be in a preempting or active state",
+    "must be in a pending or recalling state",
+    "currently in state",
+)
+EXCEPTION_LOGGED = "xception in your execute callback", "Traceback"
+NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
+TWO_STATES = "The goal got two terminal states"
 
 
-def _hit(record: Record, goal: Goal, end: float) -> str:
-    """Whether the robot met an obstacle on its way: its wheels go on turning there, and odometry with them."""
-    touching = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
-    return f"the robot ran into an obstacle at {touching[0].time:.1f} s; " if touching else ""
-
-
-def _why(record: Record, status: int, wanted: int) -> str:
-    text = _text(record)
-    if any(words in text for words in EXCEPTION):
-        return "an exception in the goal's callback: " + last_error(record)
-    if any(words in text for words in NO_RESULT):
-        return "execute_cb returned without set_succeeded, set_aborted or set_preempted"
-    if wanted == ABORTED and status == SUCCEEDED:
-        return "set_succeeded is called though the goal failed: it needs set_aborted"
-    if wanted == SUCCEEDED and status == ABORTED:
-        return "set_aborted is called though nothing is in the way: which beams count as ahead, which ranges as valid?"
-    if wanted == PREEMPTED:
-        return "a goal that is cancelled or replaced needs set_preempted"
-    return "the wrong terminal state was set"
+def logged(record: Record, words: Sequence[str]) -> bool:
+    """Whether the node's output contains one of some words."""
+    return any(word in line.text for line in record.lines for word in words)
 
 
 def last_error(record: Record) -> str:
-    """The last line of the last traceback, for a person."""
+    """The last line of the last traceback."""
     lines = [line.text.strip() for line in record.lines]
-    words = [line for line in lines if "Error" in line.split(":")[0] or "Exception:" in line]
-    return (words or [line for line in lines if line] or ["see its output"])[-1].splitlines()[-1][:200]
+    errors = [line for line in lines if "Error" in line.split(":")[0] or "Exception:" in line]
+    return (errors or [line for line in lines if line] or ["see its output"])[-1].splitlines()[-1][:200]
 
 
-def too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """Success away from the goal."""
-    result = end_of(record, goal)[0]
+def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that did not end in the wanted state; None if it did."""
+    results = results_of(record, goal)
+    if not results:
+        last = record.samples[-1].time if record.samples else goal.time
+        problem = record.problem or "the goal got no terminal state and no result"
+        cause = problem[:1].upper() + problem[1:]
+        return Failed(status_name(wanted), "no result", last, sentences(_collision(record, goal, last), cause))
+    result = results[0]
+    if result.status == wanted:
+        return None
+    collision = _collision(record, goal, result.time)
+    cause = _wrong_state(record, result.status, wanted)
+    if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
+        cause = (
+            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration?"
+        )
+    seen = status_name(result.status) + (f": {result.message}" if result.message else "")
+    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause))
+
+
+def _collision(record: Record, goal: Goal, end: float) -> str:
+    """A sentence about the first contact with an obstacle, if there was one."""
+    contacts = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
+    return f"The robot ran into an obstacle at {contacts[0].time:.1f} s" if contacts else ""
+
+
+def _wrong_state(record: Record, status: int, wanted: int) -> str:
+    if logged(record, EXCEPTION_LOGGED):
+        return "The goal's callback raised an exception: " + last_error(record)
+    if logged(record, NO_STATE_LOGGED):
+        return NO_STATE
+    if wanted == ABORTED and status == SUCCEEDED:
+        return "set_succeeded is called although the goal failed: call set_aborted"
+    if wanted == SUCCEEDED and status == ABORTED:
+        return (
+            "set_aborted is called although nothing is in the way: which beams count as ahead, which ranges as valid?"
+        )
+    if wanted == PREEMPTED:
+        return "Call set_preempted for a goal that is cancelled or replaced"
+    return "The server set the wrong terminal state"
+
+
+def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that succeeded away from its position."""
+    result = results_of(record, goal)[0]
     at_end = samples_between(record, result.time - 0.2, result.time)
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
     return Failed(
-        "success within 0.1 m",
+        f"success within {GOAL_RADIUS:g} m",
         f"success {nearest:.2f} m away",
         result.time,
-        "the threshold of position_error is not 0.1 m, or it is compared with something else",
+        f"The threshold of position_error is not {GOAL_RADIUS:g} m, or it is compared with another quantity",
     )
 
 
 @check("states")
 def success_result(record: Record, limits: Limits) -> Verdict:
-    """The result of a reached goal says so: success is true, message is filled."""
+    """The result of a reached goal has success true and a message."""
     return _result(record, SUCCEEDED, True)
 
 
 @check("states")
 def failure_result(record: Record, limits: Limits) -> Verdict:
-    """The result of an aborted goal says so: success is false, message is filled."""
+    """The result of an aborted goal has success false and a message."""
     return _result(record, ABORTED, False)
 
 
 def _result(record: Record, status: int, success: bool) -> Verdict:
-    ends = [end for goal in record.goals[:1] for end in end_of(record, goal)[:1] if end.status == status]
-    if not ends:
+    results = [result for goal in record.goals[:1] for result in results_of(record, goal)[:1]]
+    if not results or results[0].status != status:
         return NotReached(f"the goal did not end as {status_name(status)}")
-    for end in ends:
-        if end.success != success:
-            return Failed(f"success {success}", f"success {end.success}", end.time,
-                          "the result is not sent with the terminal state: set_succeeded(result), set_aborted(result)"
-                          if not end.message else "result.success does not fit the outcome")
-        if not end.message:
-            return Failed("a message", "an empty message", end.time,
-                          "no result, or an empty one, was sent: fill in success and message, and give the result to "
-                          "set_succeeded or set_aborted")
+    result = results[0]
+    if result.success != success:
+        cause = "result.success contradicts the terminal state"
+        if not result.message:
+            cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
+        return Failed(f"success {success}", f"success {result.success}", result.time, cause)
+    if not result.message:
+        cause = (
+            "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
+        )
+        return Failed("a message", "an empty message", result.time, cause)
     return Passed()
-
-
-@check("distances")
-def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
-    """With an obstacle nearer than 0.3 m ahead the goal is aborted, before the robot touches it."""
-    if not record.goals:
-        return NotReached("no goal was sent")
-    return _abort(record, record.goals[0], limits) or Passed()
-
-
-def _abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    problem = ending(record, goal, ABORTED, limits)
-    if problem is not None:
-        return problem
-    end = end_of(record, goal)[0]
-    around = samples_between(record, end.time - 0.25, end.time + limits.stop_within)
-    if any(sample.touching for sample in around):
-        return Failed("standing before the obstacle", "the robot touches it", end.time, "it was seen too late")
-    if any(words in _text(record) for words in EXCEPTION):
-        return Failed("an abort when 0.3 m are left", "an exception", end.time, _why(record, end.status, ABORTED))
-    at_end = [sample.ahead for sample in samples_between(record, end.time - 0.25, end.time)]
-    if at_end and min(at_end) > limits.abort_farthest:
-        return Failed("an abort when 0.3 m are left", f"aborted with {min(at_end):.2f} m left", end.time,
-                      "the threshold is not 0.3 m, or other beams than those ahead count")
-    if at_end and at_end[-1] < limits.abort_nearest:
-        return Failed("an abort when 0.3 m are left", f"aborted with {at_end[-1]:.2f} m left", end.time,
-                      "the threshold is not 0.3 m, or the scan is looked at too seldom")
-    return None
-
-
-@check("distances")
-def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
-    """Obstacles beside and behind the robot do not end a goal."""
-    for goal in record.goals:
-        problem = ending(record, goal, SUCCEEDED, limits)
-        if problem is not None:
-            return problem
-    return Passed() if record.goals else NotReached("no goal was sent")
-
-
-@check("distances")
-def odd_scans(record: Record, limits: Limits) -> Verdict:
-    """Beams of inf, 0 and NaN are no obstacles, and hide none."""
-    if not record.goals:
-        return NotReached("no goal was sent")
-    goal = record.goals[0]
-    wanted = STATUS_NAMES.index(goal.ends)
-    problem = ending(record, goal, wanted, limits)
-    if problem is None and wanted == ABORTED:
-        problem = _abort(record, goal, limits)
-    if problem is None:
-        return Passed()
-    hint = ("0 or NaN is taken for an obstacle" if wanted == SUCCEEDED else "a NaN or 0 among the beams hides the wall")
-    return Failed(problem.expected, problem.seen, problem.time,
-                  f"{problem.cause}; here {hint}: only range_min < r < range_max is a return")
-
-
-@check("states")
-def cancel(record: Record, limits: Limits) -> Verdict:
-    """A cancelled goal ends as PREEMPTED, soon."""
-    if not record.cancels:
-        return NotReached("the goal ended before it could be cancelled")
-    asked = record.cancels[0]
-    goal = next(goal for goal in record.goals if goal.id == asked.id)
-    return _given_up(record, goal, asked.time, limits, "cancel", "is is_preempt_requested() asked in each iteration?")
-
-
-@check("states")
-def newer_goal(record: Record, limits: Limits) -> Verdict:
-    """A newer goal ends the older one as PREEMPTED, and is reached."""
-    if len(record.goals) < 2:
-        return NotReached("the first goal ended before a newer one could be sent")
-    older, newer = record.goals[:2]
-    verdict = _given_up(record, older, newer.time, limits, "newer goal",
-                        "is_preempt_requested() is true for a newer goal as well: the loop has to end then")
-    if not isinstance(verdict, Passed):
-        return verdict
-    return ending(record, newer, SUCCEEDED, limits) or Passed()
-
-
-def _given_up(record: Record, goal: Goal, asked: float, limits: Limits, what: str, hint: str) -> Verdict:
-    ends = end_of(record, goal)
-    if not ends or ends[0].time > asked + limits.preempt_within:
-        seen = f"{ends[0].time - asked:.1f} s later" if ends else "never"
-        return Failed(f"PREEMPTED within {limits.preempt_within:g} s of the {what}", seen, asked,
-                      f"the {what} is not noticed: {hint}")
-    if ends[0].status not in (PREEMPTED, RECALLED):
-        problem = ending(record, goal, PREEMPTED, limits)
-        assert problem is not None
-        return problem
-    return Passed()
-
-
-@check("states")
-def next_goal(record: Record, limits: Limits) -> Verdict:
-    """After a goal has ended, in whatever way, the next one is served."""
-    if len(record.goals) < 2 or not end_of(record, record.goals[0]):
-        return NotReached("the first goal did not end")
-    goal = record.goals[-1]
-    heard = {status.id for status in record.statuses} | {result.id for result in record.results}
-    if goal.id not in heard:
-        return Failed("the second goal is accepted", "nothing", goal.time, "the server no longer takes goals")
-    problem = ending(record, goal, SUCCEEDED, limits) or too_far(record, goal, limits)
-    if problem is None:
-        return Passed()
-    return Failed(problem.expected, problem.seen, problem.time,
-                  f"after {status_name(end_of(record, record.goals[0])[0].status)} the second goal fails: "
-                  f"{problem.cause}; is all that the first one left behind set back?")
 
 
 @check("speeds")
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
-    """Once a goal has ended, in whatever way, the robot stands."""
+    """The robot stands still after a goal has ended, in any state."""
     judged = False
     for number, goal in enumerate(record.goals):
-        for end in end_of(record, goal)[:1]:
-            after = samples_between(record, end.time + limits.stop_within, end.time + limits.stop_within + 0.15)
-            replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < end.time + limits.stop_within
+        for result in results_of(record, goal)[:1]:
+            stopped = result.time + limits.stop_within
+            after = samples_between(record, stopped, stopped + 0.15)
+            replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < stopped
             if not after or replaced:
                 continue
             judged = True
-            moving = [s for s in after if abs(s.v) > limits.standing_v or abs(s.w) > limits.standing_w]
-            if moving:
-                return Failed("the robot stands", f"{moving[0].v:.2f} m/s and {moving[0].w:.2f} rad/s", moving[0].time,
-                              f"robot kept driving after the result ({status_name(end.status)}): publish a zero Twist "
-                              "at every ending; /cmd_vel is held")
+            for sample in after:
+                if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
+                    return Failed(
+                        "a robot at rest",
+                        f"{sample.v:.2f} m/s and {sample.w:.2f} rad/s",
+                        sample.time,
+                        f"The robot kept moving after the result ({status_name(result.status)}): publish a zero Twist "
+                        "at every ending, because the last /cmd_vel stays in force",
+                    )
     return Passed() if judged else NotReached("no goal ended")
 
 
@@ -249,22 +159,19 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
     """Each goal gets exactly one terminal state, set by the server's own code."""
     judged = False
     for goal in record.goals:
-        ends = end_of(record, goal)
-        if len(ends) > 1:
-            return Failed("one result", f"{len(ends)} results", ends[1].time, "goal got two terminal states")
-        judged = judged or bool(ends)
+        results = results_of(record, goal)
+        if len(results) > 1:
+            return Failed("one result", f"{len(results)} results", results[1].time, TWO_STATES)
+        judged = judged or bool(results)
     for line in record.lines:
-        if any(words in line.text for words in DOUBLE):
-            return Failed("one terminal state", line.text[:160], line.time,
-                          "goal got two terminal states; the handout's example does so after a cancel: return after "
-                          "set_preempted()")
-        if any(words in line.text for words in NO_RESULT):
-            return Failed("a terminal state", "none was set", line.time,
-                          "execute_cb returned without set_succeeded, set_aborted or set_preempted")
-    changes = [it for it in record.statuses if it.status in TERMINAL]
+        if any(word in line.text for word in TWO_STATES_LOGGED):
+            cause = f"{TWO_STATES}, as in the handout's example after a cancel: return after set_preempted()"
+            return Failed("one terminal state", line.text[:160], line.time, cause)
+        if any(word in line.text for word in NO_STATE_LOGGED):
+            return Failed("a terminal state", "none was set", line.time, NO_STATE)
     for goal in record.goals:
-        states = [it for it in changes if it.id == goal.id]
-        if len({it.status for it in states}) > 1:
-            return Failed("one terminal state", " then ".join(status_name(it.status) for it in states), states[1].time,
-                          "goal got two terminal states")
+        changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
+        if len({change.status for change in changes}) > 1:
+            states = " then ".join(status_name(change.status) for change in changes)
+            return Failed("one terminal state", states, changes[1].time, TWO_STATES)
     return Passed() if judged else NotReached("no goal ended")

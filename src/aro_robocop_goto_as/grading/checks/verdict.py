@@ -1,27 +1,27 @@
-"""What a check says of one record."""
+"""The verdict of a check on one record, and the registry of all checks."""
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Tuple, Union
+from typing import Callable, Dict, Union
 
-from ..plan import Limits
+from ..limits import Limits
 from ..record import Record
 
 
 @dataclass(frozen=True)
 class Passed:
-    """The contract was put to the test, and kept."""
+    """The contract was tested and kept."""
 
 
 @dataclass(frozen=True)
 class NotReached:
-    """The record says nothing about the contract, since things did not come so far."""
+    """The scenario did not get far enough to test the contract."""
 
     why: str
 
 
 @dataclass(frozen=True)
 class Failed:
-    """The contract was broken: what was expected, what was seen, at which simulated second, the likely cause."""
+    """The contract was broken: expected, seen, simulated time [s], likely cause."""
 
     expected: str
     seen: str
@@ -37,19 +37,21 @@ PLOTS: Dict[str, str] = {}
 
 
 def check(plot: str) -> Callable[[Check], Check]:
-    """Register a function as the check of its name; `plot` is the one that shows what it is about."""
+    """Register a function as the check of its name; `plot` names the plot that illustrates it."""
+
     def register(function: Check) -> Check:
         CHECKS[function.__name__] = function
         PLOTS[function.__name__] = plot
         return function
+
     return register
 
 
-def sentence(name: str) -> str:
-    """What a check is about: the first line of its docstring."""
+def description(name: str) -> str:
+    """The contract that a check tests: the first line of its docstring."""
     return (CHECKS[name].__doc__ or "").strip().splitlines()[0]
 
 
-def named(names: Tuple[str, ...]) -> str:
-    """Names for a person."""
-    return ", ".join(names) or "none"
+def sentences(*parts: str) -> str:
+    """The parts that are not empty as sentences of one paragraph."""
+    return " ".join(part if part.endswith(("?", ".")) else f"{part}." for part in parts if part)

@@ -1,4 +1,4 @@
-"""robocop grade-class: a folder of hand-ins -> a table, an overview, a report each; it goes on where it ended."""
+"""robocop grade-class: grade a folder of hand-ins in parallel; an interrupted run can be continued."""
 
 import argparse
 import contextlib
@@ -9,113 +9,120 @@ from pathlib import Path
 from typing import Dict, List, Union
 from xml.etree import ElementTree
 
-from ...errors import GradingError, RobocopError
-from ...hosting.workspace import alone
-from ...interruption import as_ctrl_c, check, the_end
+from ...errors import GradingSetupError, RobocopError
+from ...hosting.scratch import scratch_folder
+from ...hosting.workspace import exclusive
+from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from ..main import INTERRUPTED
 from ..plan import Plan, load
 from .hand_ins import HandIn, collect
 from .overview import page
-from .results import Result, Results, in_order, table, write_whole
+from .results import Result, Results, table, write_atomically
 from .worker import Done, Task
 
 CSV, HTML = "grades.csv", "index.html"
 
 
 class Class:
-    """The hand-ins of one folder, what is done of them, and how far it is."""
+    """The hand-ins of one folder and the results so far."""
 
     def __init__(self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: bool) -> None:
         self.title, self.plan, self._results = folder.name, plan, results
         self.count = len(hand_ins)
         self.done: Dict[str, Result] = {
-            it.name: results.read(it.name) for it in hand_ins if not again and results.has(it)}
-        self.waiting = [it for it in hand_ins if it.name not in self.done]
+            hand_in.name: results.read(hand_in.name) for hand_in in hand_ins if not again and results.has(hand_in)
+        }
+        self.waiting = [hand_in for hand_in in hand_ins if hand_in.name not in self.done]
         self.problems: Dict[str, str] = {}
 
-    def take(self, name: str, outcome: Union[Done, str]) -> str:
-        """Keep what came of one hand-in; a line about it."""
+    def add(self, name: str, outcome: Union[Done, str]) -> str:
+        """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
         if isinstance(outcome, str):
             self.problems[name] = outcome
-            return f"{shown(name)}: {outcome}"
+            return f"{_printable(name)}: {outcome}"
         self._results.keep(outcome)
         result = self.done[name] = self._results.read(name)
-        self.waiting = [it for it in self.waiting if it.name != name]
+        self.waiting = [hand_in for hand_in in self.waiting if hand_in.name != name]
         self.write(running=True)
-        words = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
-        return f"[{len(self.done)}/{self.count}] {shown(name)}: {result.points:g} points, {result.seconds:.0f} s{words}"
+        problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
+        counter = f"[{len(self.done)}/{self.count}]"
+        return f"{counter} {_printable(name)}: {result.points:g} points, {result.seconds:.0f} s{problems}"
 
     def write(self, running: bool) -> None:
-        """The table and the overview, as things are."""
-        results, folder = in_order(self.done), self._results.folder
-        write_whole(folder / CSV, table(results, self.plan))
-        waiting = {it.name: self.problems.get(it.name, "waiting") for it in self.waiting}
-        write_whole(folder / HTML, page(self.title, results, self.plan, waiting, running))
+        """Write the table and the overview of the results so far."""
+        results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
+        write_atomically(folder / CSV, table(results, self.plan))
+        waiting = {hand_in.name: self.problems.get(hand_in.name, "waiting") for hand_in in self.waiting}
+        write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
 
 
-def shown(name: str) -> str:
-    """A file's name for a person, whatever bytes it is made of."""
+def _printable(name: str) -> str:
+    """A file's name, with the bytes that are not UTF-8 replaced."""
     return name.encode("utf-8", "replace").decode()
 
 
 def main() -> None:
-    """Exit status 0: everybody is graded; 1: somebody can't be, or nobody; 130: interrupted."""
+    """Exit status 0: everybody is graded; 1: somebody could not be graded; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__)
-    parser.add_argument("folder", metavar="DIR", help="in it a folder (a package), zip or Python file for each hand-in")
-    parser.add_argument("--report", metavar="DIR", help="where results go (default: .robocop/classes/NAME)")
+    parser.add_argument("folder", metavar="DIR", help="contains a folder (a package), zip or Python file per hand-in")
+    parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
-    parser.add_argument("--workers", type=int, metavar="N", help="processes here (default: one for each core)")
-    parser.add_argument("--scheduler", default="", metavar="tcp://HOST:PORT", help="a dask scheduler to use instead")
-    parser.add_argument("--again", action="store_true", help="grade all of them, also those that are done")
-    parser.add_argument("--unsafe", action="store_true", help="run the code without bubblewrap around it")
+    parser.add_argument("--workers", type=int, metavar="N", help="local processes (default: one for each core)")
+    parser.add_argument("--scheduler", default="", metavar="tcp://HOST:PORT", help="use the workers of this scheduler")
+    parser.add_argument("--again", action="store_true", help="also grade hand-ins that have a result")
+    parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     args = parser.parse_args()
-    as_ctrl_c()
+    interrupt_on_signal()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
-    plan_path = Path(args.plan) if args.plan else share / "config" / "grading.yaml"
     folder = Path(args.folder).resolve()
     try:
         if args.workers is not None and args.workers < 1:
-            raise GradingError(f"--workers {args.workers}: expected 1 or more")
-        plan = load(plan_path)
-        text = plan_path.read_text()
+            raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
+        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml")
+        text = plan.path.read_text(encoding="utf-8")
         hand_ins, others = collect(folder)
-        for taken in {it.name for it in hand_ins} & {CSV, HTML}:
-            raise GradingError(f"{folder / taken}: the results have a file of that name; rename the hand-in")
+        for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
+            raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
         for name in others:
-            print(f"left aside: {shown(name)}, which is neither a folder nor a zip nor a Python file", flush=True)
+            print(f"ignored: {_printable(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         out = Path(args.report) if args.report else state / "classes" / folder.name
-        with alone(out / ".run"):
+        with scratch_folder(), exclusive(out / ".run"):
             results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
-            print(f"{group.count} handed in, {len(group.done)} of them graded already", flush=True)
-            tasks = [Task(it, text, args.unsafe) for it in group.waiting]
+            print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
+            tasks = [Task(hand_in, text, args.unsafe) for hand_in in group.waiting]
             _grade(group, tasks, args.scheduler, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
     except RobocopError as error:
         print(f"robocop grade-class: {error}", file=sys.stderr)
         sys.exit(1)
+    finally:
+        ignore_all()
     print(f"table: {out / CSV}\noverview: {out / HTML}")
     sys.exit(1 if group.problems else 0)
 
 
 def _grade(group: Class, tasks: List[Task], scheduler: str, workers: int, unsafe: bool) -> None:
-    """Grade what is left. Interrupted, it leaves everything such that the next run goes on."""
+    """Grade the remaining hand-ins; if interrupted, write what is done, then exit."""
     group.write(running=bool(tasks))
     try:
         if tasks:
-            from .cluster import connected, grade_all  # dask takes half a second to come up
+            from .cluster import connected, grade_all  # importing dask takes half a second
+
             with connected(scheduler, min(workers, len(tasks)), unsafe) as client:
                 for name, outcome in grade_all(client, tasks):
-                    check()
+                    reraise_if_interrupted()
                     try:
-                        line = group.take(name, outcome)
+                        line = group.add(name, outcome)
                     except OSError as error:
-                        line = group.take(name, f"its results can't be kept: {error}")
+                        line = group.add(name, f"the report can't be stored: {error}")
                     print(line, flush=True)
     except KeyboardInterrupt:
-        with contextlib.suppress(OSError):  # its terminal may be gone
-            print(f"\ninterrupted: {len(group.done)} of {group.count} graded; the same command goes on from there",
-                  file=sys.stderr)
-        sys.exit(130)
+        with contextlib.suppress(OSError):  # the terminal may be closed
+            print(
+                f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",
+                file=sys.stderr,
+            )
+        sys.exit(INTERRUPTED)
     finally:
         group.write(running=False)
-        the_end()

@@ -1,4 +1,4 @@
-"""What a dask worker does: a packed hand-in -> the files of its report, as bytes, so that no disk has to be shared."""
+"""Grades a packed hand-in on a dask worker and returns the files of its report."""
 
 import dataclasses
 import os
@@ -10,19 +10,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, Optional
 
-from ...errors import RobocopError
-from ..exam import examine
+from ...errors import RobocopError, SubmissionError
+from ..grade_submission import grade_submission
 from ..judge import Grade
 from ..plan import load
 from ..report import write
-from ..sandbox import cage
-from ..submission import lab_environment, take
+from ..sandbox import open_sandbox
+from ..submission import lab_environment, prepare_submission
 from .hand_ins import HandIn, unpack
 
 
 @dataclass(frozen=True)
 class Task:
-    """A hand-in, and how it is to be graded."""
+    """A hand-in with the options for grading it."""
 
     hand_in: HandIn
     plan: str  # the text of config/grading.yaml
@@ -31,7 +31,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """What came of it; with a problem, it could not be graded, and there is still a report that says why."""
+    """The report of a hand-in; one that could not be graded has a report that states the problem."""
 
     name: str
     digest: str
@@ -41,58 +41,60 @@ class Done:
 
 
 def work(task: Task) -> Done:
-    """Grade one hand-in. What is wrong with it is in its report; errors of this machine are raised."""
+    """Grade one hand-in; its mistakes go into the report, other errors are raised."""
     started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     with tempfile.TemporaryDirectory(prefix="robocop-class-", dir=_scratch()) as made:
         top, folder = Path(made), Path(made, "report")
-        plan = top / "plan.yaml"
-        plan.write_text(task.plan, encoding="utf-8")
-        around = cage(task.unsafe, [state / "venv", state / "compat"])
+        (top / "plan.yaml").write_text(task.plan, encoding="utf-8")
+        plan = load(top / "plan.yaml")
+        sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
         try:
             if task.hand_in.problem:
-                raise HandInRefused(task.hand_in.problem)
+                raise SubmissionError(task.hand_in.problem)
             path = _unpacked(task.hand_in, top / "hand_in")
-            submission = take(str(path), share, state, top / "workshop", around)
+            submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
             submission = dataclasses.replace(submission, name=name)
-            examine(submission, plan, folder, state, around, scratch=top)
+            grade_submission(submission, plan, folder, state, sandbox, scratch=top)
         except RobocopError as error:
             folder.mkdir(exist_ok=True)
-            words = str(error).replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")
-            write(Grade(name, (), (words,)), load(plan), {}, folder)
+            problem = str(error).replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")
+            write(Grade(name, (), (problem,)), plan, {}, folder)
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
-    return Done(task.hand_in.name, task.hand_in.digest, files, time.monotonic() - started,
-                f"{socket.gethostname()}:{os.getpid()}")
+    return Done(
+        task.hand_in.name,
+        task.hand_in.digest,
+        files,
+        time.monotonic() - started,
+        f"{socket.gethostname()}:{os.getpid()}",
+    )
 
 
 def _scratch() -> Optional[str]:
-    """The folder of this process as a dask worker, which is cleaned up even when the worker was killed."""
-    from distributed import get_worker  # half a second
+    """This dask worker's folder, which dask removes even after the worker was killed."""
+    from distributed import get_worker  # takes half a second
+
     try:
         return str(get_worker().local_directory)
-    except ValueError:  # it is none
+    except ValueError:  # not a dask worker
         return None
 
 
 def _unpacked(hand_in: HandIn, folder: Path) -> Path:
     try:
         return unpack(hand_in, folder)
-    except (OSError, tarfile.TarError) as error:  # such as a name that is a file's and a folder's
-        raise HandInRefused(f"can't be unpacked: {error}") from error
-
-
-class HandInRefused(RobocopError):
-    """It could not even be packed."""
+    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
+        raise SubmissionError(f"can't be unpacked: {error}") from error
 
 
 def ready(unsafe: bool) -> str:
-    """Make this worker's machine ready, and say what it lacks for this work; nothing, if it can do it."""
+    """Prepare this worker's machine; what it lacks for grading, or nothing."""
     for name in ("ROBOCOP_STATE", "ROBOCOP_SHARE"):
         if not os.environ.get(name):
             return f"{name} is not set: start workers with ./robocop grade-worker"
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     try:
-        cage(unsafe, [state / "venv"])
+        open_sandbox(unsafe, [state / "venv"])
         lab_environment(share, state)
     except RobocopError as error:
         return str(error)

@@ -1,5 +1,5 @@
-"""The grader's only ROS part: a simulator that waits for somebody's nodes, and scenarios driven against them.
+"""The only part of the grader that uses ROS: the simulator, in lockstep with a submission, and the scenarios.
 
-It is the simulator itself, on a master of its own: it moves time on tick by tick, and at each one until the submission
-has answered, so that neither its speed nor the machine's load decides about points.
+Simulated time advances tick by tick, each time after the submission has answered, so that neither its speed nor the
+machine's load affects the points. The ROS master is the probe's own.
 """

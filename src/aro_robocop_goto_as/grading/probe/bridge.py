@@ -1,9 +1,9 @@
-"""The bridge's scenarios: clicks as RViz makes them, and a server of ours that does what it is told."""
+"""The bridge's scenarios: clicks as RViz publishes them, and an action server controlled by the grader."""
 
+from functools import partial
 from typing import Any, Callable, Dict
 
 import actionlib
-import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
@@ -16,21 +16,27 @@ from aro_robocop_goto_as.msg import (
 )
 
 from ...geometry import Pose2D, Twist2D, compose, inverse
+from ...ros import graph
 from .. import record as rec
+from ..handout import ACTION
 from ..plan import Plan
 from ..record import Record
 from .nodes import Node
-from .run import ACTION, Run
+from .run import Run
 from .stage import Stage
 
-START_PATIENCE = 20.0  # [s, wall] for the node to show itself
-CONNECT_PATIENCE = 10.0  # [s, wall] for its client to find the server
-REACT = 3.0  # [s] for a click to become a goal
+START_TIMEOUT = 20.0  # [s, wall] for the node's first connection
+CONNECT_TIMEOUT = 10.0  # [s, wall] for its client to find the server
+REACTION_TIME = 3.0  # [s] for a click to become a goal
 CLICKS = "/move_base_simple/goal"
-# What says how things stand: words, actionlib's states and their numbers. Not its GoalStatusArray, which any action
-# server sends by itself, nor figures, which may be of anything.
-STATUS_TYPES = {"actionlib_msgs/GoalStatus", "diagnostic_msgs/DiagnosticArray", "diagnostic_msgs/DiagnosticStatus",
-                *(f"std_msgs/{name}" for name in ("String", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32"))}
+# Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
+# which any action server sends by itself, and not floats, which may be anything.
+STATUS_TYPES = {
+    "actionlib_msgs/GoalStatus",
+    "diagnostic_msgs/DiagnosticArray",
+    "diagnostic_msgs/DiagnosticStatus",
+    *(f"std_msgs/{name}" for name in ("String", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32")),
+}
 FRAMES = ("base_footprint", "map")
 
 
@@ -51,12 +57,12 @@ class BridgeRun:
     # -- the server that it talks to --
 
     def _serve(self) -> None:
-        # actionlib's server says nothing of a goal whose cancel was faster, so goals are counted as they come.
+        # actionlib's server does not report a goal whose cancel arrived first, so goals are counted on the topic.
         self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, "sent")
         self.server = actionlib.ActionServer(
             ACTION,
             GoToPositionAction,
-            lambda handle: self.stage.inbox.put(("goal", handle)),
+            lambda handle: self.stage.post("goal", handle),
             lambda _handle: None,
             auto_start=False,
         )
@@ -68,7 +74,7 @@ class BridgeRun:
         self._note_if_cancelled(name)
 
     def _note_if_cancelled(self, name: str) -> None:
-        """A goal's cancel may have been faster: they come by two connections."""
+        """A goal's cancel may have arrived first: they use two connections."""
         if any(cancel.id == name for cancel in self.run.parts["cancels"]):
             self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
 
@@ -80,10 +86,10 @@ class BridgeRun:
         handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
 
     def _on_cancel(self, message: GoalID) -> None:
-        """End what a cancel is for.
+        """Preempt the goals that a cancel request is for.
 
-        One for all goals spares those of this very tick: a client that cancels all and then sends a goal uses two
-        connections, and which one arrives first is not its doing.
+        A request for all goals spares those of the same tick: a client that cancels all and then sends a goal uses two
+        connections, and cannot know which message arrives first.
         """
         self.run.add("cancels", rec.Cancel(self.stage.now, message.id))
         for goal in self.run.parts["goals"]:
@@ -103,7 +109,7 @@ class BridgeRun:
     # -- clicks --
 
     def _click(self, frame: str, x: float, y: float) -> None:
-        robot, to_map = self.stage.odom_from_base(), inverse(self.stage.sim.map_from_odom())
+        robot, to_map = self.stage.odom_from_footprint(), inverse(self.stage.sim.map_from_odom())
         odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
         self.run.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
         message = PoseStamped()
@@ -111,54 +117,52 @@ class BridgeRun:
         message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
         self.clicks.publish(message)
 
-    def _wait_for_goal(self, seconds: float = REACT) -> None:
-        """Until one more goal has come, or for so long."""
+    def _wait_for_goal(self, seconds: float = REACTION_TIME) -> None:
+        """Let time pass until another goal has come, or for `seconds`."""
         count = len(self.run.parts["goals"])
         for _ in range(int(seconds * 10)):
             self.run.tick()
             if len(self.run.parts["goals"]) > count:
                 return
 
-    def _hear_reports(self) -> None:
-        """A status that is published, not logged, is a line as well; its topic may be made at any moment."""
-        master = rosgraph.Master(rospy.get_name())
-        types = dict(master.getTopicTypes())
-        for topic, nodes in master.getSystemState()[0]:
-            others = set(nodes) - {rospy.get_name()}
-            if others and topic not in self.reports and types.get(topic) in STATUS_TYPES:
-                self.reports[topic] = self.stage.listen(
-                    topic, rospy.AnyMsg, "line", lambda _, topic=topic: f"published on {topic}")
+    def _subscribe_to_reports(self) -> None:
+        """Record published states like logged lines; their topics may appear at any time."""
+        for topic in graph.published_topics():
+            others = set(topic.publishers) - {rospy.get_name()}
+            if others and topic.name not in self.reports and topic.type in STATUS_TYPES:
+                text = f"published on {topic.name}"
+                self.reports[topic.name] = self.stage.listen(topic.name, rospy.AnyMsg, "line", partial(_text, text))
 
-    def _go_on(self, seconds: float) -> None:
+    def _advance(self, seconds: float) -> None:
         for _ in range(int(seconds * 10)):
             self.run.tick()
 
-    # -- scenarios, in their order --
+    # -- scenarios, in this order --
 
     def no_server(self, bag: str) -> Record:
-        """The bridge comes up, and a click comes, while there is no server."""
+        """The bridge starts and gets a click while there is no server."""
         run = self.run
         run.begin(0, bag=bag)
         run.node = self.launch(run)
-        run.wait_for(self._shows_itself, START_PATIENCE)
-        self._go_on(1.0)
+        run.wait_for(self._is_connected, START_TIMEOUT)
+        self._advance(1.0)
         if self.clicks.get_num_connections():
             self._click("odom", 0.5, 0.1)
-        self._go_on(3.0)
-        return run.finish("no_server", up=not run.said_death)
+        self._advance(3.0)
+        return run.finish("no_server", up=not run.death_recorded)
 
-    def _shows_itself(self) -> bool:
+    def _is_connected(self) -> bool:
         return bool(self.clicks.get_num_connections() or self.run.subscribers["cancel"].get_num_connections())
 
     def click(self, bag: str) -> Record:
-        """The server is there; a click, then time goes on while the goal is being pursued."""
+        """The server is there; a click, then time passes while the goal is active."""
         run = self.run
         run.begin(0, bag=bag)
         self._serve()
-        up = run.wait_for(self._connected, CONNECT_PATIENCE)
-        self._go_on(2.0)  # a click that was kept may come now
+        up = run.wait_for(self._server_is_connected, CONNECT_TIMEOUT)
+        self._advance(2.0)  # a click that the bridge has kept may come now
         self._finish_goals()
-        self._go_on(0.5)
+        self._advance(0.5)
         run.marks["clicked"] = self.stage.now
         run.marks["listeners"] = float(self.clicks.get_num_connections())
         run.marks["clients"] = float(self.server.goal_sub.get_num_connections())
@@ -166,13 +170,13 @@ class BridgeRun:
         self._wait_for_goal()
         run.marks["watching"] = self.stage.now
         for _ in range(int(self.plan.limits.status_span)):
-            self._hear_reports()
-            self._go_on(1.0)
+            self._subscribe_to_reports()
+            self._advance(1.0)
         for subscriber in self.reports.values():
             subscriber.unregister()
-        return run.finish("click", up=up and not run.said_death)
+        return run.finish("click", up=up and not run.death_recorded)
 
-    def _connected(self) -> bool:
+    def _server_is_connected(self) -> bool:
         inner = self.server
         return (
             self.clicks.get_num_connections() > 0
@@ -182,7 +186,7 @@ class BridgeRun:
         )
 
     def replace(self, bag: str) -> Record:
-        """A second click while the first one's goal is being pursued."""
+        """A second click while the first one's goal is active."""
         run = self.run
         first = list(run.parts["goals"])
         run.begin(0, bag=bag)
@@ -191,27 +195,31 @@ class BridgeRun:
         run.marks["clicked"] = self.stage.now
         self._click("odom", -0.6, 0.9)
         self._wait_for_goal()
-        self._go_on(2.0)
-        return run.finish("replace", up=not run.said_death)
+        self._advance(2.0)
+        return run.finish("replace", up=not run.death_recorded)
 
     def frame(self, bag: str) -> Record:
-        """Clicks in other frames, after the robot has driven, where map is not odom."""
+        """Clicks in other frames, after the robot has moved, where map differs from odom."""
         run = self.run
         self._finish_goals()
         run.begin(1, bag=bag)
         run.settle(0.5)
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
-            self._go_on(seconds)
+            self._advance(seconds)
         for frame in FRAMES:
             self._click(frame, 1.0, 0.2)
             self._wait_for_goal()
-            self._go_on(0.5)
+            self._advance(0.5)
             self._finish_goals()
-            self._go_on(0.5)
-        return run.finish("frame", up=not run.said_death)
+            self._advance(0.5)
+        return run.finish("frame", up=not run.death_recorded)
 
     def close(self) -> None:
         """End the node."""
         if self.run.node is not None:
             self.run.node.end()
+
+
+def _text(text: str, _message: rospy.AnyMsg) -> str:
+    return text

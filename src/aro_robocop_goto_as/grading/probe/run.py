@@ -1,6 +1,5 @@
-"""Time moved on tick by tick, each time until the submission has answered; all that it does is recorded."""
+"""Advances time tick by tick, each time until the submission has answered, and records what it does."""
 
-import queue
 import time
 from typing import Any, Callable, Dict, List, Optional, Set
 
@@ -13,50 +12,49 @@ from rosgraph_msgs.msg import Log
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
 
+from ...errors import GraderLostError
 from ...geometry import STANDSTILL, Twist2D
-from ...lockstep import SURE, Lockstep
-from ...nodes import convert
+from ...ros import convert
+from ...ros.private_api import shutdown_has_begun
+from ...simulation.lockstep import SURE, Lockstep
 from .. import record as rec
+from ..handout import ACTION
 from ..record import Record
 from .nodes import Node
-from .stage import Event, Stage
+from .stage import Stage
 
-ACTION = "/robocop_goto_as"  # the handout's
-SILENCE = 2.0  # [s, wall] for an answer to a tick, once per goal
-SILENCE_AGAIN = 0.2  # [s, wall] for one that is due, once that was in vain
-SILENCE_LEARNING = 0.06  # [s, wall] likewise, for one that may not be due: a slow loop whose rhythm is not yet known
-SILENCE_OF_THE_MUTE = 0.5  # [s, wall] as SILENCE, for who said nothing in all of a scenario; no tick waits after that
-TRAILING = 0.15  # [s, wall] for the other stream's answer once one has come
-SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback, but need not
-SETTLE = 0.15  # [s, wall] for what a node does at once, without time moving on
-PACE = 0.008  # [s, wall] at least of a tick that nobody has to answer
+# [s, wall] how long a tick waits for an answer:
+FIRST_TIMEOUT = 2.0  # until the node has been silent once for a goal
+LATER_TIMEOUT = 0.2  # afterwards, for an answer that is due
+UNSURE_TIMEOUT = 0.06  # afterwards, for one that may not be due: a slow loop whose period is not yet known
+MUTE_TIMEOUT = 0.5  # instead of the first, for a node that was silent in a whole scenario; later ticks don't wait
+OTHER_STREAM_TIMEOUT = 0.15  # for the other stream's answer once one has come
+SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback message, but need not
+SETTLE = 0.15  # [s, wall] for what a node does at once, while time stands
+PACE = 0.008  # [s, wall] minimum duration of a tick that needs no answer
 STREAMS = ("command", "feedback")
-MOST_ENTRIES = 20_000  # of a kind in one record
+MAX_ENTRIES = 20_000  # of each kind in one record
 
 
 NODE_LOST = "the grader's ROS node was shut down while the submission ran"
 
 
-class GraderLost(Exception):
-    """The submission has ended the ROS master or the grader's own node: nothing that follows can be judged."""
-
-
 class Run:
-    """The recording of the current scenario, and the clockwork that both parts share."""
+    """The recording of the current scenario, and the ticks that both parts share."""
 
     def __init__(self, stage: Stage, part: str) -> None:
         self.stage = stage
         self.part = part
         self.node: Optional[Node] = None
         self.lockstep = Lockstep()
-        self.awaiting = ""  # id of the goal that is being pursued
+        self.awaiting = ""  # id of the active goal
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.heard: Set[str] = set()  # streams, since the last tick
-        self.said_death = False
-        self.takes_up_late = False  # this node takes a goal up when time goes on, as one driven by a timer does
-        self.fell_silent = False  # since the goal was sent, or known to answer more seldom than the ticks come
-        self.mute = False  # goals were given in an earlier scenario, and no word has come since
+        self.death_recorded = False
+        self.accepts_late = False  # this node accepts a goal when time advances, as one driven by a timer does
+        self.fell_silent = False  # since the goal was sent; or it is known to answer less often than every tick
+        self.mute = False  # it got goals in an earlier scenario, and nothing has come from it since
         self.parts: Dict[str, List[Any]] = {}
         self.marks: Dict[str, float] = {}
         self.subscribers: Dict[str, rospy.Subscriber] = {}
@@ -69,23 +67,25 @@ class Run:
             ("/rosout", Log, "log"),
         ):
             if part == "server" and name == "cancel" or part == "bridge" and name in ("feedback", "result", "status"):
-                continue  # what this process sends itself
+                continue  # this process publishes it
             self.subscribers[name] = stage.listen(topic, kind, name)
-        self.handlers: Dict[str, Callable[[Any], None]] = {
-            "command": self._on_command,
-            "feedback": self._on_feedback,
-            "result": self._on_result,
-            "status": self._on_status,
-            "cancel": self._on_cancel,
-            "log": self._on_log,
-            "line": self._on_line,
-            "job": lambda job: job(),
-        }
+        self.handlers: Dict[str, Callable[[Any], object]] = stage.handlers
+        self.handlers.update(
+            {
+                "command": self._on_command,
+                "feedback": self._on_feedback,
+                "result": self._on_result,
+                "status": self._on_status,
+                "cancel": self._on_cancel,
+                "log": self._on_log,
+                "line": self._on_line,
+            }
+        )
 
     # -- a scenario's recording --
 
     def begin(self, index: int, odd_scan: bool = False, bag: str = "") -> None:
-        """A fresh record; the robot at the start."""
+        """Start a new record, with the robot at the scenario's start."""
         self.parts = {
             name: []
             for name in (
@@ -108,7 +108,7 @@ class Run:
         self.stage.begin(index, odd_scan)
 
     def close_bag(self) -> None:
-        """The scenario's bag is complete."""
+        """Close the scenario's bag, if there is one."""
         if self.stage.bag is not None:
             self.stage.bag.close()
             self.stage.bag = None
@@ -117,34 +117,20 @@ class Run:
         """The record of the scenario."""
         self.close_bag()
         if not rosgraph.is_master_online():
-            raise GraderLost("the ROS master was ended while the submission ran")
-        return Record(name, self.part, marks=self.marks, **{key: tuple(it) for key, it in self.parts.items()}, **more)
+            raise GraderLostError("the ROS master was ended while the submission ran")
+        parts: Dict[str, Any] = {name: tuple(entries) for name, entries in self.parts.items()}
+        return Record(name, self.part, marks=self.marks, **parts, **more)
 
     def add(self, part: str, entry: Any) -> None:
-        """Note something; of what floods us, the beginning."""
-        if len(self.parts[part]) < MOST_ENTRIES:
+        """Record an entry; of a flood of them only the first ones."""
+        if len(self.parts[part]) < MAX_ENTRIES:
             self.parts[part].append(entry)
 
     # -- what comes in, in the main thread --
 
-    def drain(self, until: Callable[[], bool], patience: float) -> bool:
-        """Take what comes in until a condition holds, for `patience` [s, wall] at the most; whether it holds."""
-        deadline = time.monotonic() + patience
-        while not until():
-            try:
-                self._take(self.stage.inbox.get(timeout=max(1e-6, deadline - time.monotonic())))
-            except queue.Empty:
-                return until()
-            if time.monotonic() >= deadline:
-                break
-        for _ in range(self.stage.inbox.qsize()):  # what is there already, and no more: a node may flood us
-            self._take(self.stage.inbox.get_nowait())
-        return until()
-
-    def _take(self, event: Event) -> None:
-        name, payload = event
-        if name in self.handlers:
-            self.handlers[name](payload)
+    def drain(self, until: Callable[[], bool], timeout: float) -> bool:
+        """Process messages until a condition holds, for at most `timeout` [s, wall]; whether it holds."""
+        return self.stage.loop.run_jobs_until(until, timeout)
 
     def _hear(self, stream: str) -> None:
         self.mute = False
@@ -197,12 +183,12 @@ class Run:
     # -- time --
 
     def tick(self, pace: float = PACE, real_time: bool = True) -> None:
-        """One control tick. While a goal is pursued it lasts until it is answered, otherwise `pace` [s, wall].
+        """One control tick. While a goal is active it lasts until the node answers, otherwise `pace` [s, wall].
 
-        Who watches sees it at real time, if it is to be.
+        `real_time`: a watched run is shown at real time.
         """
-        if rospy.core.is_shutdown_requested():
-            raise GraderLost(NODE_LOST)
+        if shutdown_has_begun():
+            raise GraderLostError(NODE_LOST)
         self.heard.clear()
         started = self.stage.wall()
         sample = self.stage.tick(real_time)
@@ -214,22 +200,22 @@ class Run:
             self._await_answers()
         else:
             self.drain(lambda: False, max(1e-3, pace - (self.stage.wall() - started)))
-        self._look_at_node()
+        self._record_death()
 
     def _await_answers(self) -> None:
-        """Until every stream that is awaited was heard, or the goal's end.
+        """Wait until every awaited stream was heard, or the goal has ended.
 
-        Who is known to be slower than the ticks may not be due at this one, so the wait is short.
+        The wait is short for a node that may not be due at this tick, as it is slower than the ticks.
         """
 
         def done() -> bool:
             return self.awaiting in self.ended or not self.lockstep.missing() or self._dead()
 
-        patience = SILENCE_OF_THE_MUTE if self.mute else SILENCE
+        timeout = MUTE_TIMEOUT if self.mute else FIRST_TIMEOUT
         if self.fell_silent:
-            patience = SILENCE_AGAIN if self.lockstep.patience() >= SURE else SILENCE_LEARNING
-        deadline = time.monotonic() + patience
-        while not self.drain(done, TRAILING if self.heard else 0.05):
+            timeout = LATER_TIMEOUT if self.lockstep.patience() >= SURE else UNSURE_TIMEOUT
+        deadline = time.monotonic() + timeout
+        while not self.drain(done, OTHER_STREAM_TIMEOUT if self.heard else 0.05):
             if self.heard or time.monotonic() >= deadline:
                 self.fell_silent = self.fell_silent or not self.heard
                 self.lockstep.give_up()
@@ -237,22 +223,23 @@ class Run:
         if self.awaiting not in self.ended and len(self.heard) < len(STREAMS):
             self.drain(lambda: len(self.heard) == len(STREAMS), SAME_ITERATION)
 
-    def pursue(self, goal: str) -> None:
-        """From now on ticks wait for what comes of this goal; it has just been sent, and time stands."""
-        busy = self.awaiting and self.awaiting not in self.ended  # a loop that wakes up with the next tick only
+    def follow_goal(self, goal: str) -> None:
+        """From now on ticks wait for answers to this goal, which has just been sent."""
+        busy = self.awaiting and self.awaiting not in self.ended  # its loop wakes up with the next tick only
         self.awaiting = goal
         self.fell_silent = self.lockstep.slower_than_ticks()
         self.heard.clear()
         self.lockstep = Lockstep(self.stage.tick_number)
-        soon = self.drain(lambda: goal in self.known or goal in self.ended,
-                          SETTLE if busy or self.takes_up_late else SILENCE)
-        self.takes_up_late = not (soon or busy)
+        soon = self.drain(
+            lambda: goal in self.known or goal in self.ended, SETTLE if busy or self.accepts_late else FIRST_TIMEOUT
+        )
+        self.accepts_late = not (soon or busy)
         self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
         for stream in STREAMS:
             self.lockstep.commanded(stream)
 
     def settle(self, seconds: float) -> None:
-        """Nobody is waited for: the goal has ended."""
+        """Let time pass without waiting for answers, as the goal has ended."""
         self.awaiting = ""
         self.drain(lambda: False, SETTLE)
         for _ in range(int(round(seconds * 10))):
@@ -261,23 +248,25 @@ class Run:
     # -- the node --
 
     def _dead(self) -> bool:
-        return self.node is None or self.node.death() is not None
+        return self.node is None or self.node.status() is not None
 
-    def _look_at_node(self) -> None:
-        if self.node is not None and not self.said_death and self.node.death() is not None:
-            self.said_death = True
-            self.add("deaths", rec.Death(self.stage.now, self.node.process.returncode, self.node.guard.reason))
+    def _record_death(self) -> None:
+        if self.node is None or self.death_recorded:
+            return
+        status = self.node.status()
+        if status is not None:
+            self.death_recorded = True
+            self.add("deaths", rec.Death(self.stage.now, status, self.node.guard.reason))
 
-    def wait_for(self, condition: Callable[[], bool], patience: float, pace: float = PACE) -> bool:
-        """Let time go on until a condition holds, the node is dead or `patience` [s, wall] is over.
+    def wait_for(self, condition: Callable[[], bool], timeout: float, pace: float = PACE) -> bool:
+        """Let time pass until a condition holds, the node is dead or `timeout` [s, wall] is over; whether it holds.
 
-        It goes on as fast as ever even when watched: a node that takes simulated seconds to come up has to be there
-        within that patience all the same.
+        Not at real time even if watched: a node that takes simulated seconds to start has the same timeout.
         """
-        deadline = time.monotonic() + patience
+        deadline = time.monotonic() + timeout
         while not condition():
             if self._dead() or time.monotonic() >= deadline:
-                self._look_at_node()
+                self._record_death()
                 return condition()
             self.tick(pace, real_time=False)
         return True

@@ -1,37 +1,38 @@
-"""The server's scenarios: goals sent to it as any client does, on the bare topics."""
+"""The server's scenarios: goals sent to it on the action's topics, as by any client."""
 
 from typing import Callable, Tuple
 
-import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalID
 
 from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 
 from ...geometry import Pose2D, compose
-from ...goto import Goal, errors_to, watch
+from ...goto import Goal, errors_to, track_progress
 from ...params import GotoParams
+from ...ros import graph
 from .. import record as rec
+from ..handout import ACTION
 from ..plan import Plan, Scenario, Step
 from ..record import Record
 from .nodes import Node
-from .run import ACTION, SETTLE, Run
+from .run import SETTLE, Run
 from .stage import Stage, outlines
 
-START_PATIENCE = 20.0  # [s, wall] for the node to bring its action server up ...
-SHOWN_PATIENCE = 5.0  # [s, wall] ... and from its first sign of life on, its log's connection
-WARM_UP = 0.5  # [s] of each scenario: fresh odometry and scans reach the node
-AFTER = 1.2  # [s] after each ending, to see whether the robot stands
-PROGRESS = GotoParams()  # its stuck_distance and stuck_angle
+START_TIMEOUT = 20.0  # [s, wall] for the node to connect to the recorder of /rosout
+SERVER_TIMEOUT = 5.0  # [s, wall] for its action server to connect, counted from then on
+WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
+AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
 Launch = Callable[[Run], Node]
 
 
 class ServerRun:
-    """One submission's server, restarted where a scenario left it in a bad way."""
+    """One submission's server, restarted after a scenario that left it in a bad state."""
 
     def __init__(self, plan: Plan, launch: Launch, stage: Stage) -> None:
         self.plan = plan
         self.limits = plan.limits
+        self.progress = GotoParams(stuck_distance=plan.limits.stall_distance, stuck_angle=plan.limits.stall_angle)
         self.launch = launch
         self.stage = stage
         self.run = Run(stage, "server")
@@ -39,46 +40,40 @@ class ServerRun:
         self.goal_topic, self.cancel_topic = _topics()
 
     def start(self, bag: str = "") -> Record:
-        """The node's start: whether its action server comes up."""
+        """Start the node; the record says whether its action server came up."""
         self.run.begin(0, bag=bag)
         up = self._bring_up()
-        servers, types = self._servers()
+        servers = graph.action_servers()
         self.run.settle(0.3)
-        return self.run.finish("start", up=up, servers=servers, types=types)
+        return self.run.finish("start", up=up, servers=tuple(servers), types=tuple(servers.values()))
 
     def _bring_up(self) -> bool:
         run = self.run
-        run.said_death, run.takes_up_late, run.known = False, False, {}
+        run.death_recorded, run.accepts_late, run.known = False, False, {}
         run.node = self.launch(run)
         log = run.subscribers["log"]
-        run.wait_for(lambda: log.get_num_connections() > 0, START_PATIENCE)
-        up = run.wait_for(self._connected, SHOWN_PATIENCE)
+        run.wait_for(lambda: log.get_num_connections() > 0, START_TIMEOUT)
+        up = run.wait_for(self._connected, SERVER_TIMEOUT)
         run.settle(0.2)
-        return up and not run.said_death
+        return up and not run.death_recorded
 
     def _connected(self) -> bool:
-        """Whether all five topics are connected, so that nothing is missed."""
-        return (self.goal_topic.get_num_connections() > 0 and self.cancel_topic.get_num_connections() > 0
-                and all(self.run.subscribers[name].get_num_connections() for name in ("result", "feedback", "status")))
-
-    def _servers(self) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
-        """Names and types of the action servers there are, as the master knows them."""
-        master = rosgraph.Master(rospy.get_name())
-        types = dict(master.getTopicTypes())
-        publishers, _, _ = master.getSystemState()
-        results = {topic[:-len("/result")] for topic, nodes in publishers if topic.endswith("/result") and nodes}
-        found = sorted(name for name in results if types.get(f"{name}/result", "").endswith("ActionResult"))
-        return tuple(found), tuple(types[f"{name}/result"][:-len("Result")] for name in found)
+        """Whether all five topics are connected, so that no message is lost."""
+        return (
+            self.goal_topic.get_num_connections() > 0
+            and self.cancel_topic.get_num_connections() > 0
+            and all(self.run.subscribers[name].get_num_connections() for name in ("result", "feedback", "status"))
+        )
 
     # -- one scenario --
 
     def scenario(self, index: int, scenario: Scenario, bag: str) -> Record:
-        """Drive its script to the end, or to where it can't go on."""
+        """Run its script to the end, or until it can't continue."""
         run = self.run
         run.begin(index, scenario.odd_scan, bag)
         self.deadline = self.stage.wall() + self.limits.wall_time
         problem = ""
-        if run.node is None or run.node.death() is not None:
+        if run.node is None or run.node.status() is not None:
             self._end_node()
             if not self._bring_up():
                 problem = "the node did not come up again"
@@ -89,8 +84,8 @@ class ServerRun:
                 if problem:
                     break
         if problem:
-            said = run.parts["commands"] or run.parts["feedback"] or run.parts["results"]
-            run.mute = bool(run.parts["goals"]) and not said
+            answered = run.parts["commands"] or run.parts["feedback"] or run.parts["results"]
+            run.mute = bool(run.parts["goals"]) and not answered
             run.settle(AFTER)
         record = run.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
         if problem or self._unclean(record):
@@ -98,23 +93,23 @@ class ServerRun:
         return record
 
     def _unclean(self, record: Record) -> bool:
-        """Whether the next scenario needs a fresh node to be judged by itself."""
+        """Whether the node has to be restarted, so that its state does not affect the next scenario."""
         text = "\n".join(line.text for line in record.lines)
-        ended = all(len(rec.end_of(record, goal)) == 1 for goal in record.goals)
+        ended = all(len(rec.results_of(record, goal)) == 1 for goal in record.goals)
         return bool(record.deaths) or not ended or "Traceback" in text or "[ERROR]" in text
 
     def _end_node(self) -> None:
         if self.run.node is not None:
             self.run.node.end()
             self.run.node = None
-            self.run.drain(lambda: False, SETTLE)  # its last words belong to the scenario that is over
-            # A publisher notices that its reader has gone when it writes; a fresh one counts only the next node.
+            self.run.drain(lambda: False, SETTLE)  # its last messages belong to the previous scenario
+            # rospy drops a dead subscriber only on the next write; new publishers count only the next node.
             for topic in (self.goal_topic, self.cancel_topic):
                 topic.unregister()
             self.goal_topic, self.cancel_topic = _topics()
 
     def _step(self, index: int, name: str, step: Step) -> str:
-        """One line of a script; what went wrong, or nothing."""
+        """Run one step of a script; returns the problem, or an empty text."""
         run = self.run
         if step.place:
             self.stage.set_down(index, Pose2D(*step.place))
@@ -122,14 +117,14 @@ class ServerRun:
             return ""
         if step.goal:
             goal = self._send(name, step)
-            run.pursue(goal.id)
+            run.follow_goal(goal.id)
         elif step.cancel:
             goal = run.parts["goals"][-1]
             run.add("cancels", rec.Cancel(self.stage.now, goal.id))
             self.cancel_topic.publish(GoalID(id=goal.id))
             run.drain(lambda: goal.id in run.ended, 0.05)
         if step.run:
-            return self._go_on(goal, step.run)
+            return self._advance(goal, step.run)
         problem = self._until_end(goal)
         if not problem or step.ends == "PREEMPTED":
             run.settle(AFTER)
@@ -138,7 +133,7 @@ class ServerRun:
     def _send(self, name: str, step: Step) -> rec.Goal:
         x, y = step.goal
         if step.of == "robot":
-            there = compose(self.stage.odom_from_base(), Pose2D(x, y))
+            there = compose(self.stage.odom_from_footprint(), Pose2D(x, y))
             x, y = there.x, there.y
         goal = rec.Goal(name, x, y, self.stage.now, step.ends or "PREEMPTED")
         self.run.add("goals", goal)
@@ -150,7 +145,7 @@ class ServerRun:
         self.goal_topic.publish(message)
         return goal
 
-    def _go_on(self, goal: rec.Goal, seconds: float) -> str:
+    def _advance(self, goal: rec.Goal, seconds: float) -> str:
         for _ in range(int(round(seconds * 10))):
             if goal.id in self.run.ended:
                 return "the goal ended before its time"
@@ -160,15 +155,15 @@ class ServerRun:
         return ""
 
     def _until_end(self, goal: rec.Goal) -> str:
-        """Tick until the goal has ended; why it was given up on, or nothing."""
+        """Tick until the goal has ended; returns the problem, or an empty text."""
         started, progress = self.stage.now, None
         while goal.id not in self.run.ended:
             problem = self._tick()
             if problem:
                 return problem
             now = self.stage.now
-            errors = errors_to(Goal(goal.x, goal.y), self.stage.odom_from_base())
-            progress = watch(progress, errors, now, PROGRESS)
+            errors = errors_to(Goal(goal.x, goal.y), self.stage.odom_from_footprint())
+            progress = track_progress(progress, errors, now, self.progress)
             if now - progress.since > self.limits.stall:
                 return f"the robot got no nearer for {self.limits.stall:g} s, and the goal did not end"
             if now - started > self.limits.goal_time:
@@ -177,7 +172,7 @@ class ServerRun:
 
     def _tick(self) -> str:
         self.run.tick()
-        if self.run.node is None or self.run.node.death() is not None:
+        if self.run.node is None or self.run.node.status() is not None:
             return "the node died"
         if self.stage.wall() > self.deadline:
             return f"time-out: not done within {self.limits.wall_time:g} s of wall time"
@@ -190,6 +185,8 @@ class ServerRun:
 
 
 def _topics() -> Tuple[rospy.Publisher, rospy.Publisher]:
-    """For goals and for cancels."""
-    return (rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10),
-            rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10))
+    """Publishers of goals and cancel requests."""
+    return (
+        rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10),
+        rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10),
+    )

@@ -1,9 +1,8 @@
-"""The simulator in this very process, with its topics, and one inbox for all that comes back."""
+"""The simulation that a submission meets: one robot, its topics, and what the submission sends back."""
 
-import queue
 import time
 from dataclasses import replace
-from typing import Any, Callable, Optional, Tuple
+from typing import Any, Callable, Dict, Optional, Tuple
 
 import genpy
 import numpy as np
@@ -11,44 +10,46 @@ import rosbag
 import rospkg
 import rospy
 from rosgraph_msgs.msg import Clock
-from tf2_msgs.msg import TFMessage
 
-from ...errors import CommandError, WorldError
+from ...errors import CommandError
 from ...geometry import Pose2D, Twist2D, compose, inverse
 from ...goto import clearance_ahead
-from ...models import load_model
-from ...nodes import convert
-from ...nodes.publishing import publisher
-from ...nodes.robot_topics import RobotTopics
 from ...params import SimParams
-from ...simulator import JOINTS, Observations, RobotSpec, Simulator
+from ...robot.catalog import load_model
+from ...robot.model import RobotSpec
+from ...ros import convert
+from ...ros.publishing import publisher
+from ...ros.sim.factory import message_config
+from ...ros.sim.robot_topics import RobotTopics
+from ...ros.sim.subscriptions import SubscriptionTable
+from ...ros.sim.transform_topics import TransformTopics
+from ...simulation.factory import make_simulator
+from ...simulation.loop import LoopInterface, SimulationLoop
+from ...simulation.observations import JOINTS, ODOM, TF, Observations, Subscriptions
 from .. import record as rec
+from ..handout import AHEAD
 from ..plan import Plan, site, world_of
 from ..record import Sample
 from .watch import Watch
 
-AHEAD = np.radians(30.0)
-# /cmd_vel is held for ever, as in the lab. A clock of 30 Hz costs less than one of 60, and each tick is one of its own.
+# cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
 PARAMS = SimParams(clock_rate=30, cmd_vel_timeout=0.0)
 STEPS_PER_TICK = PARAMS.physics_rate // PARAMS.control_rate
-# [s, wall] between a control tick's data and its clock: on a robot, too, odometry is there well before a 10 Hz loop
-# wakes up, but here a node's threads would race for which is first.
+# [s, wall] Publish data this long before the clock, so that the node's callbacks finish before its loop wakes.
 DIGEST = 0.003
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
 MOST_WAITING = 20_000  # messages
-MOST_BAG = 32 * 1024 ** 2  # bytes
+MOST_BAG = 32 * 1024**2  # bytes
 MOST_LISTED = 100  # entries of a message's list
-
-Event = Tuple[str, Any]
 
 
 def trimmed(message: Any) -> Any:
-    """The message, its texts and lists cut to what is of use to anybody."""
+    """Truncate a message's strings and lists; returns the message."""
     for name in message.__slots__:
         value = getattr(message, name)
         if isinstance(value, str):
-            setattr(message, name, value[:rec.MOST_TEXT])
+            setattr(message, name, value[: rec.MOST_TEXT])
         elif isinstance(value, (list, tuple)):
             setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MOST_LISTED]])
         elif isinstance(value, genpy.Message):
@@ -56,27 +57,29 @@ def trimmed(message: Any) -> Any:
     return message
 
 
-class Stage:
-    """One robot in the world of all scenarios; only the main thread touches it."""
+class Stage(LoopInterface):
+    """One robot in the world of all scenarios. The main thread owns it; what arrives is posted to it as a job."""
 
     def __init__(self, plan: Plan) -> None:
         share = rospkg.RosPack().get_path("aro_robocop_goto_as")
-        model = load_model(PARAMS.model, share)
-        self.sim = Simulator(PARAMS, world_of(plan), [RobotSpec("", model, Pose2D())])
+        robot = RobotSpec("", load_model(PARAMS.model, share), Pose2D())
+        self.sim = make_simulator(PARAMS, world_of(plan), [robot])
+        self.loop = SimulationLoop(self.sim, PARAMS.time(), PARAMS.lockstep(), self)
+        self._table = SubscriptionTable()
+        frames, messages = PARAMS.frames(), message_config(PARAMS)
         self.clock = publisher("/clock", Clock, latch=True)
-        self.tf = publisher("/tf", TFMessage)
-        self.tf_static = publisher("/tf_static", TFMessage, latch=True)
-        self.robot = RobotTopics(0, "", PARAMS, self.sim.lidar.spec, has_camera=False)
-        self.inbox: queue.Queue[Event] = queue.Queue()
+        self._transforms = TransformTopics(frames, messages.topics, [""], self._table.changed)
+        self.robot = RobotTopics(0, "", messages, has_camera=False, on_change=self._table.changed)
+        self._table.set_topics([{k: topic for k, topic in self.robot.by_sensor.items() if k != JOINTS}])
+        self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
         self.odd_scan = False
         self.bag: Optional[rosbag.Bag] = None
         self.tick_number = 0
-        self.p = PARAMS  # this and the controls for GazeboServices
-        self.control = self.world_control = _Untouched()
-        self.watch: Optional[Watch] = None  # who is to be shown the run
+        self.watch: Optional[Watch] = None  # RViz, where the run is shown
+        self._real_time = True
 
     def wall(self) -> float:
-        """The wall clock [s], without what went by for the sake of whoever watches: what deadlines go by."""
+        """The wall clock [s] for deadlines: without the time spent for RViz."""
         return time.monotonic() - (0.0 if self.watch is None else self.watch.slept)
 
     @property
@@ -89,86 +92,113 @@ class Stage:
         """Simulated time, for messages."""
         return convert.to_time(self.sim.stamp_ns)
 
+    # -- what arrives --
+
+    def post(self, name: str, payload: Any) -> None:
+        """Have the main thread handle something; may be called from any thread."""
+
+        def handle() -> None:
+            if name in self.handlers:
+                self.handlers[name](payload)
+
+        self.loop.post(handle)
+
     def listen(self, topic: str, kind: Any, name: str, of: Callable[[Any], Any] = trimmed) -> rospy.Subscriber:
-        """Put what comes on a topic into the inbox, under a name; `of` makes of a message what is kept of it."""
+        """Post what arrives on a topic under a name; `of` reduces a message to what is kept of it."""
 
-        def take(message: Any) -> None:
-            if self.inbox.qsize() < MOST_WAITING:  # who floods us is heard as far as we can follow
-                self.inbox.put((name, of(message)))
+        def receive(message: Any) -> None:
+            if self.loop.jobs_waiting < MOST_WAITING:  # messages of a flood beyond that are dropped
+                self.post(name, of(message))
 
-        return rospy.Subscriber(topic, kind, take, tcp_nodelay=True)
+        return rospy.Subscriber(topic, kind, receive, tcp_nodelay=True)
+
+    # -- the robot --
 
     def begin(self, index: int, odd_scan: bool) -> None:
-        """The robot to the start of a scenario: standing at its site, odometry at zero."""
+        """Put the robot at the start of a scenario: at rest at its site, odometry at zero."""
         self.odd_scan = odd_scan
-        self.sim.reset(PARAMS.seed)
-        self.sim.place(site(index))
-        self._send_static()
+        self.loop.reset(PARAMS.seed)
+        self.loop.place(site(index))
 
-    def set_down(self, index: int, odom_from_base: Pose2D) -> None:
-        """Set the robot down elsewhere on its site; its odometry goes on as if nothing had happened."""
-        self.sim.place(compose(site(index), odom_from_base))
-        self._send_static()
+    def set_down(self, index: int, odom_from_footprint: Pose2D) -> None:
+        """Place the robot elsewhere on its site; its odometry goes on as if nothing had happened."""
+        self.loop.place(compose(site(index), odom_from_footprint))
 
     def command(self, twist: Twist2D) -> bool:
-        """A velocity for the robot from now on; False for one with NaN or infinity in it, which is left out."""
+        """Set the robot's velocity command; False if it is not finite, which leaves the previous one in force."""
         try:
             self.sim.command(twist)
         except CommandError:
             return False
         return True
 
-    def tick(self, real_time: bool = True) -> Sample:
-        """Move time on by one control tick and publish what it brings; the truth at its end.
+    # -- time --
 
-        Somebody who watches sees it at real time, unless that is of no use.
+    def tick(self, real_time: bool = True) -> Sample:
+        """Advance by one control tick and publish what is due; returns the true state at its end.
+
+        RViz, where the run is shown, sees it at real time, unless `real_time` is False.
         """
         self.tick_number += 1
-        sent = {sensor for sensor in self.robot.wanted() if sensor != JOINTS}
-        wanted = {sensor: [0] for sensor in (sent if self.watch is None else {*sent, JOINTS})}
+        self._real_time = real_time
+        subscriptions = self.subscriptions()
         for _ in range(STEPS_PER_TICK):
-            seen = self.sim.step(wanted)
-            if seen is not None:
-                if self.watch is not None:
-                    self.watch.saw(seen, real_time)
-                self._publish(seen, sent)
+            self.loop.advance(subscriptions)
         return self.sample()
 
-    def repeat_clock(self) -> None:
+    def subscriptions(self) -> Subscriptions:
+        """The submission's; odometry and transforms always, for the bag; wheel angles for RViz only."""
+        always = {ODOM: [0], TF: [0]}
+        return {**self._table.current(), **always, **({} if self.watch is None else {JOINTS: [0]})}
+
+    def publish_clock(self) -> None:
         """For nodes that have just come up."""
         self.clock.publish(self.stamp)
 
-    def _publish(self, seen: Observations, wanted: "set[str]") -> None:
-        stamp = convert.to_time(seen.stamp_ns)
-        if self.odd_scan and 0 in seen.scans:
-            seen = replace(seen, scans={0: _odd(seen.scans[0])})
-        self.robot.publish(seen, stamp, wanted)
-        if seen.odometry is not None:
-            transforms = self.robot.transforms(seen, self.sim.map_from_odom(), stamp)
-            self.tf.publish(transforms)
-            if self.watch is not None:
-                self.watch.moves(transforms)
+    def publish(self, observations: Observations) -> None:
+        """One step's observations to RViz, the submission and the bag; the clock last."""
+        stamp = convert.to_time(observations.stamp_ns)
+        if self.watch is not None:
+            self.watch.observe(observations, self._real_time)
+        shown = replace(observations, joints={})
+        if self.odd_scan and 0 in shown.scans:
+            shown = replace(shown, scans={0: _odd(shown.scans[0])})
+        self.robot.publish(shown)
+        self._transforms.publish(shown)
+        if self.watch is not None and 0 in shown.transforms:
+            self.watch.publish_transforms(self._transforms.messages(0, shown.transforms[0], stamp))
         if self.bag is not None:
-            self._write(seen, stamp)
-        if seen.clock:
-            if seen.control:
+            self._write(shown, stamp)
+        if observations.clock:
+            if observations.control:
                 time.sleep(DIGEST)
             self.clock.publish(stamp)
+
+    def frames_changed(self) -> None:
+        """map -> odom has jumped."""
+        transforms = self._transforms.publish_static(self.sim)
+        if self.watch is not None:
+            self.watch.publish_static(transforms)
 
     def _write(self, seen: Observations, stamp: rospy.Time) -> None:
         if 0 in seen.scans:
             self.keep(
                 "/scan",
-                convert.to_scan(seen.scans[0].tolist(), self.sim.lidar.spec, stamp, self.robot.scan_frame),
+                convert.to_scan(seen.scans[0], self.sim.lidar.spec, stamp, self.robot.scan_frame),
                 stamp,
             )
-        if seen.odometry is not None:
-            odometry, truth = seen.odometry[0], self.sim.world_from_base()
+        if 0 in seen.odometry:
+            odometry, truth = seen.odometry[0], self.sim.world_from_footprint()
             zeros = [0.0] * 36
             self.keep(
                 "/odom",
                 convert.to_odometry(
-                    odometry.odom_from_base, odometry.twist, stamp, self.robot.odom_frame, self.robot.base_frame, zeros
+                    odometry.odom_from_footprint,
+                    odometry.twist,
+                    stamp,
+                    self.robot.odom_frame,
+                    self.robot.base_frame,
+                    zeros,
                 ),
                 stamp,
             )
@@ -185,24 +215,17 @@ class Stage:
         if self.bag is not None and self.bag.size < MOST_BAG:
             self.bag.write(topic, message, stamp or max(self.stamp, rospy.Time(0, 1)))
 
-    def _send_static(self) -> None:
-        transforms = [
-            convert.to_transform(PARAMS.world_frame, PARAMS.map_frame, Pose2D(), self.stamp),
-            convert.to_transform(PARAMS.map_frame, PARAMS.odom_frame, self.sim.map_from_odom(), self.stamp),
-        ]
-        self.tf_static.publish(transforms)
-        if self.watch is not None:
-            self.watch.stands(transforms)
-
-    def odom_from_base(self) -> Pose2D:
+    def odom_from_footprint(self) -> Pose2D:
         """Where the robot truly is in its odom frame."""
-        return compose(inverse(self.sim.map_from_odom()), self.sim.world_from_base())
+        return compose(inverse(self.sim.map_from_odom()), self.sim.world_from_footprint())
 
     def sample(self) -> Sample:
         """The truth now."""
-        here, world, velocity = self.odom_from_base(), self.sim.world_from_base(), self.sim.velocity()
+        here, world, velocity = self.odom_from_footprint(), self.sim.world_from_footprint(), self.sim.velocity()
         spec = self.sim.lidar.spec
-        ahead = clearance_ahead(self.sim.exact_distances(), spec.angle_min, spec.increment, 0.0, float("inf"), AHEAD)
+        ahead = clearance_ahead(
+            list(map(float, self.sim.exact_distances())), spec.angle_min, spec.increment, 0.0, float("inf"), AHEAD
+        )
         return Sample(
             self.now,
             here.x,
@@ -216,44 +239,6 @@ class Stage:
             float("inf") if ahead is None else ahead,
             bool(self.sim.touching()),
         )
-
-    # -- for GazeboServices, which takes its node to be a SimNode --
-
-    def place(self, *what: Any) -> None:
-        """Nobody but the grader sets the robot down."""
-        self.control.refuse(*what)
-
-    def in_loop(self, action: Callable[[], Any]) -> Any:
-        """Have the main thread do something, and wait for what it returns."""
-        answer: queue.Queue[Tuple[Any, Optional[Exception]]] = queue.Queue()
-
-        def job() -> None:
-            try:
-                answer.put((action(), None))
-            except Exception as error:  # handed over to the service's thread, whose it is
-                answer.put((None, error))
-
-        self.inbox.put(("job", job))
-        value, error = answer.get()
-        if error is not None:
-            raise error
-        return value
-
-
-class _Untouched:
-    """Time is the grader's: what else would change it does nothing."""
-
-    def set_paused(self, _paused: bool) -> str:
-        """Gazebo's pause_physics and unpause_physics."""
-        return "time goes on: this is a grader"
-
-    reset = set_paused
-
-    def refuse(self, *_what: Any) -> str:
-        """Gazebo's ways to move, make and remove models."""
-        raise WorldError("the world and the robot's place in it are the grader's")
-
-    set_down = spawn = delete = refuse
 
 
 def _odd(ranges: np.ndarray) -> np.ndarray:

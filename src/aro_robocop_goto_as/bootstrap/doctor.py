@@ -1,0 +1,141 @@
+"""robocop doctor: the system, the versions, what answers, what is missing and the command that installs it.
+
+Usage: doctor CHECKOUT STATE ROS_SETUP UNSUPPORTED DISPLAY_ANSWERS LIST=MISSING...
+ROS_SETUP is roslaunch's path in /opt/ros or empty, UNSUPPORTED a reason or empty, DISPLAY_ANSWERS 1 or empty, and
+MISSING the packages of deb-packages/LIST.txt (or the Python modules, for LIST `modules`) that are not installed.
+"""
+
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Dict, List, Optional, Tuple
+
+from ..errors import MasterError
+from . import master
+
+PYTHON = "/usr/bin/python3"
+PACKAGES = ("rospy", "numpy", "pybullet")
+STAMPS = ("venv/made-as", "venv/requirements", "ws/built-from")  # what a complete set-up leaves
+SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
+REQUIRED_LISTS = ("run", "modules")
+PROBE_TIMEOUT = 60.0  # [s, wall] the first import of pybullet may read 100 MB from a slow disk
+PROBE = """
+import importlib, json, sys
+from importlib import metadata
+versions = {}
+for name in sys.argv[1:]:
+    try:
+        module = importlib.import_module(name)
+    except Exception as error:
+        versions[name] = "" if isinstance(error, ModuleNotFoundError) else f"fails to import: {error}"
+        continue
+    try:
+        versions[name] = metadata.version(name)
+    except metadata.PackageNotFoundError:
+        versions[name] = "of unknown version"
+    if name == "pybullet" and not module.isNumpyEnabled():
+        versions[name] += " (built without NumPy: camera images are slow)"
+print(json.dumps(versions))
+"""
+Row = Tuple[str, str]
+
+
+def system() -> str:
+    """Distribution, architecture and size of this machine."""
+    name = platform.system()
+    try:
+        with open("/etc/os-release", encoding="utf-8") as release:
+            entries = dict(line.rstrip().partition("=")[::2] for line in release)
+        name = entries["PRETTY_NAME"].strip('"')
+    except (OSError, KeyError):
+        pass
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
+    return f"{name}, {platform.machine()}, {os.cpu_count()} cores, {memory:.1f} GB of memory"
+
+
+def versions(python: str) -> Dict[str, str]:
+    """The versions of PACKAGES that an interpreter imports; "" for one that it does not find."""
+    try:
+        command = [python, "-c", PROBE, *PACKAGES]
+        done = subprocess.run(command, capture_output=True, timeout=PROBE_TIMEOUT)
+        return dict(json.loads(done.stdout.decode().splitlines()[-1]))
+    except (OSError, subprocess.TimeoutExpired, IndexError, ValueError) as error:
+        return {name: f"not found out, {python} failed: {error}" for name in PACKAGES}
+
+
+def master_row() -> Tuple[str, Optional[str]]:
+    """What answers at ROS_MASTER_URI, and what to do about it if it is a problem."""
+    uri = master.master_uri()
+    try:
+        if not master.master_answers(uri):
+            return f"none at {uri}", None
+        return f"answers at {uri}; {master.running_simulator(uri) or 'no simulator is running'}", None
+    except MasterError as error:
+        return "does not answer", str(error)
+
+
+def apt_line(packages: str) -> str:
+    """The command that installs Debian packages."""
+    sudo = "" if os.geteuid() == 0 else "sudo "
+    return f"{sudo}apt-get update && {sudo}apt-get install --no-install-recommends {packages}"
+
+
+def examine(
+    checkout: str, state: str, roslaunch: str, unsupported: str, display_answers: str, missing: Dict[str, str]
+) -> Tuple[List[Row], List[Row]]:
+    """The rows of the report, and what is missing with what to do about it."""
+    python = str(Path(state, "venv", "bin", "python"))
+    complete = all(Path(state, stamp).exists() for stamp in STAMPS)
+    installed = versions(python if os.access(python, os.X_OK) else PYTHON)
+    debian_ros = "Debian packages in /usr" if shutil.which("roslaunch", path="/usr/bin") else "not installed"
+    master_state, master_problem = master_row()
+    name = os.environ.get("DISPLAY")
+    display = f"{name} {'answers' if display_answers else 'does not answer'}" if name else "DISPLAY is not set"
+    optional = [
+        f"{part} {'not yet' if lacks else 'yes'}" for part, lacks in missing.items() if part not in REQUIRED_LISTS
+    ]
+    rows = [
+        ("system", system()),
+        ("python", f"{platform.python_version()} ({PYTHON})"),
+        ("ROS", roslaunch[: -len("/bin/roslaunch")] if roslaunch else debian_ros),
+        *((package, version or "not installed") for package, version in installed.items()),
+        ("checkout", checkout),
+        ("set-up", f"{'complete' if complete else 'not complete'}, in {state}"),
+        ("optional", ", ".join(optional) + " (installed by the command that needs it)"),
+        ("display", display),
+        ("settings", ", ".join(f"{key}={os.environ[key]}" for key in SETTINGS if key in os.environ)),
+        ("ROS master", master_state),
+    ]
+    problems = []
+    if unsupported:
+        problems.append(("this system is not supported", unsupported))
+    elif missing.get("run"):
+        problems.append((f"{len(missing['run'].split())} Debian packages", apt_line(missing["run"])))
+    if missing.get("modules"):
+        problems.append((f"Python modules of ROS: {missing['modules']}", "install ros-noetic-* or python3-* packages"))
+    if not complete or not installed["pybullet"][:1].isdigit():
+        problems.append(("the virtual environment or the workspace", "./robocop setup"))
+    if master_problem:
+        problems.append(("the ROS master", master_problem))
+    return rows, problems
+
+
+def main() -> None:
+    """Print the report; exit status 0 if nothing is missing, else 1."""
+    checkout, state, roslaunch, unsupported, display_answers, *lists = sys.argv[1:]
+    missing = dict(entry.partition("=")[::2] for entry in lists)
+    rows, problems = examine(checkout, state, roslaunch, unsupported, display_answers, missing)
+    for name, value in rows:
+        print(f"{name:11} {value}")
+    print("\nnothing is missing" if not problems else "\nmissing or wrong:")
+    for what, remedy in problems:
+        print(f"  {what}\n      {remedy}")
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()

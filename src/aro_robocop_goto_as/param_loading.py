@@ -1,0 +1,109 @@
+"""Plain values -> a frozen parameter dataclass; whatever does not fit is an error that names source, key and value."""
+
+import difflib
+import math
+from dataclasses import MISSING, Field, field, fields
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar, cast, get_args, get_type_hints
+
+from .errors import ParameterError
+
+T = TypeVar("T")
+
+
+def parameter(
+    default: Any = MISSING,
+    low: Optional[float] = None,
+    high: Optional[float] = None,
+    choices: Sequence[str] = (),
+    otherwise: str = "",
+) -> Any:
+    """A dataclass field with its inclusive bounds or its choices; without a default the key is required.
+
+    `otherwise` says, for a default of None, what holds when the key is left out.
+    """
+    metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise}
+    return field(default=default, metadata=metadata)
+
+
+def positive(default: Any = MISSING, high: float = 1e6, otherwise: str = "") -> Any:
+    """A field for a number greater than 0."""
+    return parameter(default, low=1e-9, high=high, otherwise=otherwise)
+
+
+def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
+    """A parameter dataclass from plain values; absent keys keep their defaults.
+
+    Raises ParameterError naming `source` (a file or a parameter namespace) and every key that is unknown, missing, of
+    the wrong type or out of bounds, with its value and what was expected.
+    """
+    specs = {spec.name: spec for spec in fields(cast(Any, cls))}
+    types = {name: _without_none(hint) for name, hint in get_type_hints(cls).items()}
+    problems = [
+        f"{name}: missing, expected {types[name].__name__}"
+        for name, spec in specs.items()
+        if spec.default is MISSING and name not in raw
+    ]
+    values: Dict[str, Any] = {}
+    for key, value in raw.items():
+        if key not in specs:
+            close = difflib.get_close_matches(key, specs, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else "known are: {}".format(", ".join(sorted(specs)))
+            problems.append(f"{key}: unknown parameter; {hint}")
+            continue
+        if types[key] is float and type(value) is int:
+            value = _to_float(value)
+        problem = _problem(specs[key], types[key], value)
+        if problem:
+            problems.append(f"{key}: {problem}")
+        values[key] = value
+    if not problems:
+        params = cls(**values)
+        problems = list(getattr(params, "conflicts", lambda: [])())
+    if problems:
+        raise ParameterError("{}: {}".format(source, "; ".join(problems)))
+    return params
+
+
+def _without_none(hint: Any) -> Type[Any]:
+    """The type of a value: X of Optional[X], else the hint itself."""
+    given: Type[Any] = next((arg for arg in get_args(hint) if arg is not type(None)), hint)
+    return given
+
+
+def _to_float(value: int) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def _problem(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
+    """What is wrong with a value for a field, in words, or None."""
+    expected = _expectation(spec, kind, value)
+    if expected is None:
+        return None
+    otherwise = spec.metadata.get("otherwise")
+    return f"expected {expected}" + (f"; leave the key out for {otherwise}" if otherwise else "")
+
+
+def _expectation(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
+    """What was expected instead of a value, and the value; None when the value is as expected."""
+    if type(value) is not kind:
+        return f"{kind.__name__}, got {type(value).__name__} {value!r}"
+    if kind is float and not math.isfinite(value):
+        return f"a finite number, got {value!r}"
+    low, high, choices = (spec.metadata.get(name) for name in ("low", "high", "choices"))
+    if low is not None and value < low:
+        return f"at least {low:g}, got {value!r}"
+    if high is not None and value > high:
+        return f"at most {high:g}, got {value!r}"
+    if choices and value not in choices:
+        return "one of {}, got {!r}".format(", ".join(choices), value)
+    return None
+
+
+def frame_problems(name: str, frame: str) -> List[str]:
+    """What tf2 would refuse about a frame's name, in words; empty when it is valid."""
+    if frame and not frame.startswith("/") and not any(character.isspace() for character in frame):
+        return []
+    return [f"{name}: expected a frame name without blanks or a leading slash, got {frame!r}"]

@@ -1,0 +1,1 @@
+"""Operating system processes: starting and ending children, signals, orphaned descendants, free ports."""

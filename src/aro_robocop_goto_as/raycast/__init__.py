@@ -1,0 +1,1 @@
+"""Exact distances from scanners to the world along their beams."""

@@ -1,0 +1,339 @@
+/* Exact distances along the beams of planar scanners to segments, circles and other robots.
+ *
+ * A shape is compared only with the beams between the bearings of its two edges. In a grid, only the segments in tiles
+ * that beams pass through are compared. Each distance depends on one beam and one shape only, and a beam's result is
+ * their minimum, so results depend neither on the order of the shapes nor on which other scanners are cast.
+ *
+ * The structures are mirrored in library.py; ARO_CASTER_VERSION changes with them.
+ */
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#define ARO_CASTER_VERSION 1
+#define TURN 6.283185307179586 /* [rad] */
+#define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
+#define CULL (1.0 + 1e-9)      /* rounding errors never put a shape beyond max_range */
+
+#define BLOCK 2  /* tiles on each side of the scanner's whose segments are cast before beams are walked */
+
+/* Status of aro_cast */
+#define OK 0
+#define NO_SUCH_ROBOT 1
+#define POSE_NOT_FINITE 2
+
+/* Beam i points at angle_min + i * increment [rad] in the scanner's frame; increment > 0. */
+struct fan {
+    double angle_min, per_angle; /* per_angle = 1 / increment */
+    int64_t samples;
+    int64_t turns;         /* whole turns from the first beam to the last */
+    const double *dx, *dy; /* (samples,) unit vectors */
+};
+
+/* Square tiles, row by row; tile t lists the segments members[starts[t]] to members[starts[t + 1] - 1]. */
+struct grid {
+    double x, y, side; /* [m] lower left corner, side of a tile */
+    int64_t columns, rows;
+    const int32_t *starts, *members;
+    int64_t n_everywhere;
+    const int32_t *everywhere; /* segments too long to be listed in tiles */
+    int32_t *tile_marks;       /* (columns * rows,) and (n_segments,): equal to `mark`: done in this scan */
+    int32_t *segment_marks;
+    int64_t n_segments;
+    int32_t mark;
+};
+
+/* What scanners at one height see. */
+struct plane {
+    int64_t n_segments, n_circles, n_bodies;
+    const double *segments; /* (n_segments, 2, 2) [m] in the world */
+    const double *circles;  /* (n_circles, 3) x, y, radius [m] in the world */
+    const double *bodies;   /* (n_bodies, 3) x, y, radius [m] of robots' circles, each in its robot's frame */
+    const int64_t *owners;  /* (n_bodies,) the robot of each */
+    double *moved_bodies;   /* (n_bodies, 3) in the world, written by aro_cast */
+    struct grid *grid;      /* of the segments; NULL: compare all of them */
+};
+
+struct fleet {
+    int64_t n_robots, n_planes;
+    const double *bases;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
+    const double *mounts;    /* (n_robots, 3) the scanner's pose in its robot's frame */
+    const int64_t *plane_of; /* (n_robots,) */
+    struct plane *planes;
+};
+
+struct scan {
+    const struct fan *fan;
+    double x, y, c, s; /* the scanner's position [m], cosine and sine of its yaw */
+    double max_range;  /* [m] */
+    double *nearest;   /* (samples,) [m] */
+};
+
+int aro_caster_version(void) { return ARO_CASTER_VERSION; }
+
+/* The beams from bearing low to low + span [rad], both within the turn of this number; 0 for none. */
+static int beams_between(const struct fan *fan, double low, double span, int64_t turn, int64_t *first, int64_t *last)
+{
+    double most = (double)(fan->samples - 1), start = low + TURN * (double)turn;
+    double from = (start - TOLERANCE) * fan->per_angle, to = (start + span + TOLERANCE) * fan->per_angle;
+    if (!(from <= most && to >= 0.0))
+        return 0;
+    *first = from > 0.0 ? (int64_t)from : 0;
+    *first += (double)*first < from;
+    *last = to < most ? (int64_t)to : fan->samples - 1;
+    return *first <= *last;
+}
+
+/* A bearing [rad] counted from the first beam, within one turn. */
+static double from_first_beam(const struct fan *fan, double bearing)
+{
+    double angle = bearing - fan->angle_min;
+    return angle - TURN * floor(angle / TURN);
+}
+
+static void to_scanner_frame(const struct scan *scan, const double *point, double *x, double *y)
+{
+    double dx = point[0] - scan->x, dy = point[1] - scan->y;
+    *x = scan->c * dx + scan->s * dy;
+    *y = scan->c * dy - scan->s * dx;
+}
+
+static void cast_segment(const struct scan *scan, const double *segment)
+{
+    const struct fan *fan = scan->fan;
+    double ax, ay, bx, by, ex, ey, length2, a2, b2, ahead, foot, near2, near, far, low, sweep;
+    int64_t turn, first, last, i;
+
+    to_scanner_frame(scan, segment, &ax, &ay);
+    to_scanner_frame(scan, segment + 2, &bx, &by);
+    ex = bx - ax;
+    ey = by - ay;
+    length2 = ex * ex + ey * ey;
+    if (length2 == 0.0)
+        return;
+    a2 = ax * ax + ay * ay;
+    b2 = bx * bx + by * by;
+    ahead = ax * ey - ay * ex;
+    foot = -(ax * ex + ay * ey); /* of the perpendicular from the scanner, times length2 */
+    near2 = foot <= 0.0 ? a2 : foot >= length2 ? b2 : ahead * ahead / length2;
+    if (near2 > scan->max_range * scan->max_range * CULL)
+        return;
+    near = sqrt(near2);
+    far = sqrt(a2 > b2 ? a2 : b2);
+
+    low = atan2(ay, ax);
+    sweep = atan2(by, bx) - low;
+    if (sweep > TURN / 2.0)
+        sweep -= TURN;
+    else if (sweep < -TURN / 2.0)
+        sweep += TURN;
+    low = from_first_beam(fan, sweep >= 0.0 ? low : low + sweep);
+    sweep = fabs(sweep);
+
+    for (turn = -1; turn <= fan->turns; turn++) {
+        if (!beams_between(fan, low, sweep, turn, &first, &last))
+            continue;
+        for (i = first; i <= last; i++) {
+            double distance = ahead / (fan->dx[i] * ey - fan->dy[i] * ex);
+            /* Along a segment seen edge-on both terms vanish, and their quotient is arbitrary. */
+            distance = distance >= near ? distance : near;
+            distance = distance <= far ? distance : far;
+            if (distance < scan->nearest[i])
+                scan->nearest[i] = distance;
+        }
+    }
+}
+
+/* From inside a circle its far side is seen. */
+static void cast_circle(const struct scan *scan, const double *circle)
+{
+    const struct fan *fan = scan->fan;
+    double x, y, radius = circle[2], away2, away, half, low, free2, side;
+    int64_t turn, first, last, i;
+
+    to_scanner_frame(scan, circle, &x, &y);
+    away2 = x * x + y * y;
+    away = sqrt(away2);
+    if (away - radius > scan->max_range * CULL)
+        return;
+    side = away <= radius ? 1.0 : -1.0;
+    half = away <= radius ? TURN / 2.0 : asin(radius / away);
+    low = from_first_beam(fan, atan2(y, x) - half);
+    free2 = away2 - radius * radius;
+
+    for (turn = -1; turn <= fan->turns; turn++) {
+        if (!beams_between(fan, low, 2.0 * half, turn, &first, &last))
+            continue;
+        for (i = first; i <= last; i++) {
+            double along = fan->dx[i] * x + fan->dy[i] * y, chord2 = along * along - free2;
+            double distance = along + side * sqrt(chord2 > 0.0 ? chord2 : 0.0);
+            if (distance < scan->nearest[i])
+                scan->nearest[i] = distance;
+        }
+    }
+}
+
+static void cast_tile(const struct scan *scan, const struct plane *plane, struct grid *grid, int64_t tile)
+{
+    int32_t k;
+    if (grid->tile_marks[tile] == grid->mark)
+        return;
+    grid->tile_marks[tile] = grid->mark;
+    for (k = grid->starts[tile]; k < grid->starts[tile + 1]; k++) {
+        int32_t segment = grid->members[k];
+        if (grid->segment_marks[segment] != grid->mark) {
+            grid->segment_marks[segment] = grid->mark;
+            cast_segment(scan, plane->segments + 4 * (int64_t)segment);
+        }
+    }
+}
+
+/* Along one axis: the part of the beam within the grid, as path lengths in tiles. */
+static void clip(double start, double direction, double extent, double *enter, double *leave)
+{
+    double one, other;
+    if (direction == 0.0) {
+        if (start < 0.0 || start > extent)
+            *leave = -1.0;
+        return;
+    }
+    one = -start / direction;
+    other = (extent - start) / direction;
+    *enter = fmax(*enter, fmin(one, other));
+    *leave = fmin(*leave, fmax(one, other));
+}
+
+static int64_t within(double place, int64_t count)
+{
+    return place > 0.0 ? (place < (double)count ? (int64_t)place : count - 1) : 0;
+}
+
+/* Cast the tiles along one beam, in order, until it has hit something nearer than the next tile. */
+static void walk(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y,
+                 double enter, int64_t beam)
+{
+    const double *nearest = scan->nearest + beam;
+    double ux = scan->c * scan->fan->dx[beam] - scan->s * scan->fan->dy[beam];
+    double uy = scan->s * scan->fan->dx[beam] + scan->c * scan->fan->dy[beam];
+    double per_column = 1.0 / fabs(ux), per_row = 1.0 / fabs(uy); /* path length per tile; infinite along an axis */
+    double leave = scan->max_range / grid->side, to_column, to_row;
+    int64_t column, row, step_column = ux > 0.0 ? 1 : -1, step_row = uy > 0.0 ? 1 : -1;
+
+    if (x < 0.0 || y < 0.0 || x > (double)grid->columns || y > (double)grid->rows) {
+        clip(x, ux, (double)grid->columns, &enter, &leave);
+        clip(y, uy, (double)grid->rows, &enter, &leave);
+    }
+    column = within(x + enter * ux, grid->columns);
+    row = within(y + enter * uy, grid->rows);
+    to_column = ux != 0.0 ? fabs((double)(column + (ux > 0.0)) - x) * per_column : INFINITY;
+    to_row = uy != 0.0 ? fabs((double)(row + (uy > 0.0)) - y) * per_row : INFINITY;
+    while (enter <= leave && enter * grid->side <= *nearest) {
+        cast_tile(scan, plane, grid, row * grid->columns + column);
+        if (to_column < to_row) {
+            enter = to_column;
+            to_column += per_column;
+            column += step_column;
+            if (column < 0 || column >= grid->columns)
+                return;
+        } else {
+            enter = to_row;
+            to_row += per_row;
+            row += step_row;
+            if (row < 0 || row >= grid->rows)
+                return;
+        }
+    }
+}
+
+/* Cast the tiles around the scanner at (x, y) [tiles]; returns up to what distance [tiles] all beams are done. */
+static double cast_block(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y)
+{
+    int64_t column, row, first_column = (int64_t)x - BLOCK, first_row = (int64_t)y - BLOCK;
+    double to_column = fmin(x - (double)first_column, (double)(first_column + 2 * BLOCK + 1) - x);
+    double to_row = fmin(y - (double)first_row, (double)(first_row + 2 * BLOCK + 1) - y);
+    for (row = first_row; row <= first_row + 2 * BLOCK; row++)
+        for (column = first_column; column <= first_column + 2 * BLOCK; column++)
+            if (row >= 0 && row < grid->rows && column >= 0 && column < grid->columns)
+                cast_tile(scan, plane, grid, row * grid->columns + column);
+    return fmin(to_column, to_row);
+}
+
+static void cast_grid(const struct scan *scan, const struct plane *plane, struct grid *grid)
+{
+    double x, y, done = 0.0;
+    int64_t i;
+    if (grid->mark == INT32_MAX) {
+        memset(grid->tile_marks, 0, (size_t)(grid->columns * grid->rows) * sizeof *grid->tile_marks);
+        memset(grid->segment_marks, 0, (size_t)grid->n_segments * sizeof *grid->segment_marks);
+        grid->mark = 0;
+    }
+    grid->mark++;
+    for (i = 0; i < grid->n_everywhere; i++)
+        cast_segment(scan, plane->segments + 4 * (int64_t)grid->everywhere[i]);
+    x = (scan->x - grid->x) / grid->side;
+    y = (scan->y - grid->y) / grid->side;
+    if (x >= 0.0 && y >= 0.0 && x <= (double)grid->columns && y <= (double)grid->rows)
+        done = cast_block(scan, plane, grid, x, y);
+    for (i = 0; i < scan->fan->samples; i++)
+        if (scan->nearest[i] > done * grid->side)
+            walk(scan, plane, grid, x, y, done, i);
+}
+
+static void cast_plane(const struct scan *scan, const struct plane *plane, int64_t robot)
+{
+    int64_t i;
+    for (i = 0; i < plane->n_circles; i++)
+        cast_circle(scan, plane->circles + 3 * i);
+    for (i = 0; i < plane->n_bodies; i++)
+        if (plane->owners[i] != robot)
+            cast_circle(scan, plane->moved_bodies + 3 * i);
+    if (plane->grid != NULL)
+        cast_grid(scan, plane, plane->grid);
+    else
+        for (i = 0; i < plane->n_segments; i++)
+            cast_segment(scan, plane->segments + 4 * i);
+}
+
+/* The point or circle centre `local` of a frame with this pose, in the world. */
+static void to_world(const double *pose, const double *local, double *x, double *y)
+{
+    double c = cos(pose[2]), s = sin(pose[2]);
+    *x = pose[0] + c * local[0] - s * local[1];
+    *y = pose[1] + s * local[0] + c * local[1];
+}
+
+/* Distances (n_scans, samples) [m] of the scanners of these robots; +inf where nothing is within max_range [m]. */
+int aro_cast(const struct fan *fan, const struct fleet *fleet, int64_t n_scans, const int64_t *robots, double max_range,
+             double *distances)
+{
+    int64_t i, k;
+    for (i = 0; i < 3 * fleet->n_robots; i++)
+        if (!isfinite(fleet->bases[i]))
+            return POSE_NOT_FINITE;
+    for (i = 0; i < n_scans; i++)
+        if (robots[i] < 0 || robots[i] >= fleet->n_robots)
+            return NO_SUCH_ROBOT;
+    for (i = 0; i < fleet->n_planes; i++) {
+        const struct plane *plane = fleet->planes + i;
+        for (k = 0; k < plane->n_bodies; k++) {
+            double *moved = plane->moved_bodies + 3 * k;
+            to_world(fleet->bases + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
+            moved[2] = plane->bodies[3 * k + 2];
+        }
+    }
+    for (i = 0; i < n_scans; i++) {
+        const double *base = fleet->bases + 3 * robots[i], *mount = fleet->mounts + 3 * robots[i];
+        double yaw = base[2] + mount[2];
+        struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + i * fan->samples};
+        to_world(base, mount, &scan.x, &scan.y);
+        for (k = 0; k < fan->samples; k++)
+            scan.nearest[k] = INFINITY;
+        cast_plane(&scan, fleet->planes + fleet->plane_of[robots[i]], robots[i]);
+        for (k = 0; k < fan->samples; k++)
+            if (scan.nearest[k] > max_range)
+                scan.nearest[k] = INFINITY;
+    }
+    return OK;
+}

@@ -1,0 +1,76 @@
+"""Exact distances seen by the scanners of all robots, which also see each other."""
+
+import math
+from typing import List, Sequence, Tuple
+
+import numpy as np
+
+from ..geometry import Pose2D
+from ..robot.model import RobotModel
+from ..world.model import Box, Cylinder, Obstacle, World
+from .beams import Fan
+from .cross_section import Slice
+from .scene import Plane, Scene
+
+
+def circles_at(model: RobotModel, height: float) -> np.ndarray:
+    """The circles (k, [x, y, radius]) [m] in base_footprint as which scanners at a height [m] see a robot.
+
+    Cylinders are exact. Boxes are approximated by a circle of equal area, independent of yaw.
+    """
+    circles: List[Tuple[float, float, float]] = []
+    for obstacle in model.collisions:
+        x, y, z = obstacle.pose.position
+        radius = _radius_at(obstacle, height - z)
+        if radius > 0.0:
+            circles.append((x, y, radius))
+    return np.array(circles).reshape(-1, 3)
+
+
+def _radius_at(obstacle: Obstacle, above: float) -> float:
+    """Radius [m] of an upright shape's circle at a height [m] above its centre; 0 above or below the shape."""
+    shape = obstacle.geometry
+    if isinstance(shape, Box):
+        return math.sqrt(shape.size[0] * shape.size[1] / math.pi) if abs(above) < shape.size[2] / 2.0 else 0.0
+    if isinstance(shape, Cylinder):
+        return shape.radius if abs(above) < shape.length / 2.0 else 0.0
+    return 0.0  # spheres are wheels and casters, inside the outline of the base
+
+
+class Scanners:
+    """One scanner per robot, all of the same kind; models differ in the height of their scanner."""
+
+    def __init__(self, models: Sequence[RobotModel], world: World) -> None:
+        self._models = tuple(models)
+        self._heights = sorted({model.scan_height for model in models})
+        self.change_world(world)
+
+    def change_world(self, world: World) -> None:
+        """Replace the world."""
+        self._slices = [Slice(world, height) for height in self._heights]
+        planes = [self._plane(height, walls) for height, walls in zip(self._heights, self._slices)]
+        mounts = [model.base_from_scan.on_plane() for model in self._models]
+        self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
+        self._scene = Scene(planes, self._plane_of, np.array([(pose.x, pose.y, pose.yaw) for pose in mounts]))
+
+    def _plane(self, height: float, walls: Slice) -> Plane:
+        """What scanners at one height see, the robots included."""
+        circles = [circles_at(model, height) for model in self._models]
+        owners = np.repeat(np.arange(len(self._models)), [len(of_one) for of_one in circles])
+        return Plane(walls, np.concatenate(circles), owners)
+
+    def walls(self, robot: int) -> Slice:
+        """The world's cross-section at the height of one robot's scanner, at time zero."""
+        return self._slices[self._plane_of[robot]].at(0.0)
+
+    def distances(
+        self, fan: Fan, max_range: float, world_from_footprints: Sequence[Pose2D], robots: Sequence[int], time: float
+    ) -> np.ndarray:
+        """Exact distances (r, samples) [m] seen by the given robots at a time [s]; +inf beyond max_range [m].
+
+        In the plane that TF describes: scanners are level, at their height on an upright robot.
+        """
+        for walls in self._slices:
+            walls.move(time)
+        self._scene.bases[:] = [(pose.x, pose.y, pose.yaw) for pose in world_from_footprints]
+        return fan.scan(self._scene, robots, max_range)

@@ -1,0 +1,97 @@
+"""Find free starting poses for one robot or several around one pose."""
+
+import heapq
+import math
+from typing import Iterator, List, Optional, Set, Tuple
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..geometry import Pose2D, compose
+from ..robot.model import RobotModel
+from ..world.model import World
+from .beams import Fan
+from .cross_section import Slice
+from .surroundings import Surroundings, body_heights
+
+HEIGHT = 0.1  # [m] of the cross-section
+SPACING = 0.5  # [m] of the grid
+CLEARANCE = 0.3  # [m] from a pose to the nearest obstacle
+LEAST_MARGIN = 0.02  # [m] from a robot's footprint to the nearest obstacle, where no place has CLEARANCE
+SEARCHES = ((0.1, 3.0), (0.5, 30.0))  # spacing and reach [m] of the grids on which a place for one robot is sought
+
+Cell = Tuple[int, int]  # of the grid; (0, 0) is the pose in the centre
+
+
+def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
+    """The pose itself if a robot's footprint has room there, else the nearest one of a grid that has, with its yaw.
+
+    ParameterError if there is none.
+    """
+    surroundings = Surroundings(world, body_heights(model))
+    least = model.figures.footprint_radius + LEAST_MARGIN
+    if surroundings.nearest(around.x, around.y).distance >= least:
+        return around
+    narrow: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
+    for spacing, reach in SEARCHES:
+        for x, y in _outwards(around, spacing, reach):
+            distance = surroundings.nearest(x, y).distance
+            if distance >= CLEARANCE:
+                return Pose2D(x, y, around.yaw)
+            if narrow is None and distance >= least:
+                narrow = Pose2D(x, y, around.yaw)
+    if narrow is not None:
+        return narrow
+    raise ParameterError(
+        f"spawn: world {world.name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
+        f"y {around.y:g}; give a spawn elsewhere"
+    )
+
+
+def _outwards(around: Pose2D, spacing: float, reach: float) -> Iterator[Tuple[float, float]]:
+    """The points of a grid around a pose, nearest first."""
+    count = round(reach / spacing)
+    cells = [(i * i + j * j, i, j) for i in range(-count, count + 1) for j in range(-count, count + 1)]
+    for _, i, j in sorted(cells):
+        yield around.x + i * spacing, around.y + j * spacing
+
+
+def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> List[Pose2D]:
+    """Poses on a grid, nearest to its centre first, clear of obstacles and connected to it by free grid edges.
+
+    The centre is free_place of the given pose. They depend on the arguments only. ParameterError if there are fewer
+    than `count`.
+    """
+    walls, surroundings = Slice(world, HEIGHT), Surroundings(world, body_heights(model))
+    centre = free_place(world, around, model)
+    waiting: List[Tuple[int, Cell]] = [(0, (0, 0))]
+    seen: Set[Cell] = {(0, 0)}
+    places: List[Pose2D] = []
+    while waiting and len(places) < count:
+        _, cell = heapq.heappop(waiting)
+        place = _pose(centre, cell)
+        places.append(place)
+        for di, dj in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+            neighbour = (cell[0] + di, cell[1] + dj)
+            pose = _pose(centre, neighbour)
+            is_clear = neighbour not in seen and surroundings.nearest(pose.x, pose.y).distance >= CLEARANCE
+            if is_clear and _is_visible(pose, place, walls):
+                seen.add(neighbour)
+                heapq.heappush(waiting, (neighbour[0] ** 2 + neighbour[1] ** 2, neighbour))
+    if len(places) < count:
+        raise ParameterError(
+            f"robots: world {world.name!r} has room for {len(places)} around its spawn, {count} were asked for"
+        )
+    return places
+
+
+def _pose(centre: Pose2D, cell: Cell) -> Pose2D:
+    return compose(centre, Pose2D(cell[0] * SPACING, cell[1] * SPACING))
+
+
+def _is_visible(pose: Pose2D, other: Pose2D, walls: Slice) -> bool:
+    """Whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
+    dx, dy = other.x - pose.x, other.y - pose.y
+    away = math.hypot(dx, dy)
+    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), walls, reach=away)[0, 0]
+    return bool(ray > away)

@@ -1,0 +1,74 @@
+"""A grid of square tiles that finds the segments near a point."""
+
+import math
+from typing import Tuple
+
+import numpy as np
+
+from .library import GridStruct, address
+
+TILE = 1.0  # [m] side length, larger in worlds of more than MOST_TILES
+MOST_TILES = 1 << 20
+MOST_TILES_OF_ONE = 4096  # that one segment is listed in; a longer one counts as near everywhere
+PAD = 1e-3  # [m] around each segment: rounding errors never make a beam hit it outside its tiles
+
+
+class Tiles:
+    """An index of segments (n, 2, 2) [m]: each is listed in all tiles that its bounding box touches."""
+
+    def __init__(self, segments: np.ndarray) -> None:
+        low, high = segments.min(axis=1) - PAD, segments.max(axis=1) + PAD
+        listed = ((high - low) / TILE + 1.0).prod(axis=1) <= MOST_TILES_OF_ONE
+        self._everywhere = np.flatnonzero(~listed).astype(np.int32)
+        numbers, low, high = np.flatnonzero(listed), low[listed], high[listed]
+        self._origin = low.min(axis=0, initial=np.inf) if len(low) else np.zeros(2)  # [m] lower left corner
+        extent = (high - self._origin).max(axis=0, initial=0.0)
+        self._side = max(TILE, math.sqrt(float((extent + TILE).prod()) / MOST_TILES))
+        self._columns, self._rows = (int(length / self._side) + 1 for length in extent)
+        first = ((low - self._origin) / self._side).astype(np.int64)
+        spans = ((high - self._origin) / self._side).astype(np.int64) - first + 1
+        counts = spans.prod(axis=1)
+        owner = np.repeat(np.arange(len(first)), counts)
+        within = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+        column = first[owner, 0] + within % spans[owner, 0]
+        row = first[owner, 1] + within // spans[owner, 0]
+        tile = row * self._columns + column
+        self._members = numbers[owner[np.argsort(tile, kind="stable")]].astype(np.int32)
+        per_tile = np.bincount(tile, minlength=self._columns * self._rows)
+        self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(np.int32)
+        self._tile_marks = np.zeros(self._columns * self._rows, np.int32)
+        self.segment_marks = np.zeros(len(segments), np.int32)  # struct.mark: compared with in the latest scan
+        self.struct = self._make_struct()  # Create only once: it holds the mark counter.
+
+    def near(self, x: float, y: float, half: float) -> np.ndarray:
+        """Indices of a superset of the segments in the square x +- half, y +- half [m]; may contain duplicates."""
+        first_column, last_column = self._range(x - half - self._origin[0], x + half - self._origin[0], self._columns)
+        first_row, last_row = self._range(y - half - self._origin[1], y + half - self._origin[1], self._rows)
+        pieces = [self._everywhere]
+        if first_column <= last_column:
+            for row in range(first_row, last_row + 1):
+                start = self._starts[row * self._columns + first_column]
+                pieces.append(self._members[start : self._starts[row * self._columns + last_column + 1]])
+        return np.concatenate(pieces)
+
+    def _range(self, low: float, high: float, count: int) -> Tuple[int, int]:
+        """First and last tile along one axis between two distances [m] from the grid's corner."""
+        first, last = (min(max(length / self._side, -1.0), float(count)) for length in (low, high))
+        return max(math.floor(first), 0), min(math.floor(last), count - 1)
+
+    def _make_struct(self) -> GridStruct:
+        tiles, int32 = self._columns * self._rows, np.int32
+        return GridStruct(
+            *self._origin.tolist(),
+            self._side,
+            self._columns,
+            self._rows,
+            address("starts", self._starts, (tiles + 1,), int32),
+            address("members", self._members, (None,), int32),
+            len(self._everywhere),
+            address("everywhere", self._everywhere, (None,), int32),
+            address("tile_marks", self._tile_marks, (tiles,), int32),
+            address("segment_marks", self.segment_marks, (None,), int32),
+            len(self.segment_marks),
+            0,
+        )

@@ -1,0 +1,80 @@
+"""The distance from a point on the floor to the nearest obstacle that is as low as a robot is high."""
+
+import math
+from dataclasses import replace
+from typing import List, NamedTuple, Tuple
+
+import numpy as np
+
+from ..robot.model import RobotModel
+from ..world.model import Mesh, Plane, World
+from .cross_section import Slice
+
+LOWEST = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
+LARGEST_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
+
+
+def body_heights(model: RobotModel) -> Tuple[float, ...]:
+    """The heights [m] of the cross-sections that a robot's body is compared with; three for a Burger."""
+    top = model.scan_height
+    count = 1 + max(1, math.ceil((top - LOWEST) / LARGEST_SPACING))
+    return tuple(np.linspace(LOWEST, top, count).tolist())
+
+
+class Nearest(NamedTuple):
+    """The obstacle nearest to a point: its distance [m], 0 within it, and its name; +inf and empty for none."""
+
+    distance: float
+    name: str
+
+
+class Surroundings:
+    """A world's obstacles at several heights [m], as they are at a time [s].
+
+    Boxes, cylinders, spheres and the walls of a map are solid; a mesh or a plane is only its surface.
+    """
+
+    def __init__(self, world: World, heights: Tuple[float, ...], time: float = 0.0) -> None:
+        self._names: List[str] = []  # of the outlines: one for each obstacle and height
+        self._solid: List[bool] = []
+        segments, circles, owners, circle_owners = [np.zeros((0, 2, 2))], [np.zeros((0, 3))], [], []
+        for obstacle in world.obstacles:
+            for height in heights:
+                outline = Slice(replace(world, obstacles=(obstacle,)), height).at(time)
+                owners.append(np.full(len(outline.segments), len(self._names)))
+                circle_owners.append(np.full(len(outline.circles), len(self._names)))
+                segments.append(outline.segments)
+                circles.append(outline.circles)
+                self._names.append(obstacle.name)
+                self._solid.append(not isinstance(obstacle.geometry, (Mesh, Plane)))
+        self._start, end = np.moveaxis(np.concatenate(segments), 1, 0)
+        self._along = end - self._start
+        self._squares = np.maximum((self._along**2).sum(axis=1), 1e-18)
+        self._circles = np.concatenate(circles)
+        self._owners = np.concatenate([np.zeros(0, int), *owners, *circle_owners]).astype(int)
+
+    def nearest(self, x: float, y: float) -> Nearest:
+        """The obstacle nearest to a point [m] in the world."""
+        if not len(self._owners):
+            return Nearest(math.inf, "")
+        from_start = np.array([x, y]) - self._start
+        share = np.clip((from_start * self._along).sum(axis=1) / self._squares, 0.0, 1.0)
+        gaps = np.hypot(*(from_start - share[:, None] * self._along).T)
+        rounds = np.hypot(self._circles[:, 0] - x, self._circles[:, 1] - y) - self._circles[:, 2]
+        distances = np.maximum(np.concatenate([gaps, rounds]), 0.0)
+        distances[np.isin(self._owners, self._around(from_start))] = 0.0
+        best = int(distances.argmin())
+        return Nearest(float(distances[best]), self._names[self._owners[best]])
+
+    def _around(self, from_start: np.ndarray) -> np.ndarray:
+        """The solid outlines around a point: a ray from it along x crosses their segments an odd number of times.
+
+        from_start: (m, 2) [m] from the start of each segment to the point
+        """
+        dx, dy = from_start.T
+        upwards = self._along[:, 1]
+        crosses = (dy >= 0.0) != (dy >= upwards)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crosses &= dx < self._along[:, 0] * (dy / upwards)
+        counts = np.bincount(self._owners[: len(dx)], weights=crosses, minlength=len(self._names))
+        return np.flatnonzero((counts % 2 == 1) & np.array(self._solid))

@@ -1,0 +1,1 @@
+"""Commands that start or talk to a ROS system: goto, launch."""

@@ -1,0 +1,42 @@
+"""Parameter files -> the URDF of the model they choose, for launch files that were not given a model."""
+
+import sys
+from typing import Any, Dict, List, Optional
+
+import yaml
+
+from ...errors import ParameterError, RobocopError
+from ...params import SimParams
+from ...robot.catalog import urdf_of
+
+
+def merged(paths: List[str]) -> Dict[str, Any]:
+    """The keys of several YAML files, the later file wins; ParameterError names the file that can't be read."""
+    values: Dict[str, Any] = {}
+    for path in paths:
+        try:
+            with open(path, encoding="utf-8") as stream:
+                raw = yaml.safe_load(stream) or {}
+        except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+            raise ParameterError(f"{path}: {error}") from error
+        if not isinstance(raw, dict):
+            raise ParameterError(f"{path}: expected lines of 'KEY: VALUE'")
+        values.update(raw)
+    return values
+
+
+def main(arguments: Optional[List[str]] = None) -> None:
+    """Print the URDF. Arguments: the package's folder, the launch argument `robots`, parameter files; '' for none."""
+    package, robots, *paths = sys.argv[1:] if arguments is None else arguments
+    try:
+        values = merged([path for path in paths if path])
+        if values.get("robots") and not robots:
+            print(
+                "robocop_sim.launch: parameter `robots` is set in a file, which gives the simulator these robots but "
+                "does not start their other nodes; pass it as the argument robots:=... instead",
+                file=sys.stderr,
+            )
+        with open(urdf_of(str(values.get("model", SimParams.model)), package), encoding="utf-8") as urdf:
+            print(urdf.read(), end="")
+    except RobocopError as error:
+        sys.exit(f"{error.code}: {error}")

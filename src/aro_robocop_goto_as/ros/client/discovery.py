@@ -1,0 +1,36 @@
+"""Whether a go-to action server is up, and why it may not be found."""
+
+import time
+
+import actionlib
+import rosgraph
+import rospy
+
+from .. import graph, private_api
+from ..action import ACTION_TYPE
+from ..ticker import wait_until
+
+is_up = private_api.connected_to_server
+
+
+def absence(action: str) -> str:
+    """Status text while the server `action` is missing; names other servers of the same action type."""
+    wanted = rospy.resolve_name(action)
+    try:
+        servers = graph.action_servers()
+    except (OSError, rosgraph.MasterException):
+        return f"waiting for {action}; the ROS master does not answer"
+    others = [name for name, type_ in servers.items() if type_ == ACTION_TYPE and name != wanted]
+    if not others:
+        return f"waiting for {action}"
+    same_base_name = any(name.endswith("/" + wanted.rpartition("/")[2]) for name in others)
+    question = "which robot is meant?" if same_base_name else "a misspelt name?"
+    return f"waiting for {action}; there is {' and '.join(map(repr, others))} of the same type: {question}"
+
+
+def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float) -> str:
+    """Wait up to `timeout` [s, wall] for the server; returns an empty string, or why it may be missing."""
+    started = time.monotonic()
+    if wait_until(lambda: is_up(client), timeout):
+        return ""
+    return f"{absence(action)} ({time.monotonic() - started:.0f} s)"

@@ -1,0 +1,70 @@
+"""A goal from the client's side: sent, followed, cancelled.
+
+Uses ActionClient because SimpleActionClient has two races: it reports an error when a newer goal's first transition
+arrives before that goal's handle is stored, and it takes the older goal's last transitions for the newer goal's.
+"""
+
+import threading
+from typing import Callable, Optional
+
+import actionlib
+from actionlib import ClientGoalHandle, CommState
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Point
+
+from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
+
+from ..ticker import wait_until
+
+# Not GoalStatus.to_string: for PENDING, which is 0, it returns the first name whose value equals False.
+STATES = {value: name for name, value in vars(GoalStatus).items() if name.isupper() and type(value) is int}
+ACKNOWLEDGE_PATIENCE = 1.0  # [s, wall] for the server to acknowledge a goal before it is cancelled
+
+
+class SentGoal:
+    """One goal that was sent to the server, with its newest feedback and its result."""
+
+    def __init__(
+        self,
+        client: actionlib.ActionClient,
+        position: Point,
+        on_end: Callable[[str], None],
+        on_feedback: Callable[[GoToPositionFeedback], None] = lambda feedback: None,
+    ) -> None:
+        self.position = position
+        self.done = threading.Event()
+        self.feedback: Optional[GoToPositionFeedback] = None
+        self.result: Optional[GoToPositionResult] = None
+        self._on_end = on_end
+        self._on_feedback = on_feedback
+        self._acknowledged = threading.Event()
+        self._handle: ClientGoalHandle = client.send_goal(
+            GoToPositionGoal(position), self._handle_transition, self._handle_feedback
+        )
+
+    def cancel(self) -> None:
+        """Request the goal's end once the server knows the goal: before that, actionlib may report it as LOST."""
+        wait_until(self._acknowledged.is_set, ACKNOWLEDGE_PATIENCE)
+        self._handle.cancel()
+
+    def _handle_transition(self, handle: ClientGoalHandle) -> None:
+        self._acknowledged.set()
+        if handle.get_comm_state() != CommState.DONE:
+            return
+        self.result = result = handle.get_result()
+        state = STATES[handle.get_terminal_state()]
+        self._on_end(f"{state}: {result.message}" if result is not None and result.message else state)
+        self.done.set()
+
+    def _handle_feedback(self, _handle: ClientGoalHandle, feedback: GoToPositionFeedback) -> None:
+        self.feedback = feedback
+        self._on_feedback(feedback)
+
+    def __str__(self) -> str:
+        state = STATES[self._handle.get_goal_status()]
+        goal = f"goal x {self.position.x:.2f} y {self.position.y:.2f} is {state}"
+        feedback = self.feedback
+        if feedback is None:
+            return goal
+        errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
+        return f"{goal}: {feedback.message} ({errors})"

@@ -1,0 +1,146 @@
+"""robocop_rviz_goto_ac: RViz's 2D Nav Goal -> tf2 -> GoToPosition goal, and a periodic status report."""
+
+import threading
+import traceback
+from typing import Optional
+
+import actionlib
+import rospy
+from geometry_msgs.msg import Point, PoseStamped
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+
+from aro_robocop_goto_as.msg import GoToPositionAction
+
+from ...errors import FrameError
+from ...params import BridgeParams
+from .. import params
+from ..action import ACTION
+from ..node_main import node
+from ..ticker import wait_until
+from ..timer import start_timer
+from . import discovery
+from .goal_frame import GoalTransformer
+from .goal_handle import SentGoal
+
+IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
+
+
+class Bridge:
+    """Callbacks store the newest click; the main thread transforms and sends it; a timer reports the status."""
+
+    def __init__(self, p: BridgeParams) -> None:
+        self.p = p
+        self.odom: Optional[Odometry] = None
+        self.click: Optional[PoseStamped] = None
+        self.clicked = threading.Condition()
+        self.sent: Optional[SentGoal] = None
+        self.last_result = ""
+        self.warned_of_raw_goals = False
+        self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
+        self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
+        self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
+        rospy.Subscriber("odom", Odometry, self._on_odom, queue_size=1)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_click, queue_size=10)
+        self.timer = start_timer(p.status_period, self._report)
+
+    def _on_odom(self, message: Odometry) -> None:
+        self.odom = message
+
+    def _on_click(self, message: PoseStamped) -> None:
+        with self.clicked:
+            self.click = message
+            self.clicked.notify()
+
+    # -- clicks, in the main thread --
+
+    def run(self) -> None:
+        """Forward clicks until shutdown."""
+        while not rospy.is_shutdown():
+            click = self._next_click()
+            if click is None:
+                continue
+            try:
+                self._replace_goal(self._resolve(click))
+            except FrameError as error:
+                rospy.logerr("goal refused, an earlier goal continues: %s", error)
+                self._publish_status(f"goal refused: {error}")
+            except Exception:  # the click's outermost level: the next one is served nevertheless
+                if not rospy.is_shutdown():
+                    rospy.logerr("goal not sent:\n%s", traceback.format_exc())
+
+    def _next_click(self) -> Optional[PoseStamped]:
+        with self.clicked:
+            if self.click is None:
+                self.clicked.wait(IDLE_POLL)
+            click, self.click = self.click, None
+            return click
+
+    def _resolve(self, click: PoseStamped) -> Point:
+        if not self.p.ignore_goal_frame:
+            return self.transformer.resolve(click)
+        if not self.warned_of_raw_goals:
+            self.warned_of_raw_goals = True
+            rospy.logwarn(
+                "ignore_goal_frame is set: coordinates in %r are sent to the server as if they were in %r",
+                click.header.frame_id,
+                self.p.goal_frame,
+            )
+        return click.pose.position
+
+    def _replace_goal(self, position: Point) -> None:
+        """Cancel the earlier goal, wait for its end, then send this one, unless a newer click arrives meanwhile."""
+        if not self._wait_for_server():
+            return
+        earlier = self.sent
+        if earlier is not None and not earlier.done.is_set():
+            earlier.cancel()
+            ended = earlier.done
+            if not wait_until(lambda: ended.is_set() or self.click is not None, self.p.cancel_timeout):
+                rospy.logwarn(
+                    "the earlier goal did not end within %g s of its cancel; sending the new goal preempts it",
+                    self.p.cancel_timeout,
+                )
+        if self.click is not None:
+            return
+        self.sent = SentGoal(self.client, position, self._on_end)
+        rospy.loginfo("goal sent: x %.2f y %.2f in %s", position.x, position.y, self.p.goal_frame)
+        self._report()
+
+    def _wait_for_server(self) -> bool:
+        """Wait for the server; False when a newer click or shutdown ends the wait."""
+        if discovery.is_up(self.client):
+            return True
+        rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
+        wait_until(lambda: discovery.is_up(self.client) or self.click is not None, float("inf"))
+        return self.click is None and not rospy.is_shutdown()
+
+    def _on_end(self, ending: str) -> None:
+        self.last_result = ending
+        rospy.loginfo("goal ended, %s", ending)
+
+    # -- status report --
+
+    def _report(self) -> None:
+        """Log and publish one line now."""
+        self._publish_status(self._describe())
+
+    def _publish_status(self, text: str) -> None:
+        rospy.loginfo("%s", text)
+        self.status.publish(String(text))
+
+    def _describe(self) -> str:
+        """The state of the server and of the last goal, as this client knows it."""
+        if not discovery.is_up(self.client):
+            return discovery.absence(ACTION)
+        if self.sent is None:
+            return f"{ACTION} is ready, no goal yet"
+        if self.sent.done.is_set():
+            return f"{ACTION} is ready, last goal {self.last_result}"
+        return str(self.sent)
+
+
+def main() -> None:
+    """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
+    with node("robocop_rviz_goto_ac_node"):
+        Bridge(params.load(BridgeParams)).run()

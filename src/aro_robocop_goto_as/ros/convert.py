@@ -1,0 +1,171 @@
+"""Converts between the core's values and ROS messages."""
+
+import math
+from typing import List, Tuple
+
+import numpy as np
+from genpy import Time
+from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Twist, Vector3
+from nav_msgs.msg import Odometry as OdometryMsg
+from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
+from std_msgs.msg import Header
+
+from ..component_params import ImuNoise
+from ..errors import FrameError
+from ..geometry import FARTHEST, Pose2D, Pose3D, Twist2D, yaw_of
+from ..robot.model import WHEEL_JOINTS, Pair
+from ..sensors.imu import ImuSample
+from ..sensors.scan_profiles import LidarSpec
+from ..simulation.clock import NANOSECONDS
+
+# Variances of x, y, z, roll, pitch, yaw. A huge variance marks what a differential drive cannot measure. The figures
+# are those of Gazebo's differential drive plugin, which existing lab code was written against.
+ODOM_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+TRUTH_VARIANCES = (1e-12,) * 6
+ORIENTATION_VARIANCE = 1e-6  # the simulated IMU's orientation is exact except for rounding
+REAL_IMU_VARIANCES = (0.0025, 0.02, 0.04)  # orientation, rates, accelerations of a TurtleBot3's firmware
+FULL_VOLTAGE, DESIGN_CAPACITY = 12.6, 1.8  # [V], [Ah] of a TurtleBot3's battery, three LiPo cells
+
+
+ImuCovariances = Tuple[List[float], List[float], List[float]]  # of orientation, rates, accelerations
+
+
+def to_time(stamp_ns: int) -> Time:
+    """Nanoseconds of simulated time as a ROS time."""
+    return Time(stamp_ns // NANOSECONDS, stamp_ns % NANOSECONDS)
+
+
+def to_ns(time: Time) -> int:
+    """A ROS time as nanoseconds."""
+    return time.secs * NANOSECONDS + time.nsecs
+
+
+def diagonal(variances: Tuple[float, ...]) -> List[float]:
+    """A row-major diagonal covariance, 6 x 6 or 3 x 3, with these variances."""
+    size = len(variances)
+    return [variances[row] if row == column else 0.0 for row in range(size) for column in range(size)]
+
+
+def to_quaternion(yaw: float) -> Quaternion:
+    """A heading [rad] as a quaternion message."""
+    return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))
+
+
+def from_pose_msg(pose: Pose) -> Pose2D:
+    """A geometry_msgs/Pose projected onto the plane."""
+    q = pose.orientation
+    return Pose2D(pose.position.x, pose.position.y, yaw_of((q.x, q.y, q.z, q.w)))
+
+
+def to_possible_pose(pose: Pose) -> Pose2D:
+    """A geometry_msgs/Pose from outside, projected onto the plane; FrameError if a robot can't be there.
+
+    Numbers that are finite but huge are refused too: distances computed from them do not fit into single precision.
+    """
+    q = pose.orientation
+    if not all(abs(value) <= 2.0 for value in (q.x, q.y, q.z, q.w)):  # false for NaN
+        raise FrameError(f"expected a quaternion of length 1, got x {q.x} y {q.y} z {q.z} w {q.w}")
+    x, y = pose.position.x, pose.position.y
+    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
+        raise FrameError(f"expected finite numbers within +-{FARTHEST:g} m, got x {x} y {y}")
+    return from_pose_msg(pose)
+
+
+def from_twist_msg(twist: Twist) -> Twist2D:
+    """The two parts of a geometry_msgs/Twist that a differential drive can follow."""
+    return Twist2D(twist.linear.x, twist.angular.z)
+
+
+def to_twist_msg(twist: Twist2D) -> Twist:
+    """A velocity as geometry_msgs/Twist."""
+    return Twist(Vector3(twist.v, 0.0, 0.0), Vector3(0.0, 0.0, twist.w))
+
+
+def to_pose_msg(pose: Pose3D) -> Pose:
+    """A pose in space as geometry_msgs/Pose."""
+    return Pose(Point(*pose.position), Quaternion(*pose.orientation))
+
+
+def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time) -> TransformStamped:
+    """A pose on the plane as a TF transform."""
+    translation = Vector3(parent_from_child.x, parent_from_child.y, 0.0)
+    rotation = to_quaternion(parent_from_child.yaw)
+    return TransformStamped(Header(0, stamp, parent), child, Transform(translation, rotation))
+
+
+def to_odometry(
+    pose: Pose2D, twist: Twist2D, stamp: Time, frame: str, child: str, covariance: List[float]
+) -> OdometryMsg:
+    """Pose of `child` in `frame` with the twist in `child`; one covariance (36,) serves both."""
+    message = OdometryMsg(Header(0, stamp, frame), child, None, None)
+    message.pose.pose.position = Point(pose.x, pose.y, 0.0)
+    message.pose.pose.orientation = to_quaternion(pose.yaw)
+    message.pose.covariance = covariance
+    message.twist.twist = to_twist_msg(twist)
+    message.twist.covariance = covariance
+    return message
+
+
+def to_scan(ranges: np.ndarray, spec: LidarSpec, stamp: Time, frame: str) -> LaserScan:
+    """Ranges as a LaserScan; all beams of one scan are taken at once, as Gazebo does (both time fields zero)."""
+    return LaserScan(
+        header=Header(0, stamp, frame),
+        angle_min=spec.angle_min,
+        angle_max=spec.angle_max,
+        angle_increment=spec.increment,
+        time_increment=0.0,
+        scan_time=0.0,
+        range_min=spec.range_min,
+        range_max=spec.range_max,
+        ranges=ranges.tolist(),
+        intensities=[],
+    )
+
+
+def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
+    """Wheel angles [rad] and speeds [rad/s], left then right."""
+    return JointState(Header(0, stamp, ""), list(WHEEL_JOINTS), angles, velocities, [])
+
+
+def imu_covariances(noise: ImuNoise, real: bool) -> ImuCovariances:
+    """The covariances of the noise that the simulator adds, or those that a real TurtleBot3 reports."""
+    variances = REAL_IMU_VARIANCES if real else (ORIENTATION_VARIANCE, noise.gyro**2, noise.accelerometer**2)
+    orientation, rates, accelerations = (diagonal((variance,) * 3) for variance in variances)
+    return orientation, rates, accelerations
+
+
+def to_imu(sample: ImuSample, stamp: Time, frame: str, covariances: ImuCovariances) -> Imu:
+    """An IMU sample with covariances from `imu_covariances`."""
+    orientation, rates, accelerations = covariances
+    return Imu(
+        Header(0, stamp, frame),
+        Quaternion(*sample.orientation),
+        orientation,
+        Vector3(*sample.angular_velocity),
+        rates,
+        Vector3(*sample.linear_acceleration),
+        accelerations,
+    )
+
+
+def to_magnetic_field(field: np.ndarray, stamp: Time, frame: str) -> MagneticField:
+    """A field (3,) [T] with unknown covariance, which is all zeros by the message's definition."""
+    return MagneticField(Header(0, stamp, frame), Vector3(*field.tolist()), diagonal((0.0,) * 3))
+
+
+def to_battery(stamp: Time, frame: str) -> BatteryState:
+    """A TurtleBot3's battery, always full; what is not measured is NaN, by the message's definition."""
+    return BatteryState(
+        header=Header(0, stamp, frame),
+        voltage=FULL_VOLTAGE,
+        temperature=math.nan,
+        current=math.nan,
+        charge=math.nan,
+        capacity=math.nan,
+        design_capacity=DESIGN_CAPACITY,
+        percentage=1.0,
+        present=True,
+        power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+        power_supply_health=BatteryState.POWER_SUPPLY_HEALTH_GOOD,
+        power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO,
+    )

@@ -1,0 +1,42 @@
+"""The ROS graph as the master knows it: published topics, action servers."""
+
+from dataclasses import dataclass
+from typing import Dict, List, Tuple
+
+import rosgraph
+import rospy
+
+RESULT = "/result"  # the topic of an action server's results, after its name
+ACTION_RESULT = "ActionResult"  # the type of that topic is the action's name with this suffix
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic with its message type ("" when the master does not know it) and the names of its publishers."""
+
+    name: str
+    type: str
+    publishers: Tuple[str, ...]
+
+
+def published_topics() -> List[Topic]:
+    """All topics that have a publisher, by name; OSError or rosgraph.MasterException when the master does not answer.
+
+    The master also lists nodes that were killed and could not unregister.
+    """
+    master = rosgraph.Master(rospy.get_name())
+    types = dict(master.getTopicTypes())
+    publishers, _, _ = master.getSystemState()
+    return sorted(
+        (Topic(name, types.get(name, ""), tuple(nodes)) for name, nodes in publishers if nodes),
+        key=lambda topic: topic.name,
+    )
+
+
+def action_servers() -> Dict[str, str]:
+    """Action type of each action server, by name: {"/robocop_goto_as": "aro_robocop_goto_as/GoToPositionAction"}."""
+    return {
+        topic.name[: -len(RESULT)]: topic.type[: -len("Result")]
+        for topic in published_topics()
+        if topic.name.endswith(RESULT) and topic.type.endswith(ACTION_RESULT)
+    }

@@ -1,0 +1,62 @@
+"""Building blocks for RViz markers."""
+
+import math
+from typing import List, Tuple
+
+import rospy
+from geometry_msgs.msg import Point
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+
+TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+TEXT_SIZE, TEXT_HEIGHT = 0.13, 0.6  # [m] of a capital letter; above the floor
+GOAL_COLOR = ColorRGBA(0.9, 0.2, 0.7, 0.9)
+LINE_WIDTH = 0.02  # [m]
+SEGMENTS = 24  # of an arc; enough to look round
+
+
+def marker(namespace: str, kind: int, frame: str, color: ColorRGBA, number: int = 0) -> Marker:
+    """A marker at the origin of a frame, which it follows: stamp zero means the newest transform."""
+    made = Marker(ns=namespace, id=number, type=kind, action=Marker.ADD, color=color, frame_locked=True)
+    made.header.frame_id = frame
+    made.header.stamp = rospy.Time(0)
+    made.pose.orientation.w = 1.0
+    return made
+
+
+def arc(radius: float, start: float, end: float, height: float = 0.0) -> List[Point]:
+    """Points along an arc [m] from angle start to end [rad], counter-clockwise from x."""
+    angles = [start + (end - start) * i / SEGMENTS for i in range(SEGMENTS + 1)]
+    return [Point(radius * math.cos(angle), radius * math.sin(angle), height) for angle in angles]
+
+
+def circle(namespace: str, radius: float, x: float, y: float, frame: str, color: ColorRGBA) -> Marker:
+    """A circle [m] on the floor."""
+    made = marker(namespace, Marker.LINE_STRIP, frame, color)
+    made.scale.x = LINE_WIDTH
+    made.points = arc(radius, 0.0, 2.0 * math.pi, 0.01)
+    made.pose.position.x, made.pose.position.y = x, y
+    return made
+
+
+def goal(tolerance: float, x: float, y: float, frame: str) -> Tuple[Marker, Marker]:
+    """A circle of radius `tolerance` [m] around the goal, and a pin at the goal."""
+    pin = marker("goal_pin", Marker.CYLINDER, frame, GOAL_COLOR)
+    pin.scale.x = pin.scale.y = 0.02
+    pin.scale.z = 0.4
+    pin.pose.position.x, pin.pose.position.y, pin.pose.position.z = x, y, 0.2
+    return circle("goal_circle", tolerance, x, y, frame, GOAL_COLOR), pin
+
+
+def text(namespace: str, content: str, frame: str) -> Marker:
+    """Text above the origin of a frame, facing the viewer."""
+    made = marker(namespace, Marker.TEXT_VIEW_FACING, frame, TEXT_COLOR)
+    made.text = content
+    made.scale.z = TEXT_SIZE
+    made.pose.position.z = TEXT_HEIGHT
+    return made
+
+
+def deletion(namespace: str) -> Marker:
+    """Deletes a marker, if it exists."""
+    return Marker(ns=namespace, id=0, action=Marker.DELETE)

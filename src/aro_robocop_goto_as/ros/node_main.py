@@ -1,0 +1,38 @@
+"""The life of a node, from init_node to shutdown by a signal or an error."""
+
+import contextlib
+import signal
+import sys
+import threading
+from typing import Any, Iterator
+
+import rospy
+
+from ..errors import RobocopError
+from ..process.signals import ending_signals
+from . import private_api
+
+
+@contextlib.contextmanager
+def node(name: str, **options: Any) -> Iterator[None]:
+    """rospy.init_node for the block in which the node lives; a RobocopError in it is logged, with exit status 1.
+
+    rospy shuts down inside its signal handler. If that interrupts a call to the master, it waits for ever for the lock
+    that the interrupted call holds. Here a thread shuts down, so that the call can complete.
+    """
+    for number in ending_signals():
+        signal.signal(number, _shut_down)
+    try:
+        rospy.init_node(name, disable_signals=True, **options)
+        yield
+    except RobocopError as error:
+        rospy.logfatal("%s: %s", error.code, error)
+        sys.exit(1)
+    except rospy.ROSException as error:  # shutdown during start, or while publishing
+        if not private_api.shutdown_has_begun():
+            raise
+        rospy.logdebug("%s", error)
+
+
+def _shut_down(number: int, _: object) -> None:
+    threading.Thread(target=rospy.signal_shutdown, args=(f"signal {number}",)).start()

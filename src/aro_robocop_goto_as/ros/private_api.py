@@ -1,0 +1,173 @@
+"""Everything that uses private parts of rospy, actionlib, roslaunch and argparse, each with the reason."""
+
+import argparse
+import contextlib
+import re
+import socket
+import threading
+from typing import Any, Callable, List, Optional, Set, Union
+
+import actionlib
+import rospy
+
+# -- rospy --
+
+
+def sender(message: Any) -> str:
+    """Name of the node that published a received message; rospy exposes it only in the connection header."""
+    return str(message._connection_header["callerid"])
+
+
+def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
+    """Names of the nodes a subscriber is connected to; rospy's public API only counts connections."""
+    return {link.callerid_pub for link in subscriber.impl.connections}
+
+
+def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
+    """Whether a publisher is connected to this node; rospy's public API only counts connections."""
+    return bool(publisher.impl.has_connection(node))
+
+
+def sockets_of(publisher: rospy.Publisher) -> List[socket.socket]:
+    """The sockets to a publisher's subscribers; rospy offers no socket options but the subscriber's TCP_NODELAY."""
+    sockets = [getattr(connection, "socket", None) for connection in publisher.impl.connections]
+    return [connected for connected in sockets if connected is not None]
+
+
+def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> None:
+    """Write a serialized message, preceded by its length, to all subscribers, like the end of rospy's publish.
+
+    rospy serializes into a BytesIO and copies that; there is no way to hand it bytes. The topic's lock, statistics and
+    the handling of failed connections are the same.
+    """
+    topic = publisher.impl
+    if topic is None or topic.closed:
+        if rospy.is_shutdown():
+            return
+        raise rospy.ROSException("publish() to a closed topic")
+    failed = []
+    topic.acquire()
+    try:
+        topic.seq += 1
+        for connection in topic.connections:
+            try:
+                connection.write_data(data)
+            except Exception:  # as rospy: whatever it is, this subscriber is lost, and only this one
+                failed.append(connection)
+        topic.message_data_sent += len(data)
+    finally:
+        topic.release()
+    for connection in failed:
+        with contextlib.suppress(Exception):
+            connection.close()
+
+
+def set_latched(publisher: rospy.Publisher, message: Any) -> None:
+    """Set the message that a latching topic sends to new subscribers, for use with write_message."""
+    publisher.impl.latch = message
+
+
+def clock_condition() -> Optional[threading.Condition]:
+    """The condition that rospy notifies at each /clock message; None on wall-clock time.
+
+    rospy.sleep and rospy.Rate wait on it as well, but neither can be interrupted while /clock is paused.
+    """
+    return None if rospy.rostime.is_wallclock() else rospy.rostime.get_rostime_cond()
+
+
+def shutdown_has_begun() -> bool:
+    """Whether shutdown was requested; rospy.is_shutdown() turns true only after the on_shutdown hooks."""
+    return bool(rospy.core.is_shutdown_requested())
+
+
+# -- actionlib --
+
+
+def connected_to_server(client: actionlib.ActionClient) -> bool:
+    """Whether all five topics of an action client are connected to its server, without waiting.
+
+    actionlib's wait_for_server measures its timeout in ROS time: on a paused simulator it never returns.
+    """
+    if client.last_status_msg is None:
+        return False
+    server = sender(client.last_status_msg)
+    return all(server in publishers_of(topic) for topic in (client.result_sub, client.feedback_sub)) and all(
+        is_connected_to(topic, server) for topic in (client.pub_goal, client.pub_cancel)
+    )
+
+
+def set_default_result(server: actionlib.SimpleActionServer, make_result: Callable[[], Any]) -> None:
+    """The result of goals that the server ends by itself, before they are accepted; actionlib's is empty."""
+    server.action_server.ActionResultType = make_result
+
+
+def ignore_future_cancels(server: actionlib.SimpleActionServer) -> None:
+    """Have a cancel with a stamp in the future affect only goals received so far; call before server.start().
+
+    actionlib recalls every goal with an earlier stamp: after the clock is set back that is every goal.
+    """
+    inner = server.action_server
+    receive_goal = inner.internal_goal_callback
+
+    def receive_goal_despite_future_cancel(goal: Any) -> None:
+        with inner.lock:
+            if inner.last_cancel > rospy.get_rostime():
+                inner.last_cancel = rospy.Time()
+        receive_goal(goal)
+
+    inner.internal_goal_callback = receive_goal_despite_future_cancel  # start() subscribes with it
+
+
+def replace_status_timer(
+    server: actionlib.SimpleActionServer, start_timer: Callable[[float, Callable[[], None]], rospy.Timer]
+) -> None:
+    """Publish the status list from another timer; actionlib's ends for good when the clock is set back."""
+    inner = server.action_server
+    if inner.status_timer is not None:
+        inner.status_timer.shutdown()
+        inner.status_timer = start_timer(1.0 / inner.status_frequency, lambda: inner.publish_status_async(None))
+
+
+def forget_later_stamps(server: actionlib.SimpleActionServer, goal: actionlib.ServerGoalHandle) -> None:
+    """Let a received goal replace goals with a later stamp; call from the server's internal_goal_callback.
+
+    SimpleActionServer refuses goals stamped earlier than the newest it has seen, so after the clock is set back it
+    would refuse every goal. The order of arrival is enough: a client's messages arrive in order.
+    """
+    with server.action_server.lock, server.lock:
+        stamp = goal.get_goal_id().stamp
+        for handle in (server.current_goal, server.next_goal):
+            if handle.get_goal() and handle.get_goal_id().stamp > stamp:
+                handle.get_goal_id().stamp = stamp
+
+
+# -- roslaunch --
+
+
+def add_early_listener(parent: Any, listener: Any) -> None:
+    """Add a process listener to a ROSLaunchParent that is not started yet, so that it misses no process.
+
+    ROSLaunchParent itself adds listeners when all nodes are up; one may have ended by then.
+    """
+    start_process_monitor = parent._start_pm
+
+    def start_process_monitor_with_listener() -> None:
+        start_process_monitor()
+        parent.pm.add_process_listener(listener)
+
+    parent._start_pm = start_process_monitor_with_listener
+
+
+def install_roslaunch_signal_handlers() -> None:
+    """Install roslaunch's signal handlers now; roslaunch does it when it starts the first process."""
+    from roslaunch import pmon  # here, because its import takes long and most nodes don't need it
+
+    pmon._init_signal_handlers()
+
+
+# -- argparse --
+
+
+def accept_scientific_notation(parser: argparse.ArgumentParser) -> None:
+    """Let a parser take -5e-1 for a number; argparse takes it for an unknown option."""
+    parser._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")

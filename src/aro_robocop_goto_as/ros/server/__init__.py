@@ -1,0 +1,1 @@
+"""robocop_goto_as: the go-to action server."""

@@ -1,0 +1,59 @@
+"""Server state -> RViz markers: the goal with its tolerance, the obstacle sector, the state as text above the robot."""
+
+import textwrap
+from typing import Optional
+
+from geometry_msgs.msg import Point
+from nav_msgs.msg import Odometry
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+from ...goto import Goal
+from ...params import GotoParams
+from .. import markers
+
+FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
+UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
+TEXT_WIDTH = 36  # characters per line
+NEAR_FACTOR = 2.0  # the sector turns yellow within this multiple of the obstacle distance
+
+
+def sector_color(clearance: Optional[float], limit: float) -> ColorRGBA:
+    """Red below the limit [m], yellow within twice the limit, green beyond it, grey without a scan."""
+    if clearance is None:
+        return UNKNOWN
+    if clearance < limit:
+        return BLOCKED
+    return NEAR if clearance < NEAR_FACTOR * limit else FREE
+
+
+def _obstacle_sector(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
+    """The part of the floor in which an obstacle ends a goal."""
+    color = sector_color(clearance, p.obstacle_distance)
+    sector = markers.marker("safety_cone", Marker.TRIANGLE_LIST, frame, color)
+    sector.scale.x = sector.scale.y = sector.scale.z = 1.0
+    rim = markers.arc(p.obstacle_distance, -p.obstacle_half_angle, p.obstacle_half_angle)
+    for start, end in zip(rim, rim[1:]):
+        sector.points += [Point(), start, end]
+    return sector
+
+
+def server_markers(
+    p: GotoParams,
+    goal: Optional[Goal],
+    clearance: Optional[float],
+    scan_frame: str,
+    odom: Optional[Odometry],
+    state: str,
+) -> MarkerArray:
+    """All of the server's markers; the goal's are deleted while there is no goal."""
+    made = []
+    if scan_frame:
+        made.append(_obstacle_sector(p, clearance, scan_frame))
+    if odom is not None:
+        made.append(markers.text("state", textwrap.fill(state, TEXT_WIDTH), odom.child_frame_id))
+        if goal is None:
+            made += [markers.deletion("goal_circle"), markers.deletion("goal_pin")]
+        else:
+            made += markers.goal(p.position_tolerance, goal.x, goal.y, odom.header.frame_id)
+    return MarkerArray(made)

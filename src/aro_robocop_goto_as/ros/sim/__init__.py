@@ -1,0 +1,1 @@
+"""robocop_sim: the simulation's topics and services."""

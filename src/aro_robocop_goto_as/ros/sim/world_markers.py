@@ -1,0 +1,70 @@
+"""RViz markers of the world's obstacles, in their true place, size and shape, and of named robots."""
+
+from typing import List, Sequence, Tuple
+
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+
+from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+
+COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # translucent: walls must not hide the scan and the robot behind them
+BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
+NOSE = ColorRGBA(0.95, 0.60, 0.10, 1.0)
+NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+CLEAR = Marker(action=Marker.DELETEALL)  # deletes earlier markers: a changed world may have fewer obstacles
+BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
+
+
+def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
+    marker = Marker(ns="world", id=number, action=Marker.ADD, color=COLOR, frame_locked=True)
+    marker.header.frame_id = frame
+    pose = obstacle.at(time)
+    marker.pose = Pose(Point(*pose.position), Quaternion(*pose.orientation))
+    shape = obstacle.geometry
+    if isinstance(shape, Box):
+        marker.type, marker.scale = Marker.CUBE, Vector3(*shape.size)
+    elif isinstance(shape, Cylinder):
+        marker.type = Marker.CYLINDER
+        marker.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
+    elif isinstance(shape, Sphere):
+        marker.type, marker.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
+    elif isinstance(shape, Mesh):
+        marker.type, marker.scale = Marker.TRIANGLE_LIST, Vector3(1.0, 1.0, 1.0)
+        marker.points = [Point(*corner) for corner in shape.corners.reshape(-1, 3).tolist()]
+    else:
+        raise TypeError(f"no marker for {shape!r}")
+    return marker
+
+
+def world_markers(world: World, frame: str, time: float, moving: bool = False) -> List[Marker]:
+    """One marker per obstacle, or per moving obstacle, where it is at a time [s], in the world's `frame`.
+
+    Planes and the walls of a map are left out: RViz's grid shows the floor and its Map display the map.
+    """
+    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, (Plane, Walls))]
+    return [
+        _marker(number, frame, obstacle, time)
+        for number, obstacle in enumerate(solid)
+        if obstacle.motion is not None or not moving
+    ]
+
+
+def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
+    """A body, an arrow ahead and a name for each robot, given as its name, base frame and radius [m].
+
+    RViz needs one RobotModel display per robot, so many robots are shown as markers instead.
+    """
+    found: List[Marker] = []
+    for number, (name, frame, radius) in enumerate(robots):
+        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODY)
+        body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
+        nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)
+        nose.scale, nose.pose.position.z = Vector3(1.3 * radius, 0.03, 0.03), NOSE_HEIGHT
+        label = Marker(ns="names", id=number, type=Marker.TEXT_VIEW_FACING, color=NAME, text=name)
+        label.scale.z, label.pose.position.z = 0.12, NAME_HEIGHT
+        for marker in (body, nose, label):
+            marker.header.frame_id, marker.frame_locked = frame, True
+            marker.pose.orientation.w = 1.0
+        found += [body, nose, label]
+    return found

@@ -1,0 +1,147 @@
+"""Which controllers a lockstep simulator waits for before simulated time passes a tick: bookkeeping without a clock.
+
+A tick is the number of a control period. Simulated time stands at a tick until no controller is `missing`.
+
+A controller that stamps its answers names the tick of each one, so it is followed exactly. A controller that only sends
+velocity commands is followed by counting: what arrives after time has left tick k, and before it leaves tick k + 1, is
+its answer to tick k + 1. The gaps between its answers show its period: a 4 Hz loop on 10 Hz ticks answers after 2, 3,
+2, 3, ... ticks. Until the period is known it may answer at any tick, so the simulator waits briefly at each one.
+"""
+
+from dataclasses import dataclass, field
+from typing import Dict, Generic, List, NamedTuple, Optional, TypeVar
+
+LONGEST_GAP = 20  # ticks; a controller that is silent for longer has stopped, and counts as new when it returns
+LONGEST_PATTERN = 12  # gaps until they repeat
+SURE_AFTER = 4  # gaps, at least, that match the pattern
+
+# Share of the timeout that the simulator waits for an answer:
+SURE = 1.0  # that is due
+FIRST = 0.25  # of a new controller at the next tick, where it is due if the loop runs at the ticks' rate, as most do
+LEARNING = 0.05  # that may be due
+
+
+@dataclass
+class _Controller:
+    last: int  # tick of the newest answer
+    stamped: bool = False
+    awaited: bool = True
+    passed: int = -1  # newest tick at which the wait for it was given up
+    gaps: List[int] = field(default_factory=list)  # ticks from answer to answer, the newest last
+    mistakes: int = 0  # answers that its pattern of gaps predicted in vain
+
+    def next_gap(self) -> Optional[int]:
+        """Ticks from the last answer to the next one; None while its period is unknown."""
+        if self.stamped or (self.gaps and set(self.gaps) == {1}):
+            return 1
+        settled = self.gaps[1:]  # the first one depends on when the loop started
+        enough = min(SURE_AFTER << self.mistakes, 2 * LONGEST_PATTERN)  # a pattern may look simpler than it is
+        for length in range(1, LONGEST_PATTERN + 1):
+            if len(settled) >= max(2 * length, enough) and settled[length:] == settled[:-length]:
+                return settled[-length]
+        return None
+
+    def missing(self, tick: int) -> bool:
+        """Whether the simulator waits for its answer to a tick."""
+        if not self.awaited or self.last >= tick or self.passed >= tick:
+            return False
+        gap = self.next_gap()
+        return gap is None or tick - self.last >= gap
+
+    def patience(self) -> float:
+        """How long to wait for it, as a share of the timeout."""
+        if self.next_gap() is not None:
+            return SURE
+        return LEARNING if self.gaps or self.passed > self.last else FIRST
+
+
+class Controller(NamedTuple):
+    """A node that commands a robot."""
+
+    robot: int
+    node: str
+
+
+Name = TypeVar("Name", str, Controller)
+
+
+class Lockstep(Generic[Name]):
+    """Controllers by name, and the tick at which time stands or towards which it runs; the owner sets `tick`."""
+
+    def __init__(self, tick: int = 0) -> None:
+        self.tick = tick
+        self.misses = 0  # answers given up on so far
+        self._controllers: Dict[Name, _Controller] = {}
+
+    def commanded(self, name: Name) -> None:
+        """A velocity command arrived that does not name its tick."""
+        known = self._controllers.get(name)
+        if known is None:
+            self._controllers[name] = _Controller(self.tick)
+        elif not known.stamped and known.last < self.tick:
+            gap = self.tick - known.last
+            gaps = (known.gaps + [gap])[-2 * LONGEST_PATTERN - 1 :] if gap <= LONGEST_GAP else []
+            self._controllers[name] = _Controller(self.tick, gaps=gaps, mistakes=known.mistakes)
+
+    def answered(self, name: Name, tick: int) -> None:
+        """An answer arrived that names its tick; one for an earlier tick only shows that its sender is alive."""
+        known = self._controllers.get(name)
+        last = tick if known is None or not known.stamped else max(tick, known.last)
+        self._controllers[name] = _Controller(last, stamped=True)
+
+    def enroll(self, name: Name) -> None:
+        """A controller that stamps its answers has connected: wait for it from now on."""
+        if not self.is_stamped(name):
+            self._controllers[name] = _Controller(self.tick - 1, stamped=True)
+
+    def is_stamped(self, name: Name) -> bool:
+        """Whether this controller stamps its answers, so that its plain commands have to be ignored."""
+        known = self._controllers.get(name)
+        return known is not None and known.stamped
+
+    def gone(self, name: Name) -> None:
+        """A controller has disconnected."""
+        self._controllers.pop(name, None)
+
+    def missing(self) -> List[Name]:
+        """The controllers that still have to answer the current tick, sorted."""
+        return sorted(name for name, it in self._controllers.items() if it.missing(self.tick))
+
+    def patience(self) -> float:
+        """How long to wait for the missing controllers, as a share of the timeout."""
+        return max((it.patience() for it in self._controllers.values() if it.missing(self.tick)), default=0.0)
+
+    def give_up(self) -> List[Name]:
+        """Stop waiting at this tick; returns and counts the controllers that were due, dropped until heard again."""
+        late = []
+        for name in self.missing():
+            it = self._controllers[name]
+            was_due = it.next_gap() is not None
+            it.awaited = not was_due and self.tick - it.last < LONGEST_GAP
+            if was_due:
+                late.append(name)
+                it.mistakes += 1
+            it.passed = self.tick
+        self.misses += len(late)
+        return late
+
+    def slower_than_ticks(self) -> bool:
+        """Whether a controller is known to answer regularly, but not at every tick."""
+        rhythms = [it.gaps for it in self._controllers.values() if it.next_gap() is not None]
+        return any(set(gaps) - {1} for gaps in rhythms)
+
+    def drivers(self) -> List[Name]:
+        """The controllers that are waited for, sorted."""
+        return sorted(name for name, it in self._controllers.items() if it.awaited)
+
+    def restart(self, tick: int) -> None:
+        """The simulation was reset and runs towards this tick, which stamping controllers still have to answer.
+
+        The period of a plain loop stays known if time goes on; it has to be learned again if time was set back.
+        """
+        for name, it in self._controllers.items():
+            if it.stamped:
+                it.last = tick - 1
+            elif tick < self.tick:
+                self._controllers[name] = _Controller(tick - 1, awaited=it.awaited)
+        self.tick = tick

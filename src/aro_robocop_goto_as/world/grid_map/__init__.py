@@ -1,0 +1,1 @@
+"""Read map_server's occupancy grid maps as worlds."""

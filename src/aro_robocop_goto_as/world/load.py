@@ -1,0 +1,40 @@
+"""Find a world file by its name or path and load it, whatever its format."""
+
+import os
+
+from ..errors import WorldError
+from .grid_map.walls import read_map
+from .model import World
+from .sdf.reader import read_world
+
+_MAP_EXTENSIONS = (".yaml", ".yml")
+_EXTENSIONS = (".sdf", ".world", *_MAP_EXTENSIONS)
+
+LAB_WORLDS = ("house", "aro_maze_1", "aro_maze_2", "aro_maze_8")  # names that the original lab's launch file accepted
+LAB_WORLD_HINT = ", which the original lab had and this package does not have: give the path of its file"
+
+
+def find_world(name_or_path: str, directory: str) -> str:
+    """The path of a world: DIRECTORY/NAME.sdf for a bare name, else the path itself.
+
+    A bare name has no slash and no extension of a world file. WorldError if the file does not exist.
+    """
+    is_name = os.path.basename(name_or_path) == name_or_path and not name_or_path.endswith(_EXTENSIONS)
+    path = os.path.join(directory, name_or_path + ".sdf") if is_name else name_or_path
+    if os.path.isfile(path):
+        return path
+    entries = os.listdir(directory) if os.path.isdir(directory) else []
+    known = sorted(entry[: -len(".sdf")] for entry in entries if entry.endswith(".sdf"))
+    hint = LAB_WORLD_HINT if name_or_path in LAB_WORLDS else ""
+    raise WorldError(
+        f"there is no world '{name_or_path}'{hint} (no file {os.path.abspath(path)}); "
+        f"worlds in {directory}: {', '.join(known) or 'none'}"
+    )
+
+
+def load_world(path: str) -> World:
+    """The world in an SDF file (1.4 to 1.8, a <world> or a single <model>) or in the YAML file of a map_server map.
+
+    WorldError names the file, the line where there is one, what is wrong and what is supported.
+    """
+    return read_map(path) if path.endswith(_MAP_EXTENSIONS) else read_world(path)

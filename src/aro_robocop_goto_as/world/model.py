@@ -1,0 +1,135 @@
+"""The model of a world: obstacles, each a geometry at a pose."""
+
+from dataclasses import dataclass, field, replace
+from typing import Dict, Mapping, Optional, Tuple, Union
+
+import numpy as np
+
+from ..geometry import Pose2D, Pose3D, Vector3, lifted
+from .motion import Motion
+
+
+@dataclass(frozen=True)
+class Box:
+    """A cuboid centred on the obstacle's origin; size: its lengths [m] along the obstacle's x, y, z."""
+
+    size: Vector3
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder centred on the obstacle's origin, its axis along the obstacle's z; radius, length [m]."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A sphere centred on the obstacle's origin; radius [m]."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """An infinite plane through the obstacle's origin; normal: unit vector in the obstacle's frame."""
+
+    normal: Vector3
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles, solid from both sides; corners: (n, 3, 3) [m] in the obstacle's frame; file: where they were read."""
+
+    corners: np.ndarray
+    file: str
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """Vertical walls without thickness, solid from both sides, such as the outlines of a map's occupied cells.
+
+    segments: (n, [start, end], [x, y]) [m] in the obstacle's frame; the walls reach from its z = 0 to height [m]
+    """
+
+    segments: np.ndarray
+    height: float
+
+
+Geometry = Union[Box, Cylinder, Sphere, Plane, Mesh, Walls]
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy:
+    """An occupancy grid, as in nav_msgs/OccupancyGrid.
+
+    cells: (rows, columns) int8, -1 unknown, 0 free to 100 occupied; cell [0, 0] is at the origin. Other values come
+        from maps in mode raw: above 100 is occupied, below 0 unknown
+    resolution: side length of a cell [m]
+    origin: map_from_grid, the pose of the outer corner of cell [0, 0]; columns run along its x, rows along its y
+    """
+
+    cells: np.ndarray
+    resolution: float
+    origin: Pose2D
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """Something that robots collide with and scanners see.
+
+    name: `model/link/collision`, unique in its world; outer models come first, as in `house/door/link/collision`
+    pose: world_from_obstacle [m], the centre of the geometry (for a Plane: a point on it)
+    motion: how it moves as time passes; None: it never moves
+    """
+
+    name: str
+    pose: Pose3D
+    geometry: Geometry
+    motion: Optional[Motion] = None
+
+    def at(self, time: float) -> Pose3D:
+        """world_from_obstacle at a time [s]. A moving obstacle is assumed round: roll and pitch are dropped."""
+        if self.motion is None:
+            return self.pose
+        x, y, z = self.pose.position
+        moved = self.motion.carry(Pose2D(x, y, self.pose.on_plane().yaw), time)
+        return lifted(moved, z)
+
+
+def _no_models() -> Dict[str, Pose3D]:
+    return {}
+
+
+@dataclass(frozen=True)
+class World:
+    """The surroundings of the robots, as a world file describes them.
+
+    obstacles: in the file's order, the ground included
+    spawn: world_from_footprint of a robot at the start [m, rad]
+    has_spawn: whether the file says so; otherwise `spawn` is the origin, where something may stand
+    ignored: each element that was left out although it would have had an effect, such as "light 'sun' (line 4)"
+    path: the file, as it was given to load_world
+    models: world_from_model of each model [m]; the names of its obstacles begin with the model's name
+    occupancy: the grid map that the world was made from, if any
+    """
+
+    name: str
+    obstacles: Tuple[Obstacle, ...]
+    spawn: Pose2D
+    ignored: Tuple[str, ...]
+    path: str
+    models: Mapping[str, Pose3D] = field(default_factory=_no_models)
+    occupancy: Optional[Occupancy] = None
+    has_spawn: bool = True
+
+    def moving(self) -> Tuple[Obstacle, ...]:
+        """The obstacles that move."""
+        return tuple(obstacle for obstacle in self.obstacles if obstacle.motion is not None)
+
+    def standing(self) -> "World":
+        """The same world with all obstacles at rest. Obstacles that never move stay the same objects."""
+        return replace(
+            self, obstacles=tuple(o if o.motion is None else replace(o, motion=None) for o in self.obstacles)
+        )

@@ -1,0 +1,1 @@
+"""Read Gazebo's SDF files as worlds."""

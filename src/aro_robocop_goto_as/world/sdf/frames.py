@@ -1,0 +1,80 @@
+"""Resolve the poses of SDF elements, which may be relative to a frame other than their parent's (SDF 1.7 and later)."""
+
+from typing import Tuple
+
+from ...geometry import Pose3D, compose3, inverse3
+from . import xml
+
+_OWN_FRAME = {"sdf": "world", "world": "world", "model": "__model__"}  # SDF's name for an element's own frame
+_NAMED = ("frame", "include", "link", "model")  # children of a world or a model that a pose can be relative to
+
+Chain = Tuple[xml.Element, ...]  # elements whose poses are being resolved
+
+
+def placed(element: xml.Element, world_from_parent: Pose3D) -> Pose3D:
+    """world_from_element of a model, include, link or collision, by its <pose> and the frame that the <pose> names.
+
+    WorldError if that frame is unknown or defined by itself.
+    """
+    if element.getparent() is not None and element.getparent().tag == "link":
+        return compose3(world_from_parent, _in_link(element))
+    if element.find("pose") is not None and element.find("pose").get("relative_to") == "world":
+        return xml.pose_of(element)
+    return compose3(world_from_parent, _in_scope(element, ()))
+
+
+def _in_link(collision: xml.Element) -> Pose3D:
+    """link_from_collision."""
+    name = _frame_name(collision)
+    pose = xml.own_pose(collision)
+    if not name:
+        return pose
+    link = collision.getparent()
+    link_from_model = inverse3(_in_scope(link, ()))
+    if name == "__model__":
+        return compose3(link_from_model, pose)
+    return compose3(link_from_model, compose3(_referred(collision, name, link.getparent(), ()), pose))
+
+
+def _in_scope(element: xml.Element, chain: Chain) -> Pose3D:
+    """Pose of a child of a world or a model in that one's frame."""
+    if element in chain:
+        raise xml.error(element, f"the pose of <{element.tag} name='{_name(element)}'> is relative to itself")
+    name, pose, scope = _frame_name(element), xml.own_pose(element), element.getparent()
+    if name in ("", "" if scope is None else _OWN_FRAME.get(str(scope.tag), "")):
+        return pose
+    return compose3(_referred(element, name, scope, (*chain, element)), pose)
+
+
+def _frame_name(element: xml.Element) -> str:
+    """The frame that an element's <pose> is given in; empty for its parent's."""
+    pose = xml.optional_child(element, "pose")
+    # Gazebo Classic 9 writes frame='', which means the parent's frame, as an absent attribute does.
+    name = "" if pose is None else pose.get("relative_to") or pose.get("frame", "")
+    attached = element.get("attached_to", "") if element.tag == "frame" else ""
+    return str(name or attached)
+
+
+def _referred(element: xml.Element, name: str, scope: xml.Element, chain: Chain) -> Pose3D:
+    """Pose of what a <pose> is relative to, in the frame of the world or model `scope`."""
+    pose = xml.optional_child(element, "pose")
+    siblings = [] if scope is None or (pose is not None and pose.get("frame")) else scope.iterchildren(*_NAMED)
+    for sibling in siblings:
+        if _name(sibling) == name:
+            if sibling.tag == "include" and xml.optional_child(sibling, "pose") is None:
+                raise xml.error(element, f"'{name}' is an <include> without <pose>; supported: one that has a <pose>")
+            return _in_scope(sibling, chain)
+    attribute = "attached_to" if pose is None else "frame" if pose.get("frame") else "relative_to"
+    raise xml.error(
+        element if pose is None else pose,
+        f"<{'frame' if pose is None else 'pose'} {attribute}='{name}'> is not supported; supported: a pose in the "
+        "parent's frame, or relative_to a <link>, <model>, <include> or <frame> beside it, or to the world",
+    )
+
+
+def _name(element: xml.Element) -> str:
+    """An element's name; an include's is its <name>."""
+    if element.tag == "include":
+        name = xml.optional_child(element, "name")
+        return "" if name is None else xml.text_of(name)
+    return str(element.get("name", "")).strip()

@@ -1,0 +1,74 @@
+"""Read the <geometry> of a collision."""
+
+import math
+from typing import Callable, Dict, Optional
+
+import numpy as np
+
+from ...errors import WorldError
+from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+from . import meshes, uris, xml
+
+
+class Shapes:
+    """A reader of geometries that reads each mesh file only once."""
+
+    def __init__(self) -> None:
+        self._triangles: Dict[str, np.ndarray] = {}
+        self._readers: Dict[str, Callable[[xml.Element], Optional[Geometry]]] = {
+            "box": _box,
+            "cylinder": _cylinder,
+            "empty": lambda _: None,
+            "mesh": self._mesh,
+            "plane": _plane,
+            "sphere": _sphere,
+        }
+
+    def read(self, geometry: xml.Element) -> Optional[Geometry]:
+        """The shape in a <geometry>; None for <empty>. WorldError for unsupported shapes, such as <heightmap>."""
+        xml.require_known_children(geometry, read=self._readers)
+        shapes = [child for child in geometry if child.tag in self._readers]
+        if len(shapes) != 1:
+            known = ", ".join(self._readers)
+            raise xml.error(geometry, f"<geometry> has {len(shapes)} shapes; supported: exactly one of {known}")
+        return self._readers[shapes[0].tag](shapes[0])
+
+    def _mesh(self, mesh: xml.Element) -> Mesh:
+        xml.require_known_children(mesh, read=("scale", "uri"))
+        uri = xml.required_child(mesh, "uri")
+        path = uris.find_file(xml.text_of(uri), uri)
+        if path not in self._triangles:
+            try:
+                self._triangles[path] = meshes.load_triangles(path)
+            except WorldError as exc:
+                raise xml.error(uri, str(exc)) from exc
+        scale = xml.optional_child(mesh, "scale")
+        factors = (1.0, 1.0, 1.0) if scale is None else xml.numbers(scale, 3)
+        if 0.0 in factors:
+            raise xml.error(mesh, f"<scale> is '{' '.join(f'{f:g}' for f in factors)}', expected factors other than 0")
+        return Mesh(self._triangles[path] * factors, path)
+
+
+def _box(box: xml.Element) -> Box:
+    x, y, z = xml.sizes(xml.required_child(box, "size"), 3)
+    return Box((x, y, z))
+
+
+def _cylinder(cylinder: xml.Element) -> Cylinder:
+    (radius,), (length,) = (xml.sizes(xml.required_child(cylinder, tag), 1) for tag in ("radius", "length"))
+    return Cylinder(radius, length)
+
+
+def _plane(plane: xml.Element) -> Plane:
+    # <size> only applies to a visual: a plane's collision is infinite.
+    normal = xml.optional_child(plane, "normal")
+    x, y, z = (0.0, 0.0, 1.0) if normal is None else xml.numbers(normal, 3)
+    length = math.hypot(x, y, z)
+    if not 0.0 < length < math.inf:
+        raise xml.error(plane, f"<normal> is '{x} {y} {z}', expected a vector that is not zero")
+    return Plane((x / length, y / length, z / length))
+
+
+def _sphere(sphere: xml.Element) -> Sphere:
+    (radius,) = xml.sizes(xml.required_child(sphere, "radius"), 1)
+    return Sphere(radius)

@@ -1,0 +1,34 @@
+"""Read the <state> that Gazebo saves with a world: where its models and links were at that time."""
+
+from typing import Dict, Iterator, Tuple
+
+from ...geometry import Pose3D
+from . import xml
+
+SavedPoses = Dict[str, Tuple[Pose3D, xml.Element]]  # model or link name: its pose in the world and its element
+
+
+def state_poses(world: xml.Element) -> SavedPoses:
+    """The poses in a world's <state> elements, which override those of its models and links, as in Gazebo.
+
+    Names are `model`, `model/link`, `model/nested`. WorldError if a state scales, adds or removes something.
+    """
+    poses: SavedPoses = {}
+    for state in world.iterchildren("state"):
+        xml.require_known_children(state, ("model",), ("iterations", "light", "real_time", "sim_time", "wall_time"))
+        poses.update(_poses(state, ""))
+    return poses
+
+
+def _poses(parent: xml.Element, prefix: str) -> Iterator[Tuple[str, Tuple[Pose3D, xml.Element]]]:
+    for element in parent.iterchildren("model", "link"):
+        xml.require_known_children(
+            element, ("link", "model", "pose", "scale"), ("acceleration", "collision", "static", "velocity", "wrench")
+        )
+        scale = xml.optional_child(element, "scale")
+        if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
+            raise xml.error(scale, f"<scale> is '{xml.text_of(scale)}', supported: 1 1 1")
+        name = prefix + xml.name_of(element)
+        if xml.optional_child(element, "pose") is not None:
+            yield name, (xml.pose_of(element), element)
+        yield from _poses(element, name + "/")

@@ -1,0 +1,47 @@
+"""Parse the texts of the parameters that say where robots start."""
+
+from typing import List, NamedTuple
+
+from ..errors import ParameterError
+from ..geometry import FARTHEST, Pose2D
+
+
+class SpawnRequest(NamedTuple):
+    """One entry of a list of robots; model: its name, empty if the entry gives none."""
+
+    name: str
+    model: str
+    pose: Pose2D
+
+
+def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
+    """A pose from 'x y' or 'x y yaw' [m, rad]; the default for a blank text. ParameterError names the parameter."""
+    if not text.strip():
+        return default
+    try:
+        numbers = [float(word) for word in text.replace(",", " ").split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (2, 3) or not all(abs(number) <= FARTHEST for number in numbers):
+        raise ParameterError(
+            f"{parameter}: expected 'x y' or 'x y yaw' in metres and radians, numbers within "
+            f"+-{FARTHEST:g}, got {text!r}"
+        )
+    return Pose2D(*numbers)
+
+
+def parse_robots(text: str) -> List[SpawnRequest]:
+    """The entries of 'NAME[:MODEL] X Y [YAW]; ...' [m, rad]; ParameterError quotes the entry that is wrong."""
+    requests: List[SpawnRequest] = []
+    for entry in (part.strip() for part in text.split(";")):
+        head, _, pose = entry.partition(" ")
+        name, colon, model = head.partition(":")
+        if not (name.isidentifier() and name.isascii()) or bool(colon) != bool(model) or not pose.strip():
+            raise ParameterError(
+                f"robots: expected 'NAME X Y [YAW]; ...' or 'NAME:MODEL X Y [YAW]; ...' with names of "
+                f"letters, digits and _, got {entry!r}"
+            )
+        if name in [request.name for request in requests]:
+            raise ParameterError(f"robots: the name {name!r} is given twice")
+        requests.append(SpawnRequest(name, model, parse_spawn(pose, Pose2D(), f"robots: {name}")))
+    return requests

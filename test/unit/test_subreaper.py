@@ -1,0 +1,39 @@
+"""All descendants of a process are killed, wherever they are in the process tree."""
+
+import subprocess
+import sys
+
+import pytest
+
+DEADLINE = 30.0  # [s, wall]
+# Every descendant holds the pipe open, so it reads as ended once none is left.
+ENDED = """
+import os, subprocess
+from aro_robocop_goto_as.process import subreaper
+subreaper.adopt_orphans()
+ended, alive = os.pipe()
+subprocess.Popen(["sh", "-c", {family!r}], pass_fds=[alive], env={{"PATH": os.environ["PATH"], "SLEEP": "sleep 600"}})
+os.close(alive)
+subreaper.kill_descendants()
+assert os.read(ended, 1) == b""
+"""
+
+
+@pytest.mark.parametrize(
+    "family",
+    [
+        "$SLEEP >&2",
+        "trap '' TERM INT HUP; $SLEEP & wait; $SLEEP",
+        "$SLEEP & $SLEEP & exit",
+        "setsid -f $SLEEP",
+        "setsid -f env -i sh -c 'sleep 600 & setsid -f sleep 600; sleep 600'",
+        "for i in 1 2 3 4 5 6 7 8; do setsid -f sh -c '(setsid -f sleep 600) & sleep 600'; done",
+    ],
+)
+def test_no_descendant_survives(family):
+    assert subprocess.run([sys.executable, "-c", ENDED.format(family=family)], timeout=DEADLINE).returncode == 0
+
+
+def test_process_without_children_does_not_wait():
+    code = "from aro_robocop_goto_as.process import subreaper; subreaper.adopt_orphans(); subreaper.kill_descendants()"
+    assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0
