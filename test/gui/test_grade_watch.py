@@ -121,7 +121,7 @@ def test_watched_run_is_shown_in_real_time_and_gets_full_marks(tmp_path):
 
 @pytest.mark.slow
 def test_grading_continues_when_rviz_is_closed(tmp_path):
-    with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop, ahead=3.0) as grading:
+    with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop, ahead=5.0) as grading:
         view = grading.view()
         grading.wait_for(lambda: "goal" in shown(desktop.pixels(view)), "the goal drawn in RViz")
         x, y, _, _ = desktop.geometry(desktop.window(TITLE))

@@ -304,6 +304,19 @@ def test_controller_that_hangs_causes_one_miss_and_is_awaited_again_when_it_cont
     ros.wait(lambda: remote.step(0.1) or "/metronome" in remote.status()["drivers"], "it drives again", (simulator,))
 
 
+def test_controller_is_awaited_only_when_all_of_its_subscriptions_have_connected(ros):
+    simulator = ros.simulator()
+    remote = Remote(ros, simulator)
+    controller = ros.script("half_connected.py", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert controller.stdout.readline() == b"ready\n"
+    assert remote.status()["drivers"] == []
+    assert "subscriptions" not in simulator.log.read_text(), "it was given up before the status was read"
+    controller.stdin.write(b"connect\n")
+    controller.stdin.flush()
+    remote.wait_for_driver("/half_connected", controller)
+    assert "subscriptions" not in simulator.log.read_text()
+
+
 def test_killing_a_controller_stops_its_robot_but_not_time(ros_of_its_own):
     ros = ros_of_its_own
     simulator = ros.simulator(cmd_vel_timeout=0.0)

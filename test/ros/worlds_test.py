@@ -74,6 +74,8 @@ class Worlds(unittest.TestCase):
         )
 
     def test_initialpose_is_left_to_others_where_it_is_false_and_without_localization(self):
+        Recorder("/scan", LaserScan).next(1)
+        Recorder("/other/scan", LaserScan).next(1)  # both simulators run, so they have connected everything
         _, subscribers, services = rosgraph.Master(rospy.get_name()).getSystemState()
         self.assertIn("/robocop_sim/set_pose", [name for name, _ in services])
         self.assertIn("/other/cmd_vel", [name for name, _ in subscribers])

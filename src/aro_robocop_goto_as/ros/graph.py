@@ -1,4 +1,4 @@
-"""The ROS graph as the master knows it: published topics, action servers."""
+"""The ROS graph as the master knows it: published topics, topics between two nodes, action servers."""
 
 from dataclasses import dataclass
 from typing import Dict, List, Tuple
@@ -31,6 +31,13 @@ def published_topics() -> List[Topic]:
         (Topic(name, types.get(name, ""), tuple(nodes)) for name, nodes in publishers if nodes),
         key=lambda topic: topic.name,
     )
+
+
+def topics_between(publisher: str, subscriber: str) -> List[str]:
+    """Names of the topics from one node to another, connected or not; raises what published_topics raises."""
+    publishers, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
+    published = {topic for topic, nodes in publishers if publisher in nodes}
+    return [topic for topic, nodes in subscribers if subscriber in nodes and topic in published]
 
 
 def action_servers() -> Dict[str, str]:

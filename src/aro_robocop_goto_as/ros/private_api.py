@@ -28,6 +28,12 @@ def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
     return bool(publisher.impl.has_connection(node))
 
 
+def is_topic_connected_to(topic: str, node: str) -> bool:
+    """Whether this process publishes a topic, by its resolved name, and is connected to this node for it."""
+    implementation = rospy.topics.get_topic_manager().get_publisher_impl(topic)
+    return implementation is not None and bool(implementation.has_connection(node))
+
+
 def sockets_of(publisher: rospy.Publisher) -> List[socket.socket]:
     """The sockets to a publisher's subscribers; rospy offers no socket options but the subscriber's TCP_NODELAY."""
     sockets = [getattr(connection, "socket", None) for connection in publisher.impl.connections]

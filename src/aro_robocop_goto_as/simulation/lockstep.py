@@ -13,7 +13,7 @@ from typing import Dict, Generic, List, NamedTuple, Optional, TypeVar
 
 LONGEST_GAP = 20  # ticks; a controller that is silent for longer has stopped, and counts as new when it returns
 LONGEST_PATTERN = 12  # gaps until they repeat
-SURE_AFTER = 4  # gaps, at least, that match the pattern
+SURE_AFTER = 4  # gaps, at least, that match the pattern; after a mistake, two of the longest patterns
 
 # Share of the timeout that the simulator waits for an answer:
 SURE = 1.0  # that is due
@@ -28,14 +28,14 @@ class _Controller:
     awaited: bool = True
     passed: int = -1  # newest tick at which the wait for it was given up
     gaps: List[int] = field(default_factory=list)  # ticks from answer to answer, the newest last
-    mistakes: int = 0  # answers that its pattern of gaps predicted in vain
+    mistaken: bool = False  # its gaps have predicted an answer that did not come
 
     def next_gap(self) -> Optional[int]:
         """Ticks from the last answer to the next one; None while its period is unknown."""
         if self.stamped or (self.gaps and set(self.gaps) == {1}):
             return 1
         settled = self.gaps[1:]  # the first one depends on when the loop started
-        enough = min(SURE_AFTER << self.mistakes, 2 * LONGEST_PATTERN)  # a pattern may look simpler than it is
+        enough = 2 * LONGEST_PATTERN if self.mistaken else SURE_AFTER  # a pattern may look simpler than it is
         for length in range(1, LONGEST_PATTERN + 1):
             if len(settled) >= max(2 * length, enough) and settled[length:] == settled[:-length]:
                 return settled[-length]
@@ -81,7 +81,7 @@ class Lockstep(Generic[Name]):
         elif not known.stamped and known.last < self.tick:
             gap = self.tick - known.last
             gaps = (known.gaps + [gap])[-2 * LONGEST_PATTERN - 1 :] if gap <= LONGEST_GAP else []
-            self._controllers[name] = _Controller(self.tick, gaps=gaps, mistakes=known.mistakes)
+            self._controllers[name] = _Controller(self.tick, gaps=gaps, mistaken=known.mistaken)
 
     def answered(self, name: Name, tick: int) -> None:
         """An answer arrived that names its tick; one for an earlier tick only shows that its sender is alive."""
@@ -120,7 +120,7 @@ class Lockstep(Generic[Name]):
             it.awaited = not was_due and self.tick - it.last < LONGEST_GAP
             if was_due:
                 late.append(name)
-                it.mistakes += 1
+                it.mistaken = True
             it.passed = self.tick
         self.misses += len(late)
         return late

@@ -18,6 +18,7 @@ from ..ticker import wait_until
 
 # Not GoalStatus.to_string: for PENDING, which is 0, it returns the first name whose value equals False.
 STATES = {value: name for name, value in vars(GoalStatus).items() if name.isupper() and type(value) is int}
+UNFINISHED = ("PENDING", "ACTIVE", "PREEMPTING", "RECALLING")
 ACKNOWLEDGE_PATIENCE = 1.0  # [s, wall] for the server to acknowledge a goal before it is cancelled
 
 
@@ -62,7 +63,10 @@ class SentGoal:
 
     def __str__(self) -> str:
         state = STATES[self._handle.get_goal_status()]
-        goal = f"goal x {self.position.x:.2f} y {self.position.y:.2f} is {state}"
+        goal = f"goal x {self.position.x:.2f} y {self.position.y:.2f}"
+        if state not in UNFINISHED:
+            return f"{goal} has ended ({state}), waiting for its result"
+        goal = f"{goal} is {state}"
         feedback = self.feedback
         if feedback is None:
             return goal

@@ -10,6 +10,7 @@ from aro_robocop_goto_as.msg import TickAnswer
 from ...geometry import Twist2D
 from .. import convert
 from ..private_api import publishers_of, sender
+from .answering_nodes import AnsweringNodes
 from .robot_topics import prefixed
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
@@ -32,6 +33,7 @@ class RobotInputs:
         # TCP_NODELAY: otherwise the publisher's kernel may hold a command back for 40 ms, at ten times real time 0.4 s.
         self._commands = rospy.Subscriber(prefixed(name, "cmd_vel"), Twist, command, tcp_nodelay=True)
         self._answers: Optional[rospy.Subscriber] = None
+        self._answering = AnsweringNodes()
         if lockstep:
             self._answers = rospy.Subscriber(prefixed(name, "tick_answer"), TickAnswer, answer, tcp_nodelay=True)
 
@@ -43,7 +45,7 @@ class RobotInputs:
         return set().union(*map(publishers_of, self._inputs()))
 
     def answering(self) -> Set[str]:
-        """Names of the nodes that are connected to answer ticks."""
+        """Names of the nodes that are connected to answer ticks and to all they subscribe to."""
         if self._answers is None:
             return set()
-        return publishers_of(self._answers) - {UNNAMED}
+        return self._answering.among(publishers_of(self._answers) - {UNNAMED})
