@@ -62,10 +62,11 @@ class Inputs:
         self.odom = _received(message, self.odom)
 
     def _on_scan(self, message: LaserScan) -> None:
-        self.scan = _received(message, self.scan)
+        received = _received(message, self.scan)
         clearance = self._clearance_in(message)
         if clearance is None or not math.isnan(clearance):
-            self.valid_scan = self.scan
+            self.valid_scan = received
+        self.scan = received  # last: who waits for it in await_tick reads the valid scan next
 
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
