@@ -90,7 +90,7 @@ class BridgeWaits(unittest.TestCase):
             wait_for(refused, f"a refusal that says {problem!r}")
         clicks.status.clear()
         clicks.click(0.75, 0.25, "odom")
-        clicks.wait_for_status("goal x 0.75 y 0.25 is ")
+        clicks.wait_for_status("goal x 0.75 y 0.25")
 
 
 if __name__ == "__main__":

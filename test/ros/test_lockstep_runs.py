@@ -216,6 +216,7 @@ def test_real_time_factor_does_not_change_the_run(ros, reference):
     assert run_scenario(ros, real_time_factor=8.0) == reference[0]
 
 
+@pytest.mark.slow
 def test_another_seed_gives_different_noise_but_the_same_outcome(ros, reference):
     other = run_scenario(ros, seed=7)
     assert other["words"] == reference[0]["words"]

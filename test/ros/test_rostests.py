@@ -14,8 +14,9 @@ DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorte
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 HERE = Path(__file__).resolve().parent
 LONG = ("lab", "simulator", "simulator_services", "two_robots")
-# Most of these is also tested without processes (parameters), or with a fake robot and through the bridge (preempt).
-SLOW = ("parameters", "preempt")
+# Most of these is also tested without processes (parameters, real_time_factor), or with a fake robot and through the
+# bridge (preempt).
+SLOW = ("parameters", "preempt", "real_time_factor")
 
 
 def run_rostest(test_file, directory):

@@ -119,6 +119,7 @@ def expect_everybody_once(folder, count, output):
     assert all(html.count(f"{name}/report.html") == 1 for name in names)
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(900)  # 30 hand-ins, and one worker left for most of them
 def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(group, count, start, tmp_path):
     file = tmp_path / "scheduler.json"

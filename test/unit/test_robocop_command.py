@@ -140,7 +140,14 @@ def test_unknown_launch_argument_is_refused_with_the_known_ones(command):
     assert "there is no argument wrld; there are: " in done.stderr and " world " in done.stderr
 
 
-@pytest.mark.parametrize("command", [("run", "rviz:=false"), ("sim",), ("goto", "1", "0")])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("run", "rviz:=false"),
+        pytest.param(("sim",), marks=pytest.mark.slow),
+        pytest.param(("goto", "1", "0"), marks=pytest.mark.slow),
+    ],
+)
 def test_port_that_never_answers_is_reported_within_seconds(command):
     with socket.create_server(("127.0.0.1", 0)) as silent:
         uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
