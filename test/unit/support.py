@@ -2,7 +2,7 @@
 
 import math
 import os
-from typing import Callable, Iterator, List
+from typing import Callable, Dict, Iterator, List, Sequence
 
 import numpy as np
 import pybullet
@@ -14,6 +14,7 @@ from aro_robocop_goto_as.physics.bullet import WORLD_GROUP, BulletEngine
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.observations import SENSORS
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import Box, Cylinder, World
@@ -49,6 +50,11 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
     yield make
     for it in made:
         it.close()
+
+
+def everything(robots: int) -> Dict[str, Sequence[int]]:
+    """Subscriptions to all sensors of so many robots."""
+    return {sensor: range(robots) for sensor in SENSORS}
 
 
 def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:

@@ -5,14 +5,14 @@ from typing import Any, Callable, Dict
 
 import numpy as np
 import pytest
-from support import analytic_distances, model_named, world_named
+from support import analytic_distances, everything, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, depth_of, points_of, projection
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.simulator import Simulator, everything
+from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import Box, Obstacle, World
 
 Make = Callable[..., Simulator]

@@ -33,7 +33,7 @@ def _beam(angle: float) -> int:
 
 
 def _bullet_distances(world: World, origin: Pose2D, far: float) -> np.ndarray:
-    physics = BulletEngine(world, 240)
+    physics = BulletEngine(world, 240, 20, 1.0)
     start = (origin.x, origin.y, HEIGHT)
     turned = DIRECTIONS @ np.array(
         [[math.cos(origin.yaw), math.sin(origin.yaw)], [-math.sin(origin.yaw), math.cos(origin.yaw)]]

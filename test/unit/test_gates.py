@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -53,6 +54,7 @@ ROSDEP_KEYS = {
 }
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
 OPTIONAL = {"gazebo_msgs", "distributed"}  # imported on request only: in compat/, in deb-packages/class.txt
+PUBLIC_DESPITE_THEIR_NAMES = ("_exit", "_replace")  # of os and of named tuples: in Python's documentation
 IMPORT_WITHOUT_ROS = """
 import importlib, sys
 
@@ -178,6 +180,22 @@ def test_modules_import_only_what_the_order_of_folders_allows():
             if row_of(imported) not in [row_of(module), *ORDER[row_of(module)].split()]
         ]
     )
+
+
+def private_attributes(path):
+    """Attributes with a leading underscore that a module uses of anything but its own objects, with line numbers."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.Attribute) or not re.match("_[a-z]", node.attr):
+            continue
+        of = node.value.id if isinstance(node.value, ast.Name) else ""
+        own = of in ("self", "cls") or (isinstance(node.value, ast.Call) and ast.unparse(node.value) == "super()")
+        if not own and node.attr not in PUBLIC_DESPITE_THEIR_NAMES:
+            yield f"{path.relative_to(ROOT)}:{node.lineno}: {ast.unparse(node)}"
+
+
+def test_private_parts_of_libraries_are_used_in_one_module_only():
+    modules = [path for path in SOURCE.rglob("*.py") if path.name != "private_api.py"]
+    expect_none([problem for path in modules for problem in private_attributes(path)])
 
 
 def test_scripts_are_installed_and_only_start_a_main():

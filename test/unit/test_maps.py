@@ -351,7 +351,7 @@ def test_both_engines_stop_the_robot_at_a_wall_of_a_big_map(big, burger):
     seen = ahead.cast(poses, Slice(big, HEIGHT), reach=10.0) * np.cos(-0.25 + 0.01 * np.arange(51))
     facing_a_wall = (np.ptp(np.minimum(seen, 9.0), axis=1) < 1e-6) & (seen[:, 25] > 0.5) & (seen[:, 25] < 1.5)
     (x, y, _), distance = poses[facing_a_wall][0], seen[facing_a_wall][0, 25]
-    for drive in (BulletEngine(big, 240), KinematicEngine(big, 240, 0.105)):
+    for drive in (BulletEngine(big, 240, 20, 1.0), KinematicEngine(big, 240, 0.105)):
         robot = drive.add_robot(burger, Pose2D(x, y))
         drive.set_wheel_speeds(robot, (6.0, 6.0))
         for _ in range(240 * 8):

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict
 import numpy as np
 import pytest
 import yaml
-from support import ROOT, model_named
+from support import ROOT, everything, model_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, quaternion_from_rpy, wrap_angle
 from aro_robocop_goto_as.param_loading import from_dict
@@ -15,7 +15,7 @@ from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.sensors import magnetometer
 from aro_robocop_goto_as.sensors.encoders import Encoders, count, ticked
-from aro_robocop_goto_as.simulation.simulator import Simulator, everything
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
 TICK = 0.001533981  # [rad] of a TurtleBot3's encoders

@@ -237,7 +237,7 @@ def test_mesh_of_a_box_equals_the_box_for_scans_and_physics(tmp_path, kind):
     for path in (as_box, as_mesh):
         world = load_world(path)
         seen.append(fan.cast(np.zeros((1, 3)), Slice(world, 0.182))[0])
-        physics = BulletEngine(world, 240)
+        physics = BulletEngine(world, 240, 20, 1.0)
         met.append(bullet_rays(physics, (0.0, 0.0, 0.182), ends))
         physics.close()
     assert np.isfinite(seen[0]).sum() > 50
@@ -270,7 +270,7 @@ def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
     assert len(ball.faces) > 60000
     ball.export(str(tmp_path / "ball.stl"))
     world = load_world(mesh_world(tmp_path, "ball.stl"))
-    physics = BulletEngine(world, 240)
+    physics = BulletEngine(world, 240, 20, 1.0)
     turns = np.linspace(0.0, 6.2, 50)
     starts_far = np.stack([3.0 * np.cos(turns), 3.0 * np.sin(turns), np.full(50, 0.1)], axis=1)
     met = [bullet_rays(physics, tuple(start), np.array([[0.0, 0.0, 0.1]]))[0] for start in starts_far.tolist()]

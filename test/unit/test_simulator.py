@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support import analytic_distances, lean, world_named
+from support import analytic_distances, everything, lean, world_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
 from aro_robocop_goto_as.simulation.clock import due
-from aro_robocop_goto_as.simulation.simulator import Simulator, everything
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
 NOTHING: "dict[str, list[int]]" = {}

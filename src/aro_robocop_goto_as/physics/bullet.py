@@ -33,9 +33,7 @@ class _Body:
 class BulletEngine:
     """One Bullet world, stepped at `rate` [Hz]."""
 
-    def __init__(
-        self, world: World, rate: int, solver_iterations: int = 50, wheel_torque: float = 1.0, gui: bool = False
-    ) -> None:
+    def __init__(self, world: World, rate: int, solver_iterations: int, wheel_torque: float, gui: bool = False) -> None:
         """`wheel_torque` [Nm] is the maximum of each wheel motor; `gui` opens pybullet's own window."""
         self.client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
         self._world, self._rate, self._solver_iterations = world, rate, solver_iterations

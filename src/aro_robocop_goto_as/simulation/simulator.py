@@ -346,11 +346,6 @@ class Simulator:
         self.engine.close()
 
 
-def everything(robots: int) -> Dict[str, Robots]:
-    """Subscriptions to all sensors of so many robots."""
-    return {sensor: range(robots) for sensor in SENSORS}
-
-
 def _due(sensor: str, scheduled: FrozenSet[str], subscriptions: Subscriptions) -> Robots:
     """The robots for which a sensor is due and subscribed to."""
     return subscriptions.get(sensor, ()) if sensor in scheduled else ()

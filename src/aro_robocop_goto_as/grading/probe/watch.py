@@ -32,7 +32,6 @@ from .. import record as rec
 from ..plan import Plan, world_of
 
 OPEN_TIMEOUT = 60.0  # [s, wall] for RViz to come up; with a software renderer on a busy machine it takes ten
-CLOSE_TIMEOUT = 2.0  # [s, wall]
 POLL = 0.05  # [s, wall]
 NAMESPACE = "/robocop_watch"
 TOPICS = ("tf", "tf_static")
@@ -73,7 +72,8 @@ class Watch:
         share = rospkg.RosPack().get_path("aro_robocop_goto_as")
         rospy.set_param(f"{NAMESPACE}/robot_description", load_model(self._model, share).urdf)
         self._start("robot_state_publisher", "robot_state_publisher", "frames")
-        self._rviz = self._start("rviz", "rviz", "rviz", "-d", f"{share}/rviz/grading_watch.rviz")
+        again = f"{share}/launch/restart_after_crash"
+        self._rviz = self._start("rviz", "rviz", "rviz", "-d", f"{share}/rviz/grading_watch.rviz", prefix=[again])
         started = time.monotonic()
         while not all(topic.get_num_connections() for topic in self._shown()):
             if self._rviz.poll() is not None:
@@ -87,13 +87,16 @@ class Watch:
         """The topics that RViz subscribes to, and last the one of robot_state_publisher."""
         return self._robot.scan, self._robot.odom, self._tf, self._tf_static, self._scene, self._joints
 
-    def _start(self, package: str, program: str, name: str, *arguments: str) -> "child.Child[bytes]":
+    def _start(
+        self, package: str, program: str, name: str, *arguments: str, prefix: Sequence[str] = ()
+    ) -> "child.Child[bytes]":
         """Start a node in the probe's session, with all topics but the simulator's in this namespace.
 
         The log too: lines logged by RViz, or its connection to /rosout, must not be taken for the submission's.
         """
         renamed = [f"/{topic}:={NAMESPACE}/{topic}" for topic in TOPICS]
         command = [
+            *prefix,
             "rosrun",
             package,
             program,
@@ -120,7 +123,7 @@ class Watch:
     def close(self) -> None:
         """End RViz and robot_state_publisher."""
         for process in self._processes:
-            child.end(process, grace=CLOSE_TIMEOUT)
+            child.end(process, None, grace=0.0)  # nothing in them is worth an orderly end
 
     # -- called by the stage and the run --
 

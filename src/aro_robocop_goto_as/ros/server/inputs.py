@@ -1,6 +1,7 @@
 """The server's inputs: the newest odometry and scan -> pose and clearance ahead, or which of the two is missing."""
 
 import math
+import threading
 from dataclasses import dataclass
 from typing import Any, Optional, Tuple
 
@@ -54,27 +55,32 @@ class Inputs:
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
+        self._arrived = threading.Condition()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
         rospy.Subscriber("odom", Odometry, self._on_odom)
         rospy.Subscriber("scan", LaserScan, self._on_scan)
 
     def _on_odom(self, message: Odometry) -> None:
-        self.odom = _received(message, self.odom)
+        with self._arrived:
+            self.odom = _received(message, self.odom)
+            self._arrived.notify_all()
 
     def _on_scan(self, message: LaserScan) -> None:
         received = _received(message, self.scan)
         clearance = self._clearance_in(message)
-        if clearance is None or not math.isnan(clearance):
-            self.valid_scan = received
-        self.scan = received  # last: who waits for it in await_tick reads the valid scan next
+        with self._arrived:
+            if clearance is None or not math.isnan(clearance):
+                self.valid_scan = received
+            self.scan = received
+            self._arrived.notify_all()
 
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
-        wait_until(
-            lambda: all(topic is None or topic.is_newest_at(tick_ns) for topic in (self.odom, self.scan)),
-            LOCKSTEP_PATIENCE,
-            poll=0.0005,
-        )
+        with self._arrived:
+            self._arrived.wait_for(
+                lambda: all(topic is None or topic.is_newest_at(tick_ns) for topic in (self.odom, self.scan)),
+                LOCKSTEP_PATIENCE,
+            )
 
     def missing(self, now: float, started: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.

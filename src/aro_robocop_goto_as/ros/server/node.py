@@ -17,6 +17,7 @@ from ...goto import Outcome
 from ...params import GotoParams
 from .. import convert, params, private_api
 from ..node_main import node
+from ..publishing import publisher
 from ..ticker import Ticker
 from ..timer import start_timer
 from . import markers
@@ -46,7 +47,7 @@ class GotoServer:
         self.logged_z = False
         self.stopping = threading.Event()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        self.answers = rospy.Publisher("tick_answer", TickAnswer, queue_size=10, tcp_nodelay=True)
+        self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
         self.server = GoalServer(GoToPositionResult(False, BUMPED.message))
         self.loop = threading.Thread(target=self._control_loop, name="control loop", daemon=True)
