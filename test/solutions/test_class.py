@@ -17,7 +17,7 @@ import pytest
 from graded import RIGHT
 from processes import busy_processes, processes_mentioning
 
-PATIENCE = 60.0  # [s, wall]
+PATIENCE = 120.0  # [s, wall]
 PLAN = """
 limits: {}
 scenarios:
