@@ -8,10 +8,10 @@ import unittest
 import actionlib
 import rospy
 import tf2_ros
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionResult
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionActionGoal, GoToPositionResult
 from clicks import Clicks
-from geometry_msgs.msg import Transform, TransformStamped
-from harness import ACTION, BRIDGE, run, wait_for, wait_for_subscriber
+from geometry_msgs.msg import Point, Transform, TransformStamped
+from harness import ACTION, BRIDGE, Recorder, run, wait_for, wait_for_subscriber
 from nav_msgs.msg import Odometry
 from std_msgs.msg import Header
 
@@ -88,9 +88,9 @@ class BridgeWaits(unittest.TestCase):
                 return any(all(part in m.data for part in parts) for m in clicks.status.messages)
 
             wait_for(refused, f"a refusal that says {problem!r}")
-        clicks.status.clear()
+        sent = Recorder(f"{ACTION}/goal", GoToPositionActionGoal)
         clicks.click(0.75, 0.25, "odom")
-        clicks.wait_for_status("goal x 0.75 y 0.25")
+        sent.wait_for(lambda m: m.goal.position == Point(0.75, 0.25, 0.0), "the next goal")
 
 
 if __name__ == "__main__":
