@@ -29,6 +29,11 @@ From a world file to a scan:
     raycast.fleet                 + robot poses -> exact distances along all beams
     sensors.lidar                 noise, range limits -> ranges
 
+From the system to a browser and back, by viser:
+
+    ros.web.topics                topics, tf -> ros.web.view -> web.scene, web.page
+    web.page                      clicks, buttons, keys -> ros.web.commands -> topics, services
+
 Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component gets
 its own small set from `component_params`. `process` is about operating system processes, `bootstrap` runs before
 anything is installed, `hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the

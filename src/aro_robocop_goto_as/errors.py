@@ -70,6 +70,12 @@ class MasterError(RobocopError):
     code = "MASTER"
 
 
+class WebError(RobocopError):
+    """The web page can't be served at its address."""
+
+    code = "WEB"
+
+
 # -- Measurements: name a case that exists, or look at the process that the message names. --
 
 

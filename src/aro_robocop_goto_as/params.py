@@ -298,3 +298,19 @@ class BridgeParams:
     def conflicts(self) -> List[str]:
         """Frame names that tf2 would refuse, in words; empty when there are none."""
         return frame_problems("goal_frame", self.goal_frame) + frame_problems("default_frame", self.default_frame)
+
+
+@dataclass(frozen=True)
+class WebParams:
+    """Arguments of robocop_web, given as NAME:=VALUE; docs/web.md documents each one."""
+
+    web_host: str = "127.0.0.1"
+    web_port: int = parameter(8080, low=1, high=65535)
+    web_frame: str = "map"
+    web_origins: str = ""
+    web_linear_velocity: float = positive(0.2, high=100.0)
+    web_angular_velocity: float = positive(1.0, high=100.0)
+
+    def conflicts(self) -> List[str]:
+        """A frame name that tf2 would refuse, in words; empty when there is none."""
+        return frame_problems("web_frame", self.web_frame)

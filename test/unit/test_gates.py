@@ -36,12 +36,14 @@ ORDER = {
     "sensors": "component_params geometry physics raycast robot world",
     "params": "component_params param_loading sensors",
     "goto": "geometry params robot",
+    "web": "errors geometry world",
     "simulation": "component_params errors geometry params physics raycast robot sensors world",
     "hosting": "errors process",
     "ros": "component_params errors geometry param_loading process robot sensors simulation world",
     "ros.sim": "component_params errors geometry params robot ros sensors simulation world",
     "ros.server": "errors geometry goto params ros simulation",
     "ros.client": "errors geometry params ros",
+    "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
     "ros.cli": "bootstrap errors geometry hosting params process robot ros ros.client",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
@@ -53,7 +55,8 @@ ROSDEP_KEYS = {
     name: f"python3-{name}" for name in ("jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
 }
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
-OPTIONAL = {"gazebo_msgs", "distributed"}  # imported on request only: in compat/, in deb-packages/class.txt
+# Imported on request only: in compat/, in deb-packages/class.txt, in requirements-web.txt.
+OPTIONAL = {"gazebo_msgs", "distributed", "viser", "websockets"}
 PUBLIC_DESPITE_THEIR_NAMES = ("_exit", "_replace")  # of os and of named tuples: in Python's documentation
 IMPORT_WITHOUT_ROS = """
 import importlib, sys

@@ -1,14 +1,17 @@
-"""Everything that uses private parts of rospy, actionlib, roslaunch and argparse, each with the reason."""
+"""Everything that uses private parts of rospy, actionlib, roslaunch, viser and argparse, each with the reason."""
 
 import argparse
 import contextlib
 import re
 import socket
 import threading
-from typing import Any, Callable, List, Optional, Set, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Union
 
 import actionlib
 import rospy
+
+LARGEST_REQUEST = 1 << 20  # [byte] that a page may send at once
+
 
 # -- rospy --
 
@@ -169,6 +172,37 @@ def install_roslaunch_signal_handlers() -> None:
     from roslaunch import pmon  # here, because its import takes long and most nodes don't need it
 
     pmon._init_signal_handlers()
+
+
+# -- viser --
+
+
+@contextlib.contextmanager
+def checked_requests(refusal: Callable[[Any], str], headers: Dict[str, str]) -> Iterator[None]:
+    """A viser server made in this block answers only HTTP requests for which `refusal` returns an empty string.
+
+    Every answer gets these headers. viser passes no such options on to websockets' serve(), which it calls before its
+    constructor returns.
+    """
+    from websockets.asyncio import server as websockets_server  # not installed where the page has never been used
+
+    serve = websockets_server.serve
+
+    def checking_serve(*arguments: Any, process_request: Any, **options: Any) -> Any:
+        def process(connection: Any, request: Any) -> Any:
+            reason = refusal(request.headers)
+            response = connection.respond(403, reason + "\n") if reason else process_request(connection, request)
+            if response is not None:
+                response.headers.update(headers)
+            return response
+
+        return serve(*arguments, process_request=process, **{**options, "max_size": LARGEST_REQUEST})
+
+    setattr(websockets_server, "serve", checking_serve)  # noqa: B010  mypy refuses to assign to a module's function
+    try:
+        yield
+    finally:
+        setattr(websockets_server, "serve", serve)  # noqa: B010
 
 
 # -- argparse --

@@ -1,0 +1,211 @@
+"""robocop_web: shows the system in a browser, and sends what a visitor asks for."""
+
+import contextlib
+import io
+import os
+import socket
+import sys
+import threading
+import time
+from typing import Any, Callable, Dict, Sequence
+
+import rospkg
+import rospy
+import yaml
+
+from ...errors import ParameterError, RobocopError, WebError
+from ...geometry import Twist2D
+from ...param_loading import from_dict
+from ...params import WebParams
+from ...web import access
+from ...web.dead_man import DeadMan
+from ...web.page import Actions, Page
+from ...web.scene import Scene
+from .. import private_api
+from ..node_main import node
+from .commands import Commands, Driver
+from .view import View
+from .watch import MasterWatch, problem_of_master
+
+NAME = "robocop_web"
+RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
+IDLE_PERIOD = 1.0  # [s, wall] between two looks without a visitor
+MASTER_PERIOD = 1.0  # [s, wall]
+
+
+def load_params(arguments: Sequence[str]) -> WebParams:
+    """Arguments NAME:=VALUE -> parameters, without those of ROS, as __name:=x; ParameterError for what is wrong."""
+    raw: Dict[str, Any] = {}
+    for argument in arguments:
+        name, given, value = argument.partition(":=")
+        if not given:
+            raise ParameterError(f"arguments of {NAME}: expected NAME:=VALUE, got {argument!r}")
+        if name.startswith("_") or not value:
+            continue
+        try:
+            raw[name] = value if name in ("web_host", "web_frame", "web_origins") else yaml.safe_load(value)
+        except yaml.YAMLError as error:
+            raise ParameterError(f"arguments of {NAME}: {name}: {error}") from error
+    return from_dict(WebParams, raw, f"arguments of {NAME}")
+
+
+def start_server(p: WebParams) -> Any:
+    """The page's HTTP and WebSocket server; WebError if its address can't be used."""
+    try:
+        import viser
+    except ImportError as error:
+        raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
+    _require_free(p.web_host, p.web_port)
+    names, origins = [socket.gethostname(), p.web_host], p.web_origins.split()
+
+    def refusal(headers: Any) -> str:
+        return access.refusal(headers.get_all("Host"), headers.get_all("Origin"), names, origins)
+
+    answers = {
+        "Content-Security-Policy": access.CONTENT_POLICY,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+    }
+    with private_api.checked_requests(refusal, answers):
+        with contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
+            server = viser.ViserServer(host=p.web_host, port=p.web_port, label="robocop", verbose=False)
+    if server.get_port() != p.web_port:  # viser goes on to the next port that is free
+        server.stop()
+        raise WebError(f"port {p.web_port} was taken just now by another program; choose another one with web_port:=N")
+    return server
+
+
+def _require_free(host: str, port: int) -> None:
+    try:
+        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
+            with socket.socket(family, kind, protocol) as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                probe.bind(address)
+    except OSError as error:
+        raise WebError(
+            f"can't open {host}:{port}: {error.strerror or error}; choose another address with web_host:=ADDRESS, "
+            "or another port with web_port:=N"
+        ) from error
+
+
+class WebNode:
+    """Connects the page with ROS. Visitors' requests arrive in viser's threads; everything else is done by `run`."""
+
+    def __init__(self, server: Any, p: WebParams) -> None:
+        import viser
+
+        self._p = p
+        self._server = server
+        self._wake = threading.Event()
+        self._registered = False  # with a ROS master
+        self._wanted = ""  # the robot that was chosen last
+        self._commands = Commands()
+        self._driver = Driver(DeadMan(), p.web_linear_velocity, p.web_angular_velocity)
+        actions = Actions(
+            click=self._with_ros(self._click),
+            drive=self._with_ros(self._drive),
+            release=self._driver.release,
+            stop=self._driver.stop,
+            cancel=self._with_ros(lambda: self._commands.cancel(self._wanted)),
+            pause=self._with_ros(self._commands.pause),
+            step=self._with_ros(self._commands.step),
+            reset=self._with_ros(self._commands.reset),
+            set_factor=self._with_ros(self._commands.set_factor),
+            select=self._select,
+            visitors=self._wake.set,
+        )
+        self._page = Page(server, viser, actions)
+        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack())
+
+    def _with_ros(self, action: Callable[..., None]) -> Callable[..., None]:
+        """The action, ignored until this node is registered with a master; the page says that it is waiting."""
+
+        def act(*arguments: Any) -> None:
+            if self._registered:
+                action(*arguments)
+
+        return act
+
+    # -- requests --
+
+    def _click(self, x: float, y: float, place: bool) -> None:
+        if place:
+            pose = self._view.robot_pose
+            yaw = 0.0 if pose is None else pose.on_plane().yaw
+            self._commands.place(self._wanted, self._p.web_frame, x, y, yaw, self._view.system.sim is not None)
+        else:
+            self._commands.send_goal(self._wanted, self._p.web_frame, x, y)
+
+    def _drive(self, page: int, share: Twist2D) -> None:
+        if self._driver.drive(page, self._wanted, share) and self._view.executing:
+            self._commands.cancel(self._wanted)  # or the server would go on commanding the robot as well
+
+    def _select(self, robot: str) -> None:
+        self._wanted = robot
+        self._wake.set()
+
+    # -- the main thread --
+
+    def wait_for_master(self) -> None:
+        """Return when a ROS master answers; meanwhile the page says that there is none."""
+        while True:
+            problem = problem_of_master()
+            if not problem:
+                self._page.show_alert("")
+                return
+            self._page.show_alert(f"Waiting for ROS: {problem}.")
+            time.sleep(MASTER_PERIOD)
+
+    def run(self) -> bool:
+        """Serve until shutdown; True if the master has been replaced by one that does not know this node."""
+        watch, view = MasterWatch(), self._view
+        self._registered = True
+        rospy.on_shutdown(self._driver.end)
+        while not rospy.is_shutdown():
+            if watch.forgotten and not watch.problem:
+                return True
+            robots = watch.robots or ("",)
+            if self._wanted not in robots:
+                self._wanted = robots[0]
+            if self._page.visited:
+                view.open()
+                with self._server.atomic():
+                    view.update(robots, self._wanted, watch.problem, self._commands.answer)
+                time.sleep(1.0 / RATE)
+            else:
+                view.close()
+                view.watch_goals(robots)
+                self._wake.wait(IDLE_PERIOD)
+                self._wake.clear()
+        return False
+
+
+def warn_of_strangers(p: WebParams) -> None:
+    """A page that other machines can reach lets them drive the robot."""
+    if not access.is_loopback(p.web_host):
+        rospy.logwarn(
+            "the page can be opened from every machine that reaches %s:%d, without a password, and so the robot can be "
+            "driven from there",
+            p.web_host,
+            p.web_port,
+        )
+
+
+def main() -> None:
+    """Serve the page until a signal; begin anew when the ROS master was replaced, since rospy registers only once."""
+    try:
+        p = load_params(sys.argv[1:])
+        server = start_server(p)
+    except RobocopError as error:
+        sys.exit(f"{NAME}: {error.code}: {error}")
+    host = "localhost" if access.is_loopback(p.web_host) else p.web_host
+    print(f"{NAME}: open http://{host}:{p.web_port} in a browser", flush=True)
+    web = WebNode(server, p)
+    web.wait_for_master()
+    replaced = False
+    with node(NAME, disable_rostime=True):  # wall time: the page is alive while simulated time stands still
+        warn_of_strangers(p)
+        replaced = web.run()
+    server.stop()
+    if replaced:
+        os.execv(sys.executable, [sys.executable, *sys.argv])

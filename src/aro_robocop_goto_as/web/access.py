@@ -1,0 +1,65 @@
+"""Which HTTP and WebSocket requests the page answers: those of a page that it served itself, and no others."""
+
+import ipaddress
+from typing import Optional, Sequence
+from urllib.parse import urlsplit
+
+LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
+# Nothing from other servers, and not inside another site's frame. The page's one file holds its scripts and styles;
+# viser decodes messages in a WebAssembly module, in workers made from blobs, and compiles functions at run time.
+CONTENT_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval' blob:; worker-src blob:; "
+    "style-src 'unsafe-inline'; img-src 'self' data: blob:; font-src data:; connect-src 'self' ws: wss: data: blob:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
+def refusal(hosts: Sequence[str], origins: Sequence[str], names: Sequence[str], allowed: Sequence[str]) -> str:
+    """Why a request is refused, or an empty string.
+
+    hosts, origins: all values of the request's headers Host and Origin
+    names: host names that mean this machine, besides localhost and any numeric address
+    allowed: further origins, as https://host:port, such as that of a proxy
+
+    A page of another site has another origin. A site whose name was made to point to this machine (DNS rebinding) has
+    the origin of its Host header, but that is a name which does not belong here.
+    """
+    if len(origins) > 1 or len(hosts) != 1:
+        return "expected one Host and at most one Origin header"
+    if not _is_ours(hosts[0], names):
+        return f"the host {hosts[0]!r} is not this machine"
+    if not origins or origins[0] in allowed:
+        return ""
+    origin = urlsplit(origins[0])
+    if origin.scheme in ("http", "https") and origin.netloc.lower() == hosts[0].lower():
+        return ""
+    return f"requests from {origins[0]!r} are not answered"
+
+
+def _is_ours(host: str, names: Sequence[str]) -> bool:
+    name = _host_name(host)
+    if name is None:
+        return False
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return name in LOOPBACK_NAMES or name in [known.lower() for known in names]
+    return True
+
+
+def _host_name(host: str) -> Optional[str]:
+    """The name without the port, in lower case; None if the header is malformed."""
+    try:
+        return urlsplit("//" + host).hostname
+    except ValueError:
+        return None
+
+
+def is_loopback(address: str) -> bool:
+    """Whether a server bound to this address can be reached from this machine only."""
+    if address.lower() in LOOPBACK_NAMES:
+        return True
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return False

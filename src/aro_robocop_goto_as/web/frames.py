@@ -1,0 +1,57 @@
+"""The newest transforms between frames.
+
+Not tf2's buffer: that refuses everything older than what it holds, so after a restart of the simulator, whose time
+begins at zero again, it would stay with the poses of the run before.
+"""
+
+from typing import Dict, List, Optional, Tuple
+
+from ..geometry import Pose3D, compose3, inverse3
+
+LONGEST_CHAIN = 100  # frames from a root to a leaf; longer ones are loops
+
+
+class FrameTree:
+    """Frames with their parents, whatever the age of the transforms. Writes of single entries are atomic."""
+
+    def __init__(self) -> None:
+        self._parents: Dict[str, Tuple[str, Pose3D]] = {}
+
+    def update(self, parent: str, child: str, parent_from_child: Pose3D) -> None:
+        """Store a transform in place of the child's former one."""
+        self._parents[child] = (parent, parent_from_child)
+
+    def clear(self) -> None:
+        """Forget all frames."""
+        self._parents = {}
+
+    def names(self) -> List[str]:
+        """All frames, sorted."""
+        parents = dict(self._parents)
+        return sorted({*parents, *(parent for parent, _ in parents.values())})
+
+    def knows(self, frame: str) -> bool:
+        """Whether a transform to or from the frame has been received."""
+        parents = dict(self._parents)
+        return frame in parents or any(parent == frame for parent, _ in parents.values())
+
+    def lookup(self, target: str, source: str) -> Optional[Pose3D]:
+        """target_from_source, or None if the frames are not connected."""
+        if target == source:
+            return Pose3D()
+        to_target, to_source = self._chain(target), self._chain(source)
+        for number, (frame, from_source) in enumerate(to_source):
+            for ancestor, from_target in to_target:
+                if ancestor == frame:
+                    return compose3(inverse3(from_target), from_source) if ancestor != target else from_source
+            if number >= LONGEST_CHAIN:
+                break
+        return None
+
+    def _chain(self, frame: str) -> List[Tuple[str, Pose3D]]:
+        """The frame and its ancestors, each with ancestor_from_frame."""
+        chain = [(frame, Pose3D())]
+        while len(chain) < LONGEST_CHAIN and frame in self._parents:
+            frame, pose = self._parents[frame]
+            chain.append((frame, compose3(pose, chain[-1][1])))
+        return chain

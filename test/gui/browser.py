@@ -1,0 +1,94 @@
+"""A real Chromium that shows the web page: clicks on the floor, on buttons and keys, texts, and errors it reports."""
+
+import contextlib
+import math
+import re
+
+import numpy as np
+from desktop import DEADLINE, wait_for
+from playwright.sync_api import sync_playwright
+
+from aro_robocop_goto_as.web.page import CAMERA, FIELD, LOOK_AT
+
+CHROMIUM = "/usr/bin/chromium"
+# WebGL without a graphics card, and no connections of the browser's own.
+FLAGS = (
+    "--no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --disable-background-networking "
+    "--disable-component-update --disable-sync --no-first-run --disable-quic --ignore-gpu-blocklist"
+).split()
+SIZE = (900, 620)  # [pixel]; software rendering takes as long as there are pixels
+
+
+@contextlib.contextmanager
+def chromium():
+    """A browser without windows."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, timeout=DEADLINE * 1000)
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+class Tab:
+    """One tab with the web page, and everything that it complained about or asked other servers for."""
+
+    def __init__(self, browser, url, size=SIZE):
+        self.url = url
+        self.size = size
+        self.errors = []
+        self.foreign = []
+        self.page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+        self.page.set_default_timeout(DEADLINE * 1000)
+        self.page.on("console", lambda message: message.type == "error" and self.errors.append(message.text))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("request", lambda request: self._note(request.url))
+        self.page.on("websocket", lambda socket: self._note(socket.url))
+        self.page.goto(url)
+
+    def _note(self, url):
+        if not url.startswith(("data:", "blob:")) and re.sub(r"^ws:", "http:", url).rstrip("/") != self.url:
+            self.foreign.append(url)
+
+    def close(self):
+        """Close the tab."""
+        self.page.close()
+
+    def text(self):
+        """All text of the panel."""
+        return self.page.inner_text("body")
+
+    def wait_for_text(self, pattern, deadline=DEADLINE):
+        """Wait until the panel's text matches a regular expression."""
+        wait_for(
+            lambda: re.search(pattern, self.text()), f"text {pattern!r} on the page, which says {self.text()}", deadline
+        )
+
+    def button(self, label):
+        """A button of the panel."""
+        return self.page.get_by_role("button", name=label, exact=True)
+
+    def pixel(self, x, y):
+        """Where the initial camera shows a point of the floor [m]: columns from the left, rows from the top."""
+        ahead = np.subtract(LOOK_AT, CAMERA)
+        ahead = ahead / np.linalg.norm(ahead)
+        right = np.cross(ahead, (0.0, 0.0, 1.0))
+        right = right / np.linalg.norm(right)
+        seen = np.subtract((x, y, 0.0), CAMERA)
+        scale = self.size[1] / 2.0 / math.tan(FIELD / 2.0) / (seen @ ahead)
+        return self.size[0] / 2.0 + scale * (seen @ right), self.size[1] / 2.0 - scale * (seen @ np.cross(right, ahead))
+
+    def click_floor(self, x, y):
+        """Click on a point of the floor [m], which nothing on the screen may cover."""
+        self.page.mouse.click(*self.pixel(x, y))
+
+    @contextlib.contextmanager
+    def held(self, label):
+        """Hold a button with the mouse during the block."""
+        box = self.button(label).bounding_box()
+        self.page.mouse.move(box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0)
+        self.page.mouse.down()
+        try:
+            yield
+        finally:
+            self.page.mouse.up()
