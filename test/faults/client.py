@@ -1,0 +1,193 @@
+"""An action client of the campaign's own, on raw topics: it believes no library about what became of a goal."""
+
+import collections
+import itertools
+import math
+
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
+from geometry_msgs.msg import PoseStamped, Twist
+from nav_msgs.msg import Odometry
+from system import BRIDGE, SERVER, SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
+
+TERMINAL = {
+    GoalStatus.PREEMPTED: "PREEMPTED",
+    GoalStatus.SUCCEEDED: "SUCCEEDED",
+    GoalStatus.ABORTED: "ABORTED",
+    GoalStatus.REJECTED: "REJECTED",
+    GoalStatus.RECALLED: "RECALLED",
+}
+STATES_OF = {  # the terminal states that belong to the first word of a result
+    "REACHED": ("SUCCEEDED",),
+    "PREEMPTED": ("PREEMPTED", "RECALLED"),
+    **dict.fromkeys(
+        ("OBSTACLE", "STUCK", "TIMEOUT", "NO_ODOM", "NO_SCAN", "BAD_GOAL", "SHUTDOWN", "ERROR"), ("ABORTED",)
+    ),
+}
+FORGOTTEN = GoalStatus.RECALLING  # of a goal that is cancelled so late that actionlib has forgotten it
+SLOWEST = 0.003, 0.02  # [m/s], [rad/s] at rest
+
+
+class _Lists(dict):
+    """Lists by goal id; one that is looked up before it exists is found empty, and only `add` makes one."""
+
+    def __missing__(self, _goal):
+        return ()
+
+    def add(self, goal, value):
+        """Append a value to a goal's list; called from one thread."""
+        self.setdefault(goal, []).append(value)
+
+
+class Client:
+    """One robot: sends goals to its server, records what is said about them and how the robot moves."""
+
+    def __init__(self, system, namespace=""):
+        prefix = f"/{namespace}" if namespace else ""
+        self._system = system
+        self.namespace = namespace
+        self.action = f"{prefix}/robocop_goto_as"
+        self.server = f"{prefix}/{SERVER}"
+        self.numbers = itertools.count(1)
+        self.sent = 0
+        self.odom = self.position = None
+        self.ended_at = 0.0  # [s] simulated, of the last result
+        self.truth = collections.deque(maxlen=3000)  # (stamp [s], v [m/s], w [rad/s])
+        self.commands = collections.deque(maxlen=3000)
+        self.forget()
+        self.goal_topic = publisher(f"{self.action}/goal", GoToPositionActionGoal)
+        self.cancel_topic = publisher(f"{self.action}/cancel", GoalID)
+        self.click_topic = publisher(f"{prefix}/move_base_simple/goal", PoseStamped)
+        rospy.Subscriber(f"{self.action}/result", GoToPositionActionResult, self._on_result)
+        rospy.Subscriber(f"{self.action}/status", GoalStatusArray, self._on_status)
+        rospy.Subscriber(f"{self.action}/feedback", GoToPositionActionFeedback, self._on_feedback)
+        rospy.Subscriber(f"{self.action}/goal", GoToPositionActionGoal, self._on_goal)
+        rospy.Subscriber(f"{prefix}/cmd_vel", Twist, self.commands.append)
+        rospy.Subscriber(f"{prefix}/odom", Odometry, self._on_odom)
+        rospy.Subscriber(f"{prefix}/ground_truth_odom", Odometry, self._on_truth)
+
+    def forget(self):
+        """Forget all goals."""
+        self.expected = []  # ids of the goals that must have an ending
+        self.lost = set()  # ids of those whose server was ended before they were
+        self.clicked = []  # ids of goals of the bridge
+        self.results, self.states, self.feedback = _Lists(), _Lists(), _Lists()
+
+    # -- what arrives --
+
+    def _on_result(self, message):
+        self.ended_at = message.header.stamp.to_sec()
+        self.results.add(message.status.goal_id.id, message)
+
+    def _on_status(self, message):
+        for status in message.status_list:
+            if self.states[status.goal_id.id][-1:] != [status.status]:
+                self.states.add(status.goal_id.id, status.status)
+
+    def _on_feedback(self, message):
+        self.feedback.add(message.status.goal_id.id, message.feedback)
+
+    def _on_goal(self, message):
+        if BRIDGE in message.goal_id.id:
+            self.clicked.append(message.goal_id.id)
+
+    def _on_odom(self, message):
+        self.odom = message
+
+    def _on_truth(self, message):
+        twist, self.position = message.twist.twist, message.pose.pose.position
+        self.truth.append((message.header.stamp.to_sec(), twist.linear.x, twist.angular.z))
+
+    def restart_time(self):
+        """Forget the times of what was recorded: time starts again."""
+        self.ended_at = 0.0
+        self.truth.clear()
+
+    # -- connections --
+
+    def wait_for_server(self):
+        """Wait until the server that runs now is connected to this client."""
+        wanted = {f"{self.action}/{topic}" for topic in ("result", "status", "feedback")}
+        for topic in (self.goal_topic, self.cancel_topic):
+            wait_for(lambda topic=topic: is_connected(topic, self.server), f"{self.server} subscribes to {topic.name}")
+        wait_for(lambda: wanted <= connections_from(self._system, self.server), f"{self.server} sends its topics")
+
+    def wait_for_simulator(self):
+        """Wait until the simulator that runs now sends this robot's topics here, and its server has them too."""
+        prefix = f"/{self.namespace}" if self.namespace else ""
+        wanted = {f"{prefix}/{topic}" for topic in ("odom", "ground_truth_odom")}
+        wait_for(lambda: wanted <= connections_from(self._system, "/" + SIMULATOR), "the simulator sends its topics")
+
+    # -- goals --
+
+    def send(self, x, y, z=0.0, goal_id=None, stamp=None, expected=True):
+        """Send a goal in odom [m]; its id."""
+        message = GoToPositionActionGoal()
+        name = f"{rospy.get_name()}-{next(self.numbers)}" if goal_id is None else goal_id
+        message.goal_id = GoalID(rospy.Time() if stamp is None else stamp, name)
+        message.goal.position.x, message.goal.position.y, message.goal.position.z = x, y, z
+        if expected and name not in self.expected:
+            self.expected.append(name)
+            self.sent += 1
+        self.goal_topic.publish(message)
+        return name
+
+    def send_near(self, rng, farthest=0.5):
+        """Send a goal at a random place near the robot."""
+        return self.send(*self.place_near(rng, farthest))
+
+    def place_near(self, rng, farthest=0.5):
+        """A random place near the robot, in odom [m]."""
+        here, q = self.odom.pose.pose.position, self.odom.pose.pose.orientation
+        widest = math.pi if rng.random() < 0.1 else 0.5  # to turn around takes longer than to drive there
+        angle = 2.0 * math.atan2(q.z, q.w) + rng.uniform(-widest, widest)
+        distance = rng.uniform(0.15, farthest)
+        return here.x + distance * math.cos(angle), here.y + distance * math.sin(angle)
+
+    def cancel(self, goal_id="", stamp=None):
+        """Cancel one goal, those up to a stamp, or all."""
+        self.cancel_topic.publish(GoalID(rospy.Time() if stamp is None else stamp, goal_id))
+
+    def lose_goals(self):
+        """The server is ended now: what has no result yet may never have one."""
+        self.lost.update(goal for goal in self.expected if not self.results[goal])
+
+    def all_ended(self):
+        """Whether each goal that must end has a result."""
+        return all(self.results[goal] for goal in self.expected if goal not in self.lost)
+
+    # -- invariants --
+
+    def require_one_ending_each(self):
+        """Violation unless every goal has exactly one result and terminal state, which agree."""
+        for goal in self.expected:
+            self._require_one_ending(goal)
+
+    def _require_one_ending(self, goal):
+        results, states = self.results[goal], self.states[goal]
+        if len(results) != 1 and not (goal in self.lost and not results):
+            raise Violation(f"goal {goal} has {len(results)} results: {[r.result.message for r in results]}")
+        ended = [state for state in states if state in TERMINAL]
+        after = states[states.index(ended[0]) + 1 :] if ended else []
+        if any(state != FORGOTTEN for state in after):
+            raise Violation(f"goal {goal} went through the states {states}")
+        for message in results:
+            word, _, text = message.result.message.partition(": ")
+            state = TERMINAL.get(message.status.status, message.status.status)
+            if state not in STATES_OF.get(word, ()) or not text or message.result.success != (word == "REACHED"):
+                raise Violation(f"goal {goal} ended {state}, success {message.result.success}: {message.result}")
+            if ended and ended != [message.status.status]:
+                raise Violation(f"goal {goal}: result {state}, but status {states}")
+
+    def word(self, goal):
+        """The first word of a goal's result."""
+        return self.results[goal][0].result.message.partition(": ")[0]
+
+    def require_rest_since(self, stamp):
+        """Violation if the robot has moved since a simulated time [s]."""
+        v_max, w_max = SLOWEST
+        since = [(v, w) for time, v, w in list(self.truth) if time >= stamp]
+        moving = [(v, w) for v, w in since if abs(v) > v_max or abs(w) > w_max]
+        if moving:
+            raise Violation(f"robot {self.namespace!r} moves after {stamp:.2f} s, when it should rest: {moving[-1]}")

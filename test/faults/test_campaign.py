@@ -1,0 +1,96 @@
+"""The fault campaign: goals, data, time, processes and surroundings go wrong, and every goal still ends exactly once.
+
+./robocop test test/faults --all --faults 10000     so many goals, in all configurations, with the costly faults
+./robocop test test/faults --episode CONFIGURATION/SEED/NUMBER     one episode again, as a violation names it
+
+Each campaign is a process, because it needs a ROS master of its own, which it may kill.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CAMPAIGN = Path(__file__).with_name("campaign.py")
+QUICK = ("messages", "lockstep-kinematic-one")
+OTHERS = tuple(
+    f"{mode}-{drive}-{robots}"
+    for mode in ("lockstep", "free")
+    for drive in ("kinematic", "wheels")
+    for robots in ("one", "two")
+    if f"{mode}-{drive}-{robots}" not in QUICK
+)
+SECONDS_PER_GOAL = 3.0  # [s, wall] a deadline for the slowest configuration on a busy machine
+
+
+def run(tmp_path, capsys, configuration, goals, *options):
+    """One campaign: its table is printed, its violations fail the test; the report."""
+    command = [sys.executable, CAMPAIGN, "--configuration", configuration, "--goals", goals, "--folder", tmp_path]
+    done = subprocess.run(
+        [str(word) for word in (*command, *options)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=240.0 + SECONDS_PER_GOAL * goals,
+    )
+    with capsys.disabled():
+        print(f"\n{configuration}\n{done.stdout}")
+    assert done.returncode == 0, done.stdout
+    return json.loads((tmp_path / "report.json").read_text())
+
+
+def goals_each(request, default):
+    """How many goals each configuration gets."""
+    goals = request.config.getoption("--faults")
+    return default if goals is None else -(-goals // len(QUICK + OTHERS))
+
+
+@pytest.fixture
+def only_episode(request):
+    return request.config.getoption("--episode")
+
+
+@pytest.mark.parametrize("configuration", QUICK)
+def test_every_goal_ends_once_and_the_robot_stops_whatever_goes_wrong(
+    request, tmp_path, capsys, only_episode, configuration
+):
+    full = ["--full"] if request.config.getoption("--all") else []
+    if only_episode:
+        name, seed, number = only_episode.split("/")
+        if name == configuration or (configuration == QUICK[0] and name in OTHERS):
+            run(tmp_path, capsys, name, 1, "--seed", seed, "--episode", number, "--full")
+        return
+    goals = goals_each(request, 150)
+    report = run(tmp_path, capsys, configuration, goals, *full)
+    assert report["goals"] >= goals
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(0)
+@pytest.mark.parametrize("configuration", OTHERS)
+def test_every_goal_ends_once_with_other_drives_robots_and_in_free_time(
+    request, tmp_path, capsys, only_episode, configuration
+):
+    if not only_episode:
+        run(tmp_path, capsys, configuration, goals_each(request, 60), "--full")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "mistake, found",
+    [
+        ("second_result", "has 2 results"),
+        ("no_stop", "when it should rest"),
+        ("wrong_word", "success"),
+        ("traceback", "a traceback in aro_robocop_goto_as_node.log"),
+        ("leak", "file descriptors grew"),
+    ],
+)
+def test_campaign_finds_a_server_with_a_mistake(tmp_path, mistake, found):
+    command = [sys.executable, CAMPAIGN, "--goals", 40, "--folder", tmp_path, "--mistake", mistake]
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, text=True, timeout=240.0)
+    assert done.returncode == 1
+    (violation,) = json.loads((tmp_path / "report.json").read_text())["violations"]
+    assert found in violation
