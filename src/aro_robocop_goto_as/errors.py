@@ -116,5 +116,9 @@ class WatchError(GradingSetupError):
     """RViz can't show the run; the message says why."""
 
 
+class UngradableError(GradingError):
+    """A run was ended from outside, twice: neither the submission nor the grader is known to be the reason."""
+
+
 class GraderLostError(GradingError):
     """The submission ended the ROS master or the grader's node, so nothing that follows can be judged."""

@@ -153,3 +153,27 @@ def flood():
         topic.publish(log)
 threading.Thread(target=flood, daemon=True).start()
 """
+BUILD_NESTED = """
+import os
+for _ in range(1500):
+    os.mkdir('nested')
+    os.chdir('nested')
+import time
+time.sleep(30.0)
+"""
+BUILD_LONG_LINE = """
+import sys
+sys.stdout.write('x' * 50 * 2 ** 20 + chr(27) + '[2J')
+sys.exit(1)
+"""
+OWN_ROSLAUNCH = """#!/bin/sh
+echo '/own: [[[['
+"""
+KILLS_ITSELF = """
+import signal, threading
+def strike():
+    rospy.wait_for_message('/robocop_goto_as/goal', rospy.AnyMsg)
+    os.kill(os.getpid(), signal.SIGKILL)
+import os
+threading.Timer(1.0, strike).start()
+"""

@@ -4,68 +4,100 @@
 
 Wrong solutions run through the scenarios of the intended check, correct ones through all of them; `reference` is this
 package, built each time. The log holds a JSON object per grading; with an existing log the measurement is continued.
+
+    ... --whole --load 4
+
+grades wrong solutions by all checks, too, beside four processes that keep a processor busy. Reports of one solution,
+also those that the log has from other loads, that differ in the outcome or the cause of a check are listed.
 """
 
 import argparse
+import contextlib
 import json
 import multiprocessing
+import re
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
+
 from graded import PLAN, RIGHT, SHARE, STATE, graded, recorded, sandbox
+from processes import busy_processes
 from wrong_solutions import WRONG, Wrong
 
 from aro_robocop_goto_as.grading import judge
 from aro_robocop_goto_as.grading.grade_submission import grade_submission
-from aro_robocop_goto_as.grading.judge import Outcome
+from aro_robocop_goto_as.grading.judge import Grade, Outcome
 from aro_robocop_goto_as.grading.plan import load
 from aro_robocop_goto_as.grading.submission import prepare_submission
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 REFERENCE = "reference"
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 Entry = Dict[str, Any]
 
 
-def once(job: Tuple[str, int]) -> Entry:
+Job = Tuple[str, int, int, bool]  # name, load, number, by all checks
+
+
+def once(job: Job) -> Entry:
     """Grade a solution once."""
-    name, number = job
+    name, load_beside, number, whole = job
     started = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        words = _wrong(BY_NAME[name], Path(folder)) if name in BY_NAME else _right(name, Path(folder))
+        if name in BY_NAME:
+            words, grade = _wrong(BY_NAME[name], Path(folder), whole)
+        else:
+            words, grade = _right(name, Path(folder))
     return {
         "name": name,
+        "load": load_beside,
         "number": number,
         "seconds": round(time.monotonic() - started, 1),
         "right": not words,
         "words": words,
+        "report": {check.name: [check.outcome.value, check.failure and check.failure.cause] for check in grade.checks},
     }
 
 
-def _wrong(wrong: Wrong, folder: Path) -> List[str]:
-    """The explanation of the intended check, if it is not the expected one."""
+def _wrong(wrong: Wrong, folder: Path, whole: bool) -> Tuple[List[str], Grade]:
+    """The explanation of the intended check, if it is not the expected one; the grade."""
     plan = load(PLAN)
     check = next(check for check in plan.checks if check.name == wrong.check)
-    only = [name for name in check.scenarios if name != "start"] or ["no other"]
+    only = [] if whole else [name for name in check.scenarios if name != "start"] or ["no other"]
     run = recorded(wrong.text(), folder, only)
     grade = judge.judge(wrong.name, plan, {check.part: run.records}, {check.part: run.problem})
     result = next(result for result in grade.checks if result.name == wrong.check)
     expected = result.outcome is Outcome.FAILED and wrong.words in result.explanation()
-    return [] if expected else [result.explanation()]
+    return ([] if expected else [result.explanation()]), grade
 
 
-def _right(name: str, folder: Path) -> List[str]:
-    """The explanations of all checks that did not pass, including extra ones."""
+def _right(name: str, folder: Path) -> Tuple[List[str], Grade]:
+    """The explanations of all checks that did not pass, including extra ones; the grade."""
     if name == REFERENCE:
         opened = sandbox()
         submission = prepare_submission(str(SHARE), SHARE, STATE, folder, opened)
         grade = grade_submission(submission, load(PLAN), folder / "report", STATE, opened)
     else:
         grade = graded(name, RIGHT[name].read_text(), folder)
-    return [check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED]
+    return [check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED], grade
+
+
+def differences(entries: List[Entry]) -> List[str]:
+    """The checks of each solution that have several outcomes or causes, with all of them and how often each occurred.
+
+    Figures in a cause may differ.
+    """
+    seen: Dict[Tuple[str, str], Counter[str]] = {}
+    for entry in entries:
+        for check, (outcome, cause) in entry["report"].items():
+            seen.setdefault((entry["name"], check), Counter())[NUMBER.sub("#", f"{outcome}: {cause}")] += 1
+    return [f"{name}: {check}: {dict(found)}" for (name, check), found in sorted(seen.items()) if len(found) > 1]
 
 
 def table(entries: List[Entry]) -> str:
@@ -92,13 +124,21 @@ def repeat() -> None:
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--log", type=Path, required=True)
+    parser.add_argument("--whole", action="store_true", help="grade wrong solutions by all checks")
+    parser.add_argument("--load", type=int, default=0, help="processes that keep a processor busy meanwhile")
     args = parser.parse_args()
     names = args.names or list(BY_NAME)
     done = [json.loads(line) for line in args.log.read_text().splitlines()] if args.log.exists() else []
-    known = {(entry["name"], entry["number"]) for entry in done}
-    jobs = [(name, number) for number in range(args.times) for name in names if (name, number) not in known]
+    known = {(entry["name"], entry["load"], entry["number"]) for entry in done}
+    jobs = [
+        (name, args.load, number, args.whole)
+        for number in range(args.times)
+        for name in names
+        if (name, args.load, number) not in known
+    ]
     context = multiprocessing.get_context("spawn")  # a fresh process for each grading
-    with open(args.log, "a") as log, context.Pool(args.jobs, maxtasksperchild=1) as pool:
+    busy = busy_processes(args.load) if args.load else contextlib.nullcontext()
+    with busy, open(args.log, "a") as log, context.Pool(args.jobs, maxtasksperchild=1) as pool:
         for entry in pool.imap_unordered(once, jobs):
             print(json.dumps(entry), file=log, flush=True)
             done.append(entry)
@@ -106,7 +146,9 @@ def repeat() -> None:
                 print(f"NOT as expected: {entry}", file=sys.stderr, flush=True)
     mine = [entry for entry in done if entry["name"] in names]
     print(table(mine))
-    sys.exit(0 if all(entry["right"] for entry in mine) else 1)
+    different = differences(mine)
+    print("\n".join(["reports that differ:", *different] if different else ["no two reports of one solution differ"]))
+    sys.exit(0 if all(entry["right"] for entry in mine) and not different else 1)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,10 @@ import attacks
 import pytest
 from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.grading import skeleton
+from aro_robocop_goto_as.grading.grade_submission import grade_submission
+from aro_robocop_goto_as.grading.plan import load
 from aro_robocop_goto_as.grading.submission import prepare_submission
 
 BUDGET = 60.0  # [s, wall] for an attack's two scenarios
@@ -139,9 +141,80 @@ def test_named_pipe_created_by_the_build_is_refused_without_blocking(package, tm
         prepared(package, tmp_path / "workshop")
 
 
-def test_build_that_fills_the_disk_is_killed_with_a_reason(package, tmp_path):
-    (package / "attack.py").write_text(attacks.BUILD_FULL)
+def build_attack(package, code, then=""):
+    """Have the package's build run some code."""
+    (package / "attack.py").write_text(code)
     with open(package / "CMakeLists.txt", "a") as text:
-        text.write("execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/attack.py)\n")
-    with pytest.raises(GradingError, match="catkin_make was ended: it wrote more than 512 MB"):
+        text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/attack.py {then})\n")
+
+
+@pytest.mark.parametrize(
+    "name, reason",
+    [("BUILD_FULL", "it wrote more than 512 MB"), ("BUILD_NESTED", "it made more than 100 nested folders")],
+)
+def test_build_that_fills_or_nests_its_folder_is_killed_with_a_reason(name, reason, package, tmp_path):
+    build_attack(package, getattr(attacks, name))
+    with pytest.raises(GradingError, match=f"catkin_make was ended: {reason}"):
         prepared(package, tmp_path / "workshop")
+    subprocess.run(["rm", "-rf", tmp_path / "workshop"], check=True)
+
+
+def test_what_a_build_made_of_its_log_and_its_sources_does_not_stop_the_next_one(package, tmp_path):
+    workshop = tmp_path / "workshop"
+    prepared(package, workshop)
+    (folder,) = (path for path in workshop.iterdir() if path.is_dir())
+    (folder / "build.log").unlink()
+    (folder / "build.log" / "file").mkdir(parents=True)
+    (folder / "src").rename(folder / "elsewhere")
+    (folder / "src").symlink_to(folder / "elsewhere")
+    assert {script.part for script in prepared(package, workshop).scripts} == {"server", "bridge"}
+
+
+def test_endless_line_of_a_build_is_cut(package, tmp_path):
+    build_attack(package, attacks.BUILD_LONG_LINE, "COMMAND_ERROR_IS_FATAL ANY")
+    with pytest.raises(RobocopError) as caught:
+        prepared(package, tmp_path / "workshop")
+    assert "can't be built" in str(caught.value) and len(str(caught.value)) < 6_000
+
+
+@pytest.mark.parametrize(
+    "parameter, reason",
+    [
+        ('type="yaml" value="2024-01-31"', "/day: 2024-01-31 can't be a parameter"),
+        ('type="yaml" value="[12345678901234]"', r"/day: \[12345678901234\] can't be a parameter"),
+        ('type="yaml" value="{1: 2}"', "/day: {1: 2} can't be a parameter"),
+    ],
+)
+def test_parameter_that_the_parameter_server_does_not_take_is_named(parameter, reason, package, tmp_path):
+    launch = package / "launch" / "robocop_goto_as.launch"
+    launch.write_text(f'<launch><param name="day" {parameter}/></launch>')
+    with pytest.raises(GradingError, match=reason):
+        prepared(package, tmp_path / "workshop")
+
+
+def test_what_keeps_a_script_from_being_started_in_the_lab_is_noted(package, tmp_path):
+    script = next(package.rglob("robocop_goto_as.py"))
+    script.write_bytes(script.read_bytes().replace(b"\n", b"\r\n"))
+    script.chmod(0o644)
+    assert [note.partition(",")[0] for note in prepared(package, tmp_path / "workshop").notes] == [
+        "server: robocop_goto_as.py has no run bit",
+        "server: robocop_goto_as.py has Windows line ends (CRLF)",
+    ]
+
+
+def test_own_roslaunch_of_a_package_is_not_used(package, tmp_path):
+    (package / "roslaunch").write_text(attacks.OWN_ROSLAUNCH)
+    (package / "roslaunch").chmod(0o755)
+    hook = package / "path.sh"
+    hook.write_text(f"export PATH={package}:$PATH\n")
+    with open(package / "CMakeLists.txt", "a") as text:
+        text.write("catkin_add_env_hooks(path SHELLS sh DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})\n")
+    assert "/own" not in prepared(package, tmp_path / "workshop").parameters
+
+
+def test_node_that_is_killed_by_nobody_known_is_not_gradable(tmp_path):
+    text = RIGHT["base_server"].read_text().replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
+    (tmp_path / "solution.py").write_text(text)
+    submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
+    with pytest.raises(UngradableError, match="not gradable: the server was killed in scenario left by SIGKILL"):
+        grade_submission(submission, load(PLAN), tmp_path / "report", STATE, sandbox())

@@ -14,8 +14,12 @@ import time
 
 import distributed
 import pytest
+from distributed.security import Security
 from graded import RIGHT
 from processes import busy_processes, processes_mentioning
+
+from aro_robocop_goto_as.grading.classroom.cluster import connected
+from aro_robocop_goto_as.grading.classroom.worker import Place
 
 PATIENCE = 120.0  # [s, wall]
 PLAN = """
@@ -46,6 +50,21 @@ def group(tmp_path, count):
             text.replace("self.server.start()", "pass") if number % 3 == 2 else text
         )
     return folder
+
+
+@pytest.fixture
+def credentials(tmp_path):
+    """A key and its certificate in one file, made as docs/grading.md says."""
+    file = tmp_path / "grading.pem"
+    subprocess.run(
+        "openssl req -x509 -newkey rsa:2048 -nodes -days 7 -subj /CN=grading -keyout key.pem -out cert.pem "
+        "&& cat key.pem cert.pem > grading.pem && chmod 600 *.pem",
+        shell=True,
+        cwd=tmp_path,
+        check=True,
+        capture_output=True,
+    )
+    return file
 
 
 @pytest.fixture
@@ -103,7 +122,7 @@ def stamps(folder):
 
 def rows(folder):
     """The rows of the CSV table."""
-    with open(folder.parent / "results" / "grades.csv", newline="") as text:
+    with open(folder.parent / "results" / "grades.csv", newline="", encoding="utf-8-sig") as text:
         return list(csv.DictReader(text))
 
 
@@ -121,8 +140,10 @@ def expect_everybody_once(folder, count, output):
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)  # 30 hand-ins, and one worker left for most of them
-def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(group, count, start, tmp_path):
-    file = tmp_path / "scheduler.json"
+def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(group, count, start, credentials, tmp_path):
+    file, pem = tmp_path / "scheduler.json", str(credentials)
+    tls = ["--tls-ca-file", pem, "--tls-cert", pem, "--tls-key", pem]
+    security = Security(tls_ca_file=pem, tls_client_cert=pem, tls_client_key=pem, require_encryption=True)
     start(
         [
             sys.executable,
@@ -135,6 +156,9 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
             "--scheduler-file",
             str(file),
             "--no-dashboard",
+            *tls,
+            "--protocol",
+            "tls",
         ],
         stderr=subprocess.DEVNULL,
     )
@@ -156,14 +180,15 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
                 "0",
                 "--local-directory",
                 str(tmp_path),
+                *tls,
             ],
             stderr=subprocess.DEVNULL,
         )
         for name in ("first", "second")
     }
-    with distributed.Client(address, timeout=PATIENCE) as client:
+    with distributed.Client(address, timeout=PATIENCE, security=security) as client:
         client.wait_for_workers(2, timeout=PATIENCE)
-        grading = grade_class(start, group, "--scheduler", address)
+        grading = grade_class(start, group, "--scheduler", address, "--credentials", pem)
 
         def busy_worker():
             """The workers with a task, once there are some results."""
@@ -207,8 +232,33 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     assert all(stamps(group)[name] == done[name] for name in done)
 
 
-def test_unreachable_scheduler_is_reported(group, start):
+def test_unreachable_scheduler_is_reported(group, start, credentials):
+    grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1", "--credentials", str(credentials))
+    output, _ = grading.communicate(timeout=PATIENCE)
+    assert grading.returncode == 1
+    assert "no dask scheduler answers at tls://127.0.0.1:1" in output
+
+
+def test_scheduler_without_tls_is_refused(group, start):
     grading = grade_class(start, group, "--scheduler", "tcp://127.0.0.1:1")
     output, _ = grading.communicate(timeout=PATIENCE)
     assert grading.returncode == 1
-    assert "no dask scheduler answers at tcp://127.0.0.1:1" in output
+    assert "--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT" in output
+
+
+def test_local_scheduler_rejects_clients_without_the_key_of_the_run():
+    with connected(Place(workers=1)) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        for stranger in (address.replace("tls", "tcp"), address):
+            code = (
+                "import sys\nfrom distributed import Client\nfrom distributed.security import Security\n"
+                f"Client({stranger!r}, timeout=5.0, security={'Security.temporary()' if stranger == address else None})"
+                ".run_on_scheduler(print, 'SUCCESS')"
+            )
+            other = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+            done = subprocess.run(
+                [*other, "/usr/bin/python3", "-c", code], capture_output=True, text=True, timeout=PATIENCE, cwd="/tmp"
+            )
+            assert done.returncode != 0 and "OSError: Timed out" in done.stderr, done.stderr
+        assert client.submit(sum, [1, 2]).result(timeout=PATIENCE) == 3

@@ -101,6 +101,27 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
     assert processes_mentioning(scratch) == []
 
 
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["SOLUTION", "--plan", "/dev/zero"], "/dev/zero: expected an ordinary file"),
+        (["SOLUTION", "--report", "/proc/here"], "/proc/here: expected a folder that can be written to"),
+        (["/usr/bin/env"], "/usr/bin/env: expected a submission outside /usr"),
+        (["/"], "/: expected a submission outside /usr"),
+    ],
+)
+@pytest.mark.parametrize("program", ["robocop_grade.py", "robocop_grade_class.py"])
+def test_what_can_not_work_is_refused_before_anything_starts(program, arguments, words, tmp_path):
+    (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"].read_text())
+    of_class = program == "robocop_grade_class.py"
+    path = {"SOLUTION": str(tmp_path if of_class else tmp_path / "robocop_goto_as.py")}
+    words = words.replace("/usr/bin/env", "/usr/bin") if of_class else words
+    arguments = ["/usr/bin" if of_class and it == "/usr/bin/env" else path.get(it, it) for it in arguments]
+    done = command(program, *arguments)
+    assert done.returncode == 1
+    assert words in done.stderr and done.stderr.count("\n") == 1
+
+
 def test_without_bubblewrap_grading_is_refused_unless_unsafe_is_requested(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(GradingError, match="bubblewrap is not installed; --unsafe runs the submission without it"):

@@ -48,6 +48,11 @@ PREEMPTION = """            if self.server.is_preempt_requested():
 """
 VALID = "ahead[(ahead > msg.range_min) & (ahead < msg.range_max)]"
 
+STOP = "self.drive(0.0, 0.0)"
+# The velocity in force, for solutions that forget half of it when they stop.
+W = ("        msg.angular.z = w\n", "        msg.angular.z = self.w = w\n")
+V = ("        msg.linear.x = v\n", "        msg.linear.x = self.v = v\n")
+
 WRONG = (
     _server(
         "misspelt_name",
@@ -202,6 +207,25 @@ WRONG = (
             "        rate = rospy.Rate(10)\n        self.drive(0.2, 0.0)\n        rospy.sleep(1.0)\n",
         ),
     ),
+    _server(
+        "one_beam",
+        "stops_at_obstacle",
+        "ran into an obstacle",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[:1]"),
+    ),
+    _server(
+        "left_half_only",
+        "stops_at_obstacle",
+        "ran into an obstacle",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[:30]"),
+    ),
+    _server(
+        "right_half_only",
+        "stops_at_obstacle",
+        "ran into an obstacle",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[-30:]"),
+    ),
+    _server("mean_of_sector", "stops_at_obstacle", "ran into an obstacle", ("valid.min() if", "valid.mean() if")),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
     _server("obstacle_too_early", "stops_at_obstacle", "not 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
     _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),
@@ -270,6 +294,23 @@ WRONG = (
         "stands_at_end",
         "kept moving",
         ("    def stop(self):\n        self.drive(0.0, 0.0)", "    def stop(self):\n        pass"),
+    ),
+    _server(
+        "stops_only_driving", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(0.0, self.w)"), W
+    ),
+    _server(
+        "stops_only_turning", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(self.v, 0.0)"), V
+    ),
+    _server(
+        "preempted_only_while_driving",
+        "cancel",
+        "is_preempt_requested",
+        (
+            "            if self.server.is_preempt_requested():",
+            "            if self.pose_error < 0.1 and self.server.is_preempt_requested():",
+        ),
+        ("        self.count = 0\n", "        self.pose_error = 9.9\n"),
+        (ERROR, f"{ERROR}\n            self.pose_error = abs(angle_error)"),
     ),
     _server(
         "goes_on_after_cancel",
@@ -354,6 +395,19 @@ WRONG = (
             "        from nav_msgs.msg import Odometry\n        from std_msgs.msg import Float32\n"
             "        self.pub = rospy.Publisher('x', Float32, queue_size=1)\n"
             "        rospy.Subscriber('/odom', Odometry, lambda msg: self.pub.publish(msg.pose.pose.position.x))\n",
+        ),
+    ),
+    _bridge(
+        "bridge_pending_is_stopped",
+        "reports_status",
+        "While the goal is PENDING the bridge takes it for ended",
+        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
+        ("        if self.sent:\n", "        if self.timer:\n"),
+        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
+        (
+            "        rospy.loginfo('server",
+            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
+            "            self.timer = None\n            return\n        rospy.loginfo('server",
         ),
     ),
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),

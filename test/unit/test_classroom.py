@@ -5,13 +5,18 @@ import io
 import json
 import os
 import shutil
+import subprocess
+import tempfile
+import warnings
 import zipfile
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError
-from aro_robocop_goto_as.grading.classroom import overview
+from aro_robocop_goto_as.grading.classroom import overview, worker
 from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, unpack
 from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results, table
 from aro_robocop_goto_as.grading.classroom.worker import Done
@@ -170,8 +175,14 @@ RESULTS = (
 )
 
 
+def read(text):
+    """The rows of a table that starts with a byte order mark."""
+    assert text[0] == "\ufeff"
+    return list(csv.DictReader(io.StringIO(text[1:])))
+
+
 def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
-    rows = list(csv.DictReader(io.StringIO(table(RESULTS, PLAN))))
+    rows = read(table(RESULTS, PLAN))
     assert [row["name"] for row in rows] == ["'=anna", "ben", "carl"]
     assert [row["points"] for row in rows] == ["0.5", "0.0", "0"]
     assert {row["of"] for row in rows} == {"8.0"}
@@ -189,3 +200,66 @@ def test_the_overview_counts_checks_and_causes_and_escapes_them():
     assert "dora" in html
     assert "interrupted" in overview.page("class", RESULTS, PLAN, {"dora": "waiting"}, running=False)
     assert "http" not in overview.page("class", RESULTS, PLAN, {}, running=False)
+
+
+@given(st.text(), st.text())
+def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
+    text = table([Result(name, (), (problem,), 1.0)], PLAN, {name: problem})
+    assert len(read(text)) == 2
+    for separator in ",;\t":
+        for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):
+            for cell in row:
+                assert cell.isprintable()
+                assert not cell.lstrip(" '\"").startswith(("=", "+", "@", "\uff1d")) or cell.startswith("'")
+
+
+def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
+    (row,) = read(table([], PLAN, {"dora": "could not be graded: a worker died"}))
+    assert (row["name"], row["points"], row["problem"]) == ("dora", "", "could not be graded: a worker died")
+    assert row["of"] == "8.0" and not row["cancel"]
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    files=st.dictionaries(st.text(min_size=1), st.binary(max_size=20), max_size=5),
+    noise=st.binary(max_size=30),
+)
+def test_no_zip_stops_the_class(files, noise, tmp_path):
+    tmp_path = Path(tempfile.mkdtemp(dir=tmp_path))
+    with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a name that occurs twice
+        for name, content in files.items():
+            archive.writestr(name.encode("utf-8", "replace").decode(), content)
+    (tmp_path / "carl.zip").write_bytes(noise)
+    carl, eve = collect(tmp_path)[0]
+    assert carl.problem
+    assert bool(eve.problem) != bool(eve.digest)
+
+
+@pytest.mark.parametrize("kind", ["folder", "zip"])
+def test_deeply_nested_hand_in_states_the_reason(kind, tmp_path):
+    nested = "/".join("d" * 1500)
+    if kind == "zip":
+        with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive:
+            archive.writestr(f"{nested}/file", "")
+    else:
+        subprocess.run(["mkdir", "-p", f"eve/{nested[:2000]}"], cwd=tmp_path, check=True)
+    assert "expected at most 100 nested folders" in only(tmp_path).problem
+
+
+@pytest.mark.parametrize(
+    "error", [RecursionError("too deep"), TypeError("a date"), MemoryError(), OSError(7, "too long")]
+)
+def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, monkeypatch):
+    def fails(*_):
+        raise error
+
+    monkeypatch.setattr(worker, "open_sandbox", lambda *_: None)
+    monkeypatch.setattr(worker, "prepare_submission", fails)
+    monkeypatch.setattr(worker, "_scratch", lambda: None)
+    monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
+    monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
+    anna, _ = collect(folder)[0]
+    done = worker.work(worker.Task(anna, PLAN.path.read_text()))
+    report = json.loads(done.files["report.json"])
+    assert report["checks"] == [] and type(error).__name__ in report["problems"][0]

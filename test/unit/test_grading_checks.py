@@ -168,6 +168,43 @@ def test_record_is_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
     assert rec.read(tmp_path / "r.json") == RIGHT
 
 
+@pytest.mark.parametrize("line", ["[INFO] on the way", "[INFO] [1668.1, 2.3]: on the way", "\x1b[32m[DEBUG] x"])
+def test_information_is_never_a_cause(line: str) -> None:
+    record = _changed(deaths=(rec.Death(4.0, 1),), lines=(rec.Line(3.0, line),))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "The node died: its output names no error"
+
+
+def test_error_is_named_with_its_file_and_line() -> None:
+    traceback = (
+        "Traceback (most recent call last):",
+        '  File "/home/anna/robocop_goto_as.py", line 34, in execute_cb',
+        "    x, y = self.pose",
+        "TypeError: cannot unpack non-iterable NoneType object",
+        "[INFO] shutting down",
+    )
+    record = _changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == (
+        "The node died: TypeError: cannot unpack non-iterable NoneType object (robocop_goto_as.py, line 34)"
+    )
+
+
+def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
+    goal = replace(GOAL, ends="ABORTED")
+    hit = _changed(goals=(goal,))
+    records = {"server": {"obstacle": hit, "odd_scan_wall": replace(hit, name="odd_scan_wall")}}
+    checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
+    first, odd = checks["stops_at_obstacle"].failure, checks["odd_scans"].failure
+    assert first is not None and odd is not None
+    assert odd.cause.startswith("This follows from a failure above") and "NaN" not in odd.cause
+    alone = judge("anna", load(PLAN), {"server": {"odd_scan_wall": hit}}, {})
+    cause = next(check.failure for check in alone.checks if check.name == "odd_scans")
+    assert cause is not None and "NaN hides the wall" in cause.cause
+
+
 def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
     plan = load(PLAN)
     points = {

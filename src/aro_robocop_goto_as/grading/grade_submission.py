@@ -1,11 +1,13 @@
 """Runs, judges and reports one submission."""
 
 import shutil
-import tempfile
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, Mapping, Optional
 
+from ..errors import UngradableError
+from ..hosting.tree import remove, temporary_folder
 from . import judge, report, runner
 from .judge import Grade
 from .plan import Plan
@@ -14,6 +16,8 @@ from .sandbox import Sandbox
 from .submission import Submission
 
 Progress = Callable[[str, str], None]  # part, scenario
+ATTEMPTS = 2
+KILLED = " by SIGKILL, which was not the grader's (is the machine short of memory?)"
 
 
 def grade_submission(
@@ -28,24 +32,35 @@ def grade_submission(
 ) -> Grade:
     """Write the report and the bags of failed scenarios to `folder`; temporary files go to `scratch`.
 
-    With `watched` the run is shown in RViz in real time.
+    With `watched` the run is shown in RViz in real time. A part that is killed from outside is run once more;
+    UngradableError if that is killed, too.
     """
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
-    with tempfile.TemporaryDirectory(prefix="robocop-grade-", dir=scratch) as work:
+    with temporary_folder("robocop-grade-", scratch) as work:
+        notes = list(submission.notes)
         for script in submission.scripts:
-            recorded = runner.run(
-                submission,
-                script,
-                plan.path,
-                Path(work, script.part),
-                state,
-                sandbox,
-                on_progress=partial(on_progress, script.part),
-                watched=watched,
-            )
+            for attempt in range(1, ATTEMPTS + 1):
+                out = Path(work, script.part)
+                recorded = runner.run(
+                    submission,
+                    script,
+                    plan.path,
+                    out,
+                    state,
+                    sandbox,
+                    on_progress=partial(on_progress, script.part),
+                    watched=watched,
+                )
+                if not recorded.killed:
+                    break
+                if attempt == ATTEMPTS:
+                    raise UngradableError(f"not gradable: {recorded.killed}{KILLED}, as in the attempt before")
+                notes.append(f"{script.part}: {recorded.killed}{KILLED}; this part was run again")
+                remove(out)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
         grade = judge.judge(submission.name, plan, records, problems)
+        grade = replace(grade, problems=(*grade.problems, *notes))
         folder.mkdir(parents=True, exist_ok=True)
         report.write(grade, plan, records, folder)
         for check in grade.checks:

@@ -11,11 +11,13 @@ from typing import Optional, Sequence
 
 import psutil
 
+from ..errors import HostingError
+from ..hosting import tree
 from ..process.child import kill_tree
 
 MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
 MAX_DISK = 512 * 1024**2  # bytes that a build may write; the lab's takes 2 MB
-MIN_FILE = 4096  # bytes that every file counts at least
+MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
 
 
@@ -38,8 +40,8 @@ class Guard:
         while not self._stopped.wait(PERIOD):
             if _exceeds(self._pid, self._memory):
                 self.reason = f"its processes together took more than {self._memory / 1024**2:g} MB of memory"
-            elif self._folder is not None and disk_usage(self._folder) > self._disk:
-                self.reason = f"it wrote more than {self._disk / 1024**2:g} MB"
+            elif self._folder is not None:
+                self.reason = _too_large(self._folder, self._disk)
             if self.reason:
                 kill_tree(self._pid)
                 return
@@ -87,11 +89,23 @@ def _memfd_size(tree: Sequence["psutil.Process"]) -> int:
     return sum(sizes.values())
 
 
+def _too_large(folder: Path, limit: int) -> str:
+    """Why a folder is too large, or nothing."""
+    try:
+        return f"it wrote more than {limit / 1024**2:g} MB" if disk_usage(folder) > limit else ""
+    except HostingError:
+        return f"it made more than {tree.DEEPEST} nested folders"
+
+
 def disk_usage(folder: Path) -> int:
-    """Bytes of disk that the files in a folder occupy; links are not followed."""
+    """Bytes of disk that a folder's content occupies, at least MIN_FILE for each entry; links are not followed.
+
+    HostingError if it is nested too deep to be looked at.
+    """
     total = 0
-    for place, _, files in os.walk(folder):
-        for name in files:
-            with contextlib.suppress(FileNotFoundError):
-                total += max(MIN_FILE, os.lstat(os.path.join(place, name)).st_blocks * 512)
+    for level in tree.walk(folder):
+        total += MIN_FILE * len(level.folders)
+        for name in level.files:
+            with contextlib.suppress(OSError):  # it has been removed
+                total += max(MIN_FILE, os.lstat(level.path / name).st_blocks * 512)
     return total

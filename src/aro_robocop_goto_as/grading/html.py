@@ -25,9 +25,15 @@ def _quoted(name: str) -> str:
     return quote(os.fsencode(name))
 
 
+def _shown(value: Any) -> Any:
+    """A value as it goes into a page: text that is not markup of ours without control characters."""
+    return printable_lines(value) if type(value) is str else value
+
+
 _PAGES = jinja2.Environment(
     loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
     autoescape=True,
+    finalize=_shown,
     undefined=jinja2.StrictUndefined,
     trim_blocks=True,
     lstrip_blocks=True,

@@ -1,12 +1,15 @@
 """Applies the checks of a plan to records: for each one an outcome, points and a reason."""
 
 import enum
-from dataclasses import dataclass
-from typing import List, Mapping, Optional, Tuple
+from dataclasses import dataclass, replace
+from typing import List, Mapping, Optional, Sequence, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Passed, description, sentences
 from .plan import CheckPlan, Plan
 from .record import Record
+
+# Check -> the state that its goal should have ended in, and the check whose failure explains its own in that case.
+FOLLOWS = {"odd_scans": ("ABORTED", "stops_at_obstacle")}
 
 
 class Outcome(enum.Enum):
@@ -90,7 +93,23 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         for check in plan.checks
         if check.part in records
     ]
+    checks = [_following(check, checks, records) for check in checks]
     return Grade(name, tuple(checks), tuple(f"{part}: {text}" for part, text in problems.items() if text))
+
+
+def _following(result: CheckResult, results: Sequence[CheckResult], records: Records) -> CheckResult:
+    """The result of a check, which refers to an earlier check's failure if its own failure follows from that."""
+    if result.failure is None or result.name not in FOLLOWS:
+        return result
+    ends, earlier = FOLLOWS[result.name]
+    record = records[result.part].get(result.scenario)
+    if record is None or not any(goal.ends == ends for goal in record.goals):
+        return result
+    for first in results:
+        if first.name == earlier and first.failure is not None:
+            cause = f"This follows from a failure above ({first.sentence.rstrip('.')}): {first.failure.cause}"
+            return replace(result, failure=replace(result.failure, cause=cause))
+    return result
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:

@@ -3,21 +3,23 @@
 import argparse
 import os
 import sys
+import tempfile
 import zlib
 from pathlib import Path
 
-from ..errors import RobocopError
+from ..errors import GradingSetupError, RobocopError
 from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive
 from ..process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from .display import require_rviz
 from .grade_submission import grade_submission
-from .judge import Grade, Outcome, printable
+from .judge import Grade, Outcome, printable, printable_lines
 from .plan import load
 from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
 from .submission import prepare_submission
 
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C
+MOST_SHOWN = 1_000  # characters of an error
 LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
@@ -25,6 +27,16 @@ def _show_progress(part: str, scenario: str) -> None:
     reraise_if_interrupted()
     if sys.stderr.isatty():
         print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
+
+
+def expect_writable(folder: Path) -> None:
+    """Create the folder of the reports if it does not exist; GradingSetupError if nothing can be written to it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise GradingSetupError(f"{folder}: expected a folder that can be written to: {error.strerror}") from error
 
 
 def as_text(grade: Grade) -> str:
@@ -54,6 +66,8 @@ def main() -> None:
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     try:
         plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml")
+        if args.report:
+            expect_writable(Path(args.report))
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
         if args.watch:
@@ -64,11 +78,14 @@ def main() -> None:
             folder = Path(args.report) if args.report else state / "reports" / submission.name
             grade = grade_submission(submission, plan, folder, state, sandbox, _show_progress, args.watch)
     except RobocopError as error:
-        print(f"robocop grade: {error}", file=sys.stderr)
+        print(f"robocop grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
         ignore_all()
         sys.exit(INTERRUPTED)
+    except Exception as error:  # a submission that the grader can't cope with: its own problem, told in one line
+        print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MOST_SHOWN]}", file=sys.stderr)
+        sys.exit(1)
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     print(as_text(grade))

@@ -9,8 +9,9 @@ from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
 
 import yaml
 
-from ..errors import PlanError
+from ..errors import HostingError, PlanError
 from ..geometry import Pose2D, Pose3D, compose3, lifted
+from ..hosting.files import read_bytes
 from ..param_loading import from_dict
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 from .checks import CHECKS
@@ -78,8 +79,8 @@ class Plan:
 def load(path: Path) -> Plan:
     """Read the plan; PlanError, or ParameterError for the limits, names the file and the mistake in it."""
     try:
-        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
+        raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
+    except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
     keys = {"limits", "scenarios", "checks"}
     _expect(raw, keys, str(path), keys)

@@ -6,6 +6,7 @@ x, y and yaw are true poses in odom, whose origin is where the scenario starts; 
 import dataclasses
 import json
 import math
+import signal
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Tuple, Type
@@ -115,6 +116,10 @@ class Line:
     text: str
 
 
+KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # of a process, and as a shell or bubblewrap passes it on
+OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)
+
+
 @dataclass(frozen=True)
 class Death:
     """The end of the node's process; with a reason if it was killed for exceeding a resource limit."""
@@ -122,6 +127,11 @@ class Death:
     time: float
     status: int
     reason: str = ""
+
+    @property
+    def is_from_outside(self) -> bool:
+        """Whether it was killed, and not by the grader: the kernel does so when the machine's memory runs out."""
+        return self.status in KILLED and not self.reason
 
 
 @dataclass(frozen=True)

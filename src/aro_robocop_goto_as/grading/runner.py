@@ -35,6 +35,7 @@ class Recorded:
 
     records: Dict[str, rec.Record]
     problem: str = ""
+    killed: str = ""  # what was killed from outside, if anything was: then the records say nothing about the submission
 
 
 def run(
@@ -143,10 +144,16 @@ def _supervise(
     finally:
         status = child.end(process, None, grace)
         guard.stop()
+    records, killed = _records(out, part), ""
+    for record in records.values():
+        if any(death.is_from_outside for death in record.deaths):
+            killed = f"the {part} was killed in scenario {record.name}"
     problem = problem or guard.reason
     if not problem and status != 0:
         problem = f"the run was cut short during {scenario} (status {status}): {_last_lines(log)}"
-    return Recorded(_records(out, part), problem)
+        if status in rec.KILLED:
+            killed = f"the grader's own process was killed in scenario {scenario}"
+    return Recorded(records, problem, killed)
 
 
 def _read(process: "child.Child[bytes]", lines: "queue.Queue[Optional[str]]") -> None:

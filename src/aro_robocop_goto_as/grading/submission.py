@@ -4,23 +4,24 @@ import contextlib
 import io
 import os
 import re
+import shutil
 import sys
 import tempfile
 import tokenize
 import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Set
 
 import yaml
 
 from ..errors import GradingError
-from ..hosting import workspace
+from ..hosting import tree, workspace
 from ..hosting.compat import compat_environment
-from ..hosting.files import read_text, read_xml
+from ..hosting.files import read_bytes, read_text, read_xml
 from ..hosting.package import NODES, Package, find_package
 from ..hosting.workspace import Environment
-from .sandbox import Sandbox
+from .sandbox import Sandbox, expect_private
 from .sandboxed_build import build, runner_in
 from .skeleton import make
 
@@ -30,6 +31,9 @@ PARTS = {script: part for part, script in SCRIPTS.items()}
 SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
 CLICKS = "move_base_simple"
 LAUNCH_TIMEOUT = 30.0  # [s, wall]
+DEEPEST = 20  # nested lists and mappings of a parameter
+MOST_SHOWN = 200  # characters of a parameter in a message
+TYPES = "expected a truth value, a number of 32 bits, a text, or a list or mapping of them"
 MAX_PARAMETERS = 100_000  # bytes of roslaunch's output
 
 
@@ -57,6 +61,7 @@ class Submission:
     environment: Environment
     scripts: List[Script]
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    notes: Sequence[str] = ()  # what does not matter here, but does in the lab
 
 
 def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
@@ -65,12 +70,14 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
     GradingError or HostingError says why there is none.
     """
     top = Path(path).expanduser().resolve()
+    if sandbox is not None:
+        expect_private(top)
     if top.is_file():
         return _files([top], top, share, state)
     if not top.is_dir():
         raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
-    loose = [next(iter(sorted(top.rglob(script))), top) for script in PARTS]
-    if loose != [top, top] and not list(top.rglob("package.xml")):
+    loose = [next(iter(tree.find(top, script)), top) for script in PARTS]
+    if loose != [top, top] and not tree.find(top, "package.xml"):
         return _files([path for path in loose if path != top], top, share, state)
     return _package(find_package(str(top)), share, state, builds, sandbox)
 
@@ -145,7 +152,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
     copy = folder / "src" / package.name
     launch_nodes = _launch_nodes(copy)
     scripts: Dict[str, Script] = {}
-    for path in sorted(copy.rglob("*.py")):
+    for path in tree.find(copy, "*.py"):
         part = _part_of(path) if path.name in {*PARTS, *launch_nodes} else ""
         if part and part not in scripts:
             attributes = launch_nodes.get(path.name, {})
@@ -165,13 +172,23 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
         environment,
         list(scripts.values()),
         _parameters(package, copy, environment, runner_in(sandbox, folder, below, LAUNCH_TIMEOUT)),
+        [note for script in scripts.values() for note in _obstacles_to_starting(script)],
     )
+
+
+def _obstacles_to_starting(script: Script) -> Iterator[str]:
+    """Why roslaunch could not start a script that is started here by its interpreter."""
+    name = script.path.name
+    if not os.access(script.path, os.X_OK):
+        yield f"{script.part}: {name} has no run bit, so roslaunch can't start it in the lab: chmod +x {name}"
+    if read_bytes(script.path).partition(b"\n")[0].endswith(b"\r"):
+        yield f"{script.part}: {name} has Windows line ends (CRLF), so roslaunch can't start it in the lab"
 
 
 def _launch_nodes(copy: Path) -> Dict[str, Dict[str, str]]:
     """Script -> attributes of its <node> in the package's launch files."""
     nodes: Dict[str, Dict[str, str]] = {}
-    for path in sorted(copy.rglob("*.launch")):
+    for path in tree.find(copy, "*.launch"):
         for node in read_xml(path).iter("node"):
             nodes.setdefault(node.get("type", ""), dict(node.attrib))
     return nodes
@@ -191,17 +208,37 @@ def _parameters(package: Package, copy: Path, environment: Environment, run: wor
     if package.launch_file is None:
         return {}
     path = copy / package.launch_file.relative_to(package.path)
-    command = ["roslaunch", "--dump-params", str(path)]
+    # The system's, even if the package has a program of this name, which its environment would find first.
+    program = shutil.which("roslaunch") or "roslaunch"
+    command = [program, "--dump-params", str(path)]
     status, output, errors = workspace.output_of(run, command, environment, MAX_PARAMETERS)
     if status != 0 or not output.strip():  # roslaunch exits with 0 for a file that it can't load
         raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(errors)}")
     try:
         parameters = yaml.load(output.decode(errors="replace"), _PlainLoader) or {}
-    except yaml.YAMLError as error:
-        raise GradingError(f"{path.name}: its parameters can't be read: {error}") from error
+    except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that does not exist
+        raise GradingError(f"{path.name}: its parameters can't be read: {str(error)[:MOST_SHOWN]}") from error
+    if not isinstance(parameters, dict):
+        raise GradingError(f"{path.name}: expected parameters by name, got {str(parameters)[:MOST_SHOWN]}")
+    for name, value in parameters.items():
+        if not isinstance(name, str) or not _is_settable(value):
+            words = str(value)[:MOST_SHOWN]
+            raise GradingError(f"{path.name}: {str(name)[:MOST_SHOWN]}: {words} can't be a parameter: {TYPES}")
     return {name: value for name, value in parameters.items() if name != "/use_sim_time"}
+
+
+def _is_settable(value: Any, depth: int = 0) -> bool:
+    """Whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
+    if isinstance(value, list):
+        return depth < DEEPEST and all(_is_settable(it, depth + 1) for it in value)
+    if isinstance(value, dict):
+        return depth < DEEPEST and all(isinstance(k, str) and _is_settable(v, depth + 1) for k, v in value.items())
+    if isinstance(value, int):  # includes bool
+        return -(2**31) <= value < 2**31
+    return isinstance(value, (float, str))
 
 
 def _first_line(text: str) -> str:
     """The first line of roslaunch's output, without colours."""
-    return next((re.sub("\x1b[^m]*m", "", line) for line in text.splitlines() if line.strip()), "no reason given")
+    line = next((line for line in text.splitlines() if line.strip()), "no reason given")
+    return re.sub("\x1b[^m]*m", "", line)[:MOST_SHOWN]

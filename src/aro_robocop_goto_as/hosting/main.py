@@ -7,11 +7,12 @@ import signal
 import sys
 import zlib
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
 from ..errors import HostingError, RobocopError
 from ..process.signals import ending_signals, ignore_all, interrupt_on_signal
+from . import tree
 from .compat import compat_environment
 from .package import Package, arguments_of, find_package
 from .scratch import scratch_folder
@@ -25,7 +26,7 @@ def host(package: Package, share: Path, state: Path) -> Tuple[Path, Environment]
     folder = state / "with" / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
     environment = build({package.name: package.path}, folder, compat_environment(share, state))
     for script, _ in package.nodes:
-        for copy in (folder / "src" / package.name).rglob(script):
+        for copy in tree.find(folder / "src" / package.name, script):
             if not os.access(copy, os.X_OK):
                 print(
                     f"robocop sim: {copy.relative_to(folder / 'src')} is not executable, so roslaunch could not start "
@@ -79,13 +80,18 @@ def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> 
     return for_package, shlex.join(for_simulator)
 
 
-def prepare() -> Tuple[Path, Environment]:
-    """Build the package that the arguments name: the launch file to run, and its environment. Exits with 1 or 130."""
+def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
+    """The command line, whose options and NAME:=VALUE words may come in any order."""
     parser = argparse.ArgumentParser(prog="robocop sim --with", description=__doc__)
     parser.add_argument("path", help="folder of a catkin package, or of a workspace with one in it")
     parser.add_argument("--launch", default="", help="which of its launch files (default robocop_goto_as.launch)")
     parser.add_argument("arguments", nargs="*", metavar="NAME:=VALUE", help="for its launch file or the simulator's")
-    args = parser.parse_args()
+    return parser.parse_intermixed_args(words)
+
+
+def prepare() -> Tuple[Path, Environment]:
+    """Build the package that the arguments name: the launch file to run, and its environment. Exits with 1 or 130."""
+    args = parsed()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     handlers = {number: signal.getsignal(number) for number in ending_signals()}
     interrupt_on_signal()

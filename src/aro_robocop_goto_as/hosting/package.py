@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Iterator, List, Optional, Tuple
 
 from ..errors import HostingError
-from .files import read_text, read_xml
+from . import tree
+from .files import read_xml
 
 NODES = (
     ("robocop_goto_as.py", "aro_robocop_goto_as_node"),  # the handout's scripts and their node names
@@ -29,10 +30,20 @@ class Package:
 
     @property
     def starts_simulator(self) -> bool:
-        """Whether one of its launch files starts the lab's simulator."""
-        return self.launch_file is not None and any(
-            SIMULATOR.search(read_text(path)) for path in self.path.rglob("*.launch")
-        )
+        """Whether its launch file starts the lab's simulator, itself or by including others of the package."""
+        waiting, seen = [self.launch_file] if self.launch_file else [], set()
+        while waiting:
+            path = waiting.pop()
+            seen.add(path)
+            root = read_xml(path)
+            included = [include.get("file", "") for include in root.iter("include")]
+            if any(
+                SIMULATOR.search(name) for name in [*included, *(node.get("pkg", "") for node in root.iter("node"))]
+            ):
+                return True
+            own = {found for name in included for found in tree.find(self.path, os.path.basename(name) or "-")}
+            waiting += sorted(path for path in own - seen if path.is_file())
+        return False
 
     def launch_arguments(self) -> List[str]:
         """Names of its launch file's arguments."""
@@ -63,7 +74,7 @@ def find_package(path: str, launch: str = "") -> Package:
             + ", ".join(str(folder) for _, folder in named)
         )
     name, folder = chosen[0]
-    nodes = tuple((script, node) for script, node in NODES if any(folder.rglob(script)))
+    nodes = tuple((script, node) for script, node in NODES if tree.find(folder, script))
     launch_file = _launch_file(folder, launch)
     if launch_file is None and not nodes:
         raise HostingError(
@@ -75,11 +86,11 @@ def find_package(path: str, launch: str = "") -> Package:
 
 def _manifests(top: Path) -> Iterator[Path]:
     """Every package.xml in a folder or below it, except inside another package."""
-    for folder, folders, files in os.walk(top):
-        if "package.xml" in files:
-            yield Path(folder, "package.xml")
-            folders.clear()
-        folders[:] = sorted(name for name in folders if name not in GENERATED and not name.startswith("."))
+    for level in tree.walk(top, GENERATED):
+        if "package.xml" in level.files:
+            yield level.path / "package.xml"
+            level.folders.clear()
+        level.folders[:] = [name for name in level.folders if not name.startswith(".")]
 
 
 def _name(manifest: Path) -> str:
@@ -92,7 +103,7 @@ def _name(manifest: Path) -> str:
 def _launch_file(folder: Path, wanted: str) -> Optional[Path]:
     launch_files = sorted(
         path
-        for path in folder.rglob("*.launch")
+        for path in tree.find(folder, "*.launch")
         if not any(part.startswith(".") for part in path.relative_to(folder).parts)
     )
     matching = [path for path in launch_files if path.name == (wanted or LAUNCH_FILE)]

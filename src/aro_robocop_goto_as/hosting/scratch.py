@@ -2,12 +2,13 @@
 
 import contextlib
 import os
-import shutil
 import tempfile
+from pathlib import Path
 from typing import Iterator, Optional
 
 from ..process import signals, subreaper
 from ..process.signals import Deferred
+from . import tree
 
 
 @contextlib.contextmanager
@@ -29,7 +30,7 @@ def scratch_folder() -> Iterator[None]:
         subreaper.kill_descendants()
         _set_tmpdir(previous)
         if folder is not None:
-            shutil.rmtree(folder)
+            tree.remove(Path(folder))
 
 
 def _set_tmpdir(folder: Optional[str]) -> None:

@@ -12,14 +12,17 @@ from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
 from ..errors import HostingError
 from ..process import child
+from . import tree
 
 Environment = Dict[str, str]
 Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status
 
 # Variables that catkin's setup files extend, one workspace on top of another.
 CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
-NOT_COPIED = shutil.ignore_patterns(".git", "__pycache__", "*.pyc", "build", "devel", ".robocop")
+LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
+NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
 LOG_LINES = 25  # of a failed build's log that are shown
+MOST_SHOWN = 4_000  # bytes of them
 
 
 def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
@@ -50,7 +53,7 @@ def sourced(setup: Path, environment: Environment, run: Run = run_plain) -> Envi
     """The environment after bash has sourced a setup file."""
     status, output, errors = output_of(run, ["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
     if status != 0:
-        raise HostingError(f"{setup}: {errors.strip()}")
+        raise HostingError(f"{setup}: {errors.strip()[-MOST_SHOWN:]}")
     pairs = [entry.partition("=") for entry in os.fsdecode(output).split("\0") if entry]
     return {name: value for name, _, value in pairs}
 
@@ -63,12 +66,14 @@ def copy_sources(
 ) -> None:
     """Replace the sources of the workspace at `folder` by copies of packages (name -> folder)."""
     source = folder / "src"
-    shutil.rmtree(source, ignore_errors=True)
+    tree.remove(source)
     source.mkdir(parents=True)
     for name, path in sources.items():
+        for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
+            pass
         shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
-        for place, _, _ in os.walk(source / name):
-            os.chmod(place, os.stat(place).st_mode | 0o700)  # a copy of a read-only folder could not be removed
+        for level in tree.walk(source / name):
+            os.chmod(level.path, os.stat(level.path).st_mode | 0o700)  # a copy of a read-only folder can't be removed
 
 
 def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:
@@ -83,7 +88,7 @@ def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> E
 def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) -> Environment:
     """As build(), but the sources are already in place."""
     log = folder / "build.log"
-    log.unlink(missing_ok=True)  # open() would follow a link
+    tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
     with open(log, "w+b") as output:
         status = run(
             ["catkin_make", "-C", str(folder), f"-DPYTHON_EXECUTABLE={sys.executable}", "-DCATKIN_ENABLE_TESTING=OFF"],
@@ -91,8 +96,8 @@ def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) 
             output,
             output,
         )
-        output.seek(0)
-        last = b"".join(output.readlines()[-LOG_LINES:]).decode(errors="replace") if status != 0 else ""
+        output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_SHOWN))
+        last = "\n".join(output.read().decode(errors="replace").splitlines()[-LOG_LINES:]) if status != 0 else ""
     if status != 0:
         raise HostingError(f"{names} can't be built:\n{last}\nfull log: {log}")
     return sourced(folder / "devel" / "setup.bash", underlay, run)

@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import re
+import select
 import socket
 import threading
 from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Union
@@ -41,6 +42,26 @@ def sockets_of(publisher: rospy.Publisher) -> List[socket.socket]:
     """The sockets to a publisher's subscribers; rospy offers no socket options but the subscriber's TCP_NODELAY."""
     sockets = [getattr(connection, "socket", None) for connection in publisher.impl.connections]
     return [connected for connected in sockets if connected is not None]
+
+
+def live_connections(publisher: rospy.Publisher) -> List[Any]:
+    """The connections whose subscribers are still there; rospy drops one that was closed only when it writes to it."""
+    live = []
+    for connection in publisher.impl.connections:
+        connected = getattr(connection, "socket", None)
+        if connected is None:
+            continue
+        poll = select.poll()
+        with contextlib.suppress(OSError, ValueError):  # it is being closed
+            poll.register(connected, select.POLLRDHUP | select.POLLHUP | select.POLLERR)
+            if not poll.poll(0):
+                live.append(connection)
+    return live
+
+
+def messages_sent(publisher: rospy.Publisher) -> int:
+    """How many messages a publisher has sent; rospy's public API does not count them."""
+    return int(publisher.impl.seq)
 
 
 def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> None:

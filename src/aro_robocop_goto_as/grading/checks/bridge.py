@@ -11,6 +11,11 @@ from .verdict import Failed, NotReached, Passed, Verdict, check
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
+PENDING_ENDS = "pending_ends"  # mark: what is missing here is there for a goal that was never seen PENDING
+PENDING_CAUSE = (
+    "While the goal is PENDING the bridge takes it for ended, but PENDING only means that the server has not accepted "
+    "it yet"
+)
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
@@ -49,24 +54,39 @@ def _missing_connection(record: Record) -> str:
     return "No goal was sent: does the callback call send_goal()?"
 
 
+def has_reports(record: Record, limits: Limits) -> bool:
+    """Whether the node reported often enough."""
+    return len(_reports(record)) >= limits.status_reports
+
+
+def _reports(record: Record) -> List[float]:
+    """When each report began [s]."""
+    start = record.marks["watching"]
+    reports: List[float] = []
+    for line in record.lines:
+        if line.time > start + 0.2 and (not reports or line.time - reports[-1] > SAME_REPORT):
+            reports.append(line.time)
+    return reports
+
+
 @check("clicks")
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
         return NotReached("the bridge did not get this far")
-    start = record.marks["watching"]
-    reports: List[float] = []  # start of each
-    for line in record.lines:
-        if line.time > start + 0.2 and (not reports or line.time - reports[-1] > SAME_REPORT):
-            reports.append(line.time)
-    if len(reports) >= limits.status_reports:
+    if has_reports(record, limits):
         return Passed()
+    cause = (
+        "Create a rospy.Timer whose callback logs, prints or publishes the action client's state; it has to report "
+        "repeatedly while a goal is active"
+    )
+    if PENDING_ENDS in record.marks:
+        cause = f"{PENDING_CAUSE}. Its reports end with it"
     return Failed(
         f"{limits.status_reports} reports within {limits.status_span:g} s",
-        f"{len(reports)}",
-        start,
-        "Create a rospy.Timer whose callback logs, prints or publishes the action client's state; it has to report "
-        "repeatedly while a goal is active",
+        f"{len(_reports(record))}",
+        record.marks["watching"],
+        cause,
     )
 
 
@@ -85,6 +105,8 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         cause = (
             "Call cancel_goal() or cancel_all_goals() before sending the newer goal; send_goal() alone does not cancel"
         )
+        if PENDING_ENDS in record.marks:
+            cause = f"{PENDING_CAUSE}. It then sees no older goal to cancel"
         return Failed("a cancel request for the older goal", "none", click.time, cause)
     if newer[-1].id in cancelled:
         cause = "Cancel before send_goal(), not after it"
@@ -99,6 +121,10 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
         return _crash(record, limits) or Passed()
     if record.clicks and _goals_after(record, record.clicks[-1]):
         return Passed()
+    if not record.marks.get("clients", 1.0):
+        return Failed(
+            "a goal once the server is running", "no goal", record.marks["clicked"], _missing_connection(record)
+        )
     return Failed(
         "a goal once the server is running",
         "no goal",
@@ -126,7 +152,8 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
     if not record.clicks:
         return NotReached("there was no click")
     for number, click in enumerate(record.clicks):
-        until = record.clicks[number + 1].time if number + 1 < len(record.clicks) else math.inf
+        # What a click causes may come without any simulated time passing.
+        until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
         goals = _goals_after(record, click, until)
         if not goals:
             wanted, cause = f"a goal for the click in {click.frame}", "The click was not forwarded"

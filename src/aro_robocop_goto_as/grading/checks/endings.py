@@ -1,5 +1,7 @@
 """Checks of a goal's terminal state and result."""
 
+import os
+import re
 from typing import Optional, Sequence
 
 from ..handout import GOAL_RADIUS
@@ -26,6 +28,9 @@ TWO_STATES_LOGGED = (
     "currently in state",
 )
 EXCEPTION_LOGGED = "xception in your execute callback", "Traceback"
+PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
+TRACEBACK = 6  # lines before the error in which the innermost place is looked for
+INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
 
@@ -36,10 +41,15 @@ def logged(record: Record, words: Sequence[str]) -> bool:
 
 
 def last_error(record: Record) -> str:
-    """The last line of the last traceback."""
-    lines = [line.text.strip() for line in record.lines]
-    errors = [line for line in lines if "Error" in line.split(":")[0] or "Exception:" in line]
-    return (errors or [line for line in lines if line] or ["see its output"])[-1].splitlines()[-1][:200]
+    """The last line of the last traceback with its place, or the last line that is not information."""
+    lines = [text.strip() for line in record.lines for text in line.text.splitlines() if text.strip()]
+    errors = [number for number, line in enumerate(lines) if "Error" in line.split(":")[0] or "Exception:" in line]
+    if errors:
+        places = [PLACE.search(line) for line in lines[max(0, errors[-1] - TRACEBACK) : errors[-1]]]
+        place = [f" ({os.path.basename(found[1])}, line {found[2]})" for found in places if found]
+        return lines[errors[-1]][:200] + (place[-1] if place else "")
+    others = [line for line in lines if not INFORMATION.match(line)]
+    return (others or ["its output names no error"])[-1][:200]
 
 
 def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:

@@ -1,30 +1,46 @@
 """Distributes tasks to dask workers, local ones or those of an existing scheduler."""
 
 import contextlib
+import os
 import tempfile
 import uuid
 from typing import Iterator, Sequence, Tuple, Union
 
 from distributed import Client, LocalCluster, as_completed
+from distributed.security import Security
 
 from ...errors import GradingSetupError
-from .worker import Done, Task, ready, work
+from .worker import Done, Place, Task, ready, work
 
 CONNECT_PATIENCE = 5.0  # [s, wall]
 RETRIES = 1  # of a task that raised an error; tasks of workers that died are always repeated
 START = "start workers with: ./robocop grade-worker"
 
 
+def _shared_credentials(place: Place) -> Security:
+    """TLS with the key that scheduler, workers and client share.
+
+    Whoever reaches the port of a scheduler without TLS can have its workers run any code, with their user's rights.
+    """
+    if not place.scheduler.startswith("tls://"):
+        raise GradingSetupError(f"--scheduler {place.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
+    file = place.credentials
+    if not os.path.isfile(file):
+        raise GradingSetupError(f"--credentials {file}: expected the file with the scheduler's key and certificate")
+    return Security(tls_ca_file=file, tls_client_cert=file, tls_client_key=file, require_encryption=True)
+
+
 @contextlib.contextmanager
-def connected(scheduler: str, workers: int, unsafe: bool) -> Iterator[Client]:
+def connected(place: Place) -> Iterator[Client]:
     """A client of the scheduler at an address; without an address, of a local cluster of `workers` processes.
 
     GradingSetupError if the scheduler does not answer or one of its workers is not able to grade.
     """
     with contextlib.ExitStack() as stack:
-        if scheduler:
+        if place.scheduler:
+            scheduler, security = place.scheduler, _shared_credentials(place)
             try:
-                client = stack.enter_context(Client(scheduler, timeout=CONNECT_PATIENCE))
+                client = stack.enter_context(Client(scheduler, timeout=CONNECT_PATIENCE, security=security))
             except (OSError, ValueError) as error:
                 raise GradingSetupError(f"no dask scheduler answers at {scheduler}: {error}") from error
             if not client.scheduler_info()["workers"]:
@@ -34,18 +50,20 @@ def connected(scheduler: str, workers: int, unsafe: bool) -> Iterator[Client]:
             scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="robocop-dask-"))
             cluster = stack.enter_context(
                 LocalCluster(
-                    n_workers=workers,
+                    n_workers=place.workers,
                     threads_per_worker=1,
                     processes=True,
                     memory_limit=0,
                     host="127.0.0.1",
-                    dashboard_address="127.0.0.1:0",
+                    protocol="tls",
+                    security=Security.temporary(),  # a key that nobody else on this machine has
+                    dashboard_address=None,
                     silence_logs=50,
                     local_directory=scratch,
                 )
             )
             client = stack.enter_context(Client(cluster))
-        _expect_ready(client, unsafe)
+        _expect_ready(client, place.unsafe)
         yield client
 
 

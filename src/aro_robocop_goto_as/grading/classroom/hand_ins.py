@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, Any, Dict, Iterator, List, Tuple
 
 from ...errors import GradingSetupError, SubmissionError
+from ...hosting import tree
 from ...hosting.package import GENERATED as BUILD_PRODUCTS
 
 MOST_BYTES = 64 * 1024**2  # of a hand-in
@@ -95,10 +96,9 @@ def _on_disk(path: Path) -> Iterator[Entry]:
 def _walk(path: Path) -> Iterator[Tuple[Path, str]]:
     yield path, ""
     if path.is_dir():
-        for place, folders, files in os.walk(path):
-            folders[:] = sorted(name for name in folders if name not in LEFT_OUT)
-            for name in sorted([*folders, *files]):
-                inner = Path(place, name)
+        for level in tree.walk(path, LEFT_OUT):
+            for name in sorted([*level.folders, *level.files]):
+                inner = level.path / name
                 yield inner, str(inner.relative_to(path))
 
 
@@ -113,6 +113,8 @@ def _zipped(path: Path) -> Iterator[Entry]:
                 continue
             if ".." in parts or parts[:1] == ("/",):
                 raise SubmissionError(f"{entry.filename}: expected a path within the zip")
+            if len(parts) > tree.DEEPEST:
+                raise SubmissionError(f"expected at most {tree.DEEPEST} nested folders")
             content = _at_most(archive.open(entry), left)
             left -= len(content)
             executable = entry.external_attr >> 16 & 0o111

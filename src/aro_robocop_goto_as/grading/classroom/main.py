@@ -5,6 +5,7 @@ import contextlib
 import hashlib
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Union
 from xml.etree import ElementTree
@@ -13,12 +14,14 @@ from ...errors import GradingSetupError, RobocopError
 from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
-from ..main import INTERRUPTED
+from ..judge import printable, printable_lines
+from ..main import INTERRUPTED, expect_writable
 from ..plan import Plan, load
+from ..sandbox import expect_private
 from .hand_ins import HandIn, collect
 from .overview import page
 from .results import Result, Results, table, write_atomically
-from .worker import Done, Task
+from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
 
@@ -39,26 +42,26 @@ class Class:
         """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
         if isinstance(outcome, str):
             self.problems[name] = outcome
-            return f"{_printable(name)}: {outcome}"
+            return _printable(f"{name}: {outcome}")
         self._results.keep(outcome)
         result = self.done[name] = self._results.read(name)
         self.waiting = [hand_in for hand_in in self.waiting if hand_in.name != name]
         self.write(running=True)
         problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
         counter = f"[{len(self.done)}/{self.count}]"
-        return f"{counter} {_printable(name)}: {result.points:g} points, {result.seconds:.0f} s{problems}"
+        return _printable(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
         results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
-        write_atomically(folder / CSV, table(results, self.plan))
+        write_atomically(folder / CSV, table(results, self.plan, self.problems))
         waiting = {hand_in.name: self.problems.get(hand_in.name, "waiting") for hand_in in self.waiting}
         write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
 
 
-def _printable(name: str) -> str:
-    """A file's name, with the bytes that are not UTF-8 replaced."""
-    return name.encode("utf-8", "replace").decode()
+def _printable(text: str) -> str:
+    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
+    return printable(text.encode("utf-8", "replace").decode())
 
 
 def main() -> None:
@@ -68,7 +71,8 @@ def main() -> None:
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--workers", type=int, metavar="N", help="local processes (default: one for each core)")
-    parser.add_argument("--scheduler", default="", metavar="tcp://HOST:PORT", help="use the workers of this scheduler")
+    parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
+    parser.add_argument("--credentials", default="", metavar="PEM", help="key and certificate of that scheduler")
     parser.add_argument("--again", action="store_true", help="also grade hand-ins that have a result")
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     args = parser.parse_args()
@@ -80,42 +84,48 @@ def main() -> None:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml")
         text = plan.path.read_text(encoding="utf-8")
+        out = Path(args.report) if args.report else state / "classes" / folder.name
+        expect_writable(out)
+        if not args.unsafe:
+            expect_private(folder)
         hand_ins, others = collect(folder)
         for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
             raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
         for name in others:
             print(f"ignored: {_printable(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
-        out = Path(args.report) if args.report else state / "classes" / folder.name
         with scratch_folder(), exclusive(out / ".run"):
             results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             tasks = [Task(hand_in, text, args.unsafe) for hand_in in group.waiting]
-            _grade(group, tasks, args.scheduler, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
+            place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
+            _grade(group, tasks, place)
     except RobocopError as error:
-        print(f"robocop grade-class: {error}", file=sys.stderr)
+        print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
     finally:
         ignore_all()
     print(f"table: {out / CSV}\noverview: {out / HTML}")
     sys.exit(1 if group.problems else 0)
 
 
-def _grade(group: Class, tasks: List[Task], scheduler: str, workers: int, unsafe: bool) -> None:
+def _grade(group: Class, tasks: List[Task], place: Place) -> None:
     """Grade the remaining hand-ins; if interrupted, write what is done, then exit."""
     group.write(running=bool(tasks))
     try:
         if tasks:
             from .cluster import connected, grade_all  # importing dask takes half a second
 
-            with connected(scheduler, min(workers, len(tasks)), unsafe) as client:
+            with connected(replace(place, workers=min(place.workers, len(tasks)))) as client:
                 for name, outcome in grade_all(client, tasks):
                     reraise_if_interrupted()
                     try:
                         line = group.add(name, outcome)
-                    except OSError as error:
-                        line = group.add(name, f"the report can't be stored: {error}")
+                    except Exception as error:  # a report that nobody expected: its own row, and nobody else's
+                        line = group.add(name, f"the report can't be stored: {error!r}")
                     print(line, flush=True)
     except KeyboardInterrupt:
         with contextlib.suppress(OSError):  # the terminal may be closed

@@ -4,18 +4,23 @@ import csv
 import io
 import json
 import os
-import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
+from ...hosting import tree
+from ..judge import printable
 from ..plan import PARTS, Plan
 from .hand_ins import HandIn
 from .worker import Done
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet takes text that starts with one of them for a formula
+# A spreadsheet takes text that starts with one of them, the last ones in Asian scripts, for a formula.
+FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+MOST_CELL = 2_000  # characters of a cell
+BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
 NOT_HANDED_IN = "not handed in"
 
 
@@ -62,7 +67,7 @@ class Results:
         self._made_with = dict(made_with)
         folder.mkdir(parents=True, exist_ok=True)
         for unfinished in folder.glob(".new-*"):  # left by an interrupted run
-            shutil.rmtree(unfinished, ignore_errors=True)
+            tree.remove(unfinished)
 
     def has(self, hand_in: HandIn) -> bool:
         """Whether the hand-in was graded with its present content, plan and grader."""
@@ -84,7 +89,7 @@ class Results:
         stamp = {"made_from": self._from(done.digest), "seconds": round(done.seconds, 1), "worker": done.worker}
         (new / STAMP).write_text(json.dumps(stamp, indent=1))
         if final.exists():
-            shutil.rmtree(final)
+            tree.remove(final)
         os.rename(new, final)
 
     def read(self, name: str) -> Result:
@@ -104,10 +109,14 @@ class Results:
         return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
 
 
-def table(results: Sequence[Result], plan: Plan) -> str:
-    """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in."""
+def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
+    """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
+
+    `problems` maps the names that could not be graded to the reason: rows without points.
+    """
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
+    text.write(BYTE_ORDER_MARK)
     rows.writerow(["name", "points", "of", *PARTS, "problem", *(check.name for check in plan.checks)])
     for result in results:
         points = [result.points_of(part) for part in PARTS]
@@ -121,12 +130,16 @@ def table(results: Sequence[Result], plan: Plan) -> str:
                 *(result.outcome(check.name) for check in plan.checks),
             ]
         )
+    for name, problem in sorted(problems.items()):
+        empty = [""] * (1 + len(PARTS))
+        rows.writerow([_plain(name), *empty[:1], plan.points, *empty[1:], _plain(problem)])
     return text.getvalue()
 
 
 def _plain(text: str) -> str:
-    """The text, quoted if a spreadsheet would take it for a formula."""
-    return f"'{text}" if text.startswith(FORMULA) else text
+    """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
+    text = printable(text.encode("utf-8", "replace").decode())[:MOST_CELL].replace(";", ",")
+    return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text
 
 
 def write_atomically(path: Path, text: str) -> None:

@@ -4,13 +4,13 @@ import dataclasses
 import os
 import socket
 import tarfile
-import tempfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, Optional
 
-from ...errors import RobocopError, SubmissionError
+from ...errors import RobocopError, SubmissionError, UngradableError
+from ...hosting.tree import temporary_folder
 from ..grade_submission import grade_submission
 from ..judge import Grade
 from ..plan import load
@@ -19,6 +19,8 @@ from ..sandbox import open_sandbox
 from ..submission import lab_environment, prepare_submission
 from .hand_ins import HandIn, unpack
 
+MOST_PROBLEM = 4_000  # characters
+
 
 @dataclass(frozen=True)
 class Task:
@@ -26,6 +28,16 @@ class Task:
 
     hand_in: HandIn
     plan: str  # the text of config/grading.yaml
+    unsafe: bool = False
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a class is graded."""
+
+    scheduler: str = ""  # tls://HOST:PORT; none: local workers
+    credentials: str = ""  # PEM file with the key and the certificate that scheduler, workers and client share
+    workers: int = 1  # local ones
     unsafe: bool = False
 
 
@@ -44,8 +56,8 @@ def work(task: Task) -> Done:
     """Grade one hand-in; its mistakes go into the report, other errors are raised."""
     started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
-    with tempfile.TemporaryDirectory(prefix="robocop-class-", dir=_scratch()) as made:
-        top, folder = Path(made), Path(made, "report")
+    with temporary_folder("robocop-class-", _scratch()) as top:
+        folder = top / "report"
         (top / "plan.yaml").write_text(task.plan, encoding="utf-8")
         plan = load(top / "plan.yaml")
         sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
@@ -56,9 +68,12 @@ def work(task: Task) -> Done:
             submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
             submission = dataclasses.replace(submission, name=name)
             grade_submission(submission, plan, folder, state, sandbox, scratch=top)
-        except RobocopError as error:
+        except UngradableError:
+            raise
+        except Exception as error:  # whatever a hand-in makes of the grader is its own row, and nobody else's
             folder.mkdir(exist_ok=True)
-            problem = str(error).replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")
+            problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
+            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
             write(Grade(name, (), (problem,)), plan, {}, folder)
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
     return Done(
@@ -70,12 +85,12 @@ def work(task: Task) -> Done:
     )
 
 
-def _scratch() -> Optional[str]:
+def _scratch() -> Optional[Path]:
     """This dask worker's folder, which dask removes even after the worker was killed."""
     from distributed import get_worker  # takes half a second
 
     try:
-        return str(get_worker().local_directory)
+        return Path(get_worker().local_directory)
     except ValueError:  # not a dask worker
         return None
 

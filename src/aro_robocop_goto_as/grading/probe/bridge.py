@@ -1,7 +1,9 @@
 """The bridge's scenarios: clicks as RViz publishes them, and an action server controlled by the grader."""
 
+import math
+from dataclasses import replace
 from functools import partial
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, List, Sequence
 
 import actionlib
 import rospy
@@ -18,6 +20,7 @@ from aro_robocop_goto_as.msg import (
 from ...geometry import Pose2D, Twist2D, compose, inverse
 from ...ros import graph
 from .. import record as rec
+from ..checks.bridge import PENDING_ENDS, has_reports
 from ..handout import ACTION
 from ..plan import Plan
 from ..record import Record
@@ -41,16 +44,24 @@ FRAMES = ("base_footprint", "map")
 
 
 class BridgeRun:
-    """One submission's bridge."""
+    """One submission's bridge.
 
-    def __init__(self, plan: Plan, launch: Callable[[Run], Node], stage: Stage) -> None:
+    Its goals stay PENDING for a fixed simulated time: how long they do with a real server depends on that server, and
+    a bridge that takes PENDING for the end would be right or wrong by chance.
+    """
+
+    def __init__(self, plan: Plan, launch: Callable[[Run], Node], stage: Stage, machinery: Sequence[int]) -> None:
         self.plan = plan
         self.launch = launch
         self.stage = stage
-        self.run = Run(stage, "bridge")
+        # A timer with a longer period can't report often enough, so every timer that can meets a PENDING goal.
+        self.pending_time = plan.limits.status_span / max(1.0, plan.limits.status_reports)
+        self.run = Run(stage, "bridge", machinery)
         self.run.handlers.update({"sent": self._on_sent, "goal": self._on_goal, "cancel": self._on_cancel})
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
-        self.handles: Dict[str, Any] = {}
+        self.handles: Dict[str, Any] = {}  # of goals that have not ended, by id
+        self.accepted_from: Dict[str, float] = {}  # likewise of PENDING goals: when they are accepted [s]
+        self.records: Dict[str, Record] = {}  # of the scenarios so far
         self.server: Any = None
         self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
 
@@ -80,10 +91,18 @@ class BridgeRun:
 
     def _on_goal(self, handle: Any) -> None:
         name = handle.get_goal_id().id
-        handle.set_accepted()
         self.handles[name] = handle
+        self.accepted_from[name] = self.stage.now + self.pending_time - 1e-6
         self._note_if_cancelled(name)
-        handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
+        self._accept_goals()
+
+    def _accept_goals(self) -> None:
+        """Accept the goals that have been PENDING for their time."""
+        for name, handle in self.handles.items():
+            if self.accepted_from.get(name, math.inf) <= self.stage.now:
+                del self.accepted_from[name]
+                handle.set_accepted()
+                handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
 
     def _on_cancel(self, message: GoalID) -> None:
         """Preempt the goals that a cancel request is for.
@@ -100,8 +119,12 @@ class BridgeRun:
                 self.run.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
                 handle.set_canceled(GoToPositionResult(False, "cancelled"))
                 del self.handles[goal.id]
+                self.accepted_from.pop(goal.id, None)
 
     def _finish_goals(self) -> None:
+        """Let all goals succeed, each once it has been accepted."""
+        while self.accepted_from:
+            self._tick()
         for handle in self.handles.values():
             handle.set_succeeded(GoToPositionResult(True, "there"))
         self.handles.clear()
@@ -109,21 +132,20 @@ class BridgeRun:
     # -- clicks --
 
     def _click(self, frame: str, x: float, y: float) -> None:
+        """A 2D Nav Goal; then let time pass until a goal has come, for REACTION_TIME at most."""
         robot, to_map = self.stage.odom_from_footprint(), inverse(self.stage.sim.map_from_odom())
         odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
         self.run.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
         message = PoseStamped()
         message.header.frame_id, message.header.stamp = frame, self.stage.stamp
         message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
-        self.clicks.publish(message)
-
-    def _wait_for_goal(self, seconds: float = REACTION_TIME) -> None:
-        """Let time pass until another goal has come, or for `seconds`."""
         count = len(self.run.parts["goals"])
-        for _ in range(int(seconds * 10)):
-            self.run.tick()
+        self.clicks.publish(message)
+        self.run.rest()  # what the bridge does at once takes no simulated time
+        for _ in range(int(REACTION_TIME * 10)):
             if len(self.run.parts["goals"]) > count:
                 return
+            self._tick()
 
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
@@ -133,9 +155,18 @@ class BridgeRun:
                 text = f"published on {topic.name}"
                 self.reports[topic.name] = self.stage.listen(topic.name, rospy.AnyMsg, "line", partial(_text, text))
 
+    def _tick(self) -> None:
+        self.run.tick()
+        self._accept_goals()
+        self.run.rest()  # its client has learned the state before time goes on
+
     def _advance(self, seconds: float) -> None:
         for _ in range(int(seconds * 10)):
-            self.run.tick()
+            self._tick()
+
+    def _finish(self, name: str, **more: Any) -> Record:
+        self.records[name] = self.run.finish(name, **more)
+        return self.records[name]
 
     # -- scenarios, in this order --
 
@@ -149,7 +180,7 @@ class BridgeRun:
         if self.clicks.get_num_connections():
             self._click("odom", 0.5, 0.1)
         self._advance(3.0)
-        return run.finish("no_server", up=not run.death_recorded)
+        return self._finish("no_server", up=not run.death_recorded)
 
     def _is_connected(self) -> bool:
         return bool(self.clicks.get_num_connections() or self.run.subscribers["cancel"].get_num_connections())
@@ -167,14 +198,21 @@ class BridgeRun:
         run.marks["listeners"] = float(self.clicks.get_num_connections())
         run.marks["clients"] = float(self.server.goal_sub.get_num_connections())
         self._click("odom", 1.2, -0.4)
-        self._wait_for_goal()
+        while run.parts["goals"] and self.stage.now < run.parts["goals"][-1].time + self.pending_time:
+            self._tick()
         run.marks["watching"] = self.stage.now
-        for _ in range(int(self.plan.limits.status_span)):
-            self._subscribe_to_reports()
-            self._advance(1.0)
+        self._watch_reports(self.plan.limits.status_span)
         for subscriber in self.reports.values():
             subscriber.unregister()
-        return run.finish("click", up=up and not run.death_recorded)
+        self.reports.clear()
+        return self._finish("click", up=up and not run.death_recorded)
+
+    def _watch_reports(self, seconds: float) -> None:
+        """Let time pass, and record what is published on topics that appear meanwhile."""
+        for tenth in range(int(round(seconds * 10))):
+            if tenth % 10 == 0:
+                self._subscribe_to_reports()
+            self._tick()
 
     def _server_is_connected(self) -> bool:
         inner = self.server
@@ -194,9 +232,8 @@ class BridgeRun:
             run.add("goals", goal)
         run.marks["clicked"] = self.stage.now
         self._click("odom", -0.6, 0.9)
-        self._wait_for_goal()
         self._advance(2.0)
-        return run.finish("replace", up=not run.death_recorded)
+        return self._finish("replace", up=not run.death_recorded)
 
     def frame(self, bag: str) -> Record:
         """Clicks in other frames, after the robot has moved, where map differs from odom."""
@@ -209,11 +246,40 @@ class BridgeRun:
             self._advance(seconds)
         for frame in FRAMES:
             self._click(frame, 1.0, 0.2)
-            self._wait_for_goal()
             self._advance(0.5)
             self._finish_goals()
             self._advance(0.5)
-        return run.finish("frame", up=not run.death_recorded)
+        return self._finish("frame", up=not run.death_recorded)
+
+    def explained(self) -> List[Record]:
+        """The records of scenarios that went wrong, with marks that tell whether a PENDING goal was the reason.
+
+        Goals are now accepted at once, in no simulated time, so the bridge's timers find them ACTIVE.
+        """
+        click, replaced = self.records["click"], self.records["replace"]
+        reported = has_reports(click, self.plan.limits)
+        cancelled = bool(replaced.cancels)
+        if (reported and cancelled) or not click.goals or self.run.death_recorded:
+            return []
+        run = self.run
+        self._finish_goals()
+        self.pending_time = 0.0
+        run.begin(0)
+        run.settle(1.0)
+        self._click("odom", 1.2, -0.4)
+        run.marks["watching"] = self.stage.now
+        self._watch_reports(self.plan.limits.status_span)
+        cancels = len(run.parts["cancels"])
+        self._click("odom", -0.6, 0.9)
+        self._advance(1.0)
+        self._finish_goals()
+        trial = run.finish("trial")
+        found = []
+        if not reported and has_reports(trial, self.plan.limits):
+            found.append(replace(click, marks={**click.marks, PENDING_ENDS: 1.0}))
+        if not cancelled and len(trial.cancels) > cancels:
+            found.append(replace(replaced, marks={**replaced.marks, PENDING_ENDS: 1.0}))
+        return found
 
     def close(self) -> None:
         """End the node."""

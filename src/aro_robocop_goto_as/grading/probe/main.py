@@ -5,7 +5,7 @@ import os
 import sys
 import time
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Sequence
 from urllib.parse import urlparse
 
 import rosgraph
@@ -74,8 +74,8 @@ def _serve_gazebo(stage: Stage) -> None:
     serve(stage.loop)
 
 
-def _server(job: Job, stage: Stage) -> None:
-    server = ServerRun(job.plan, job.launch, stage)
+def _server(job: Job, stage: Stage, machinery: Sequence[int]) -> None:
+    server = ServerRun(job.plan, job.launch, stage, machinery)
     try:
         job.begin("start", "The node starts")
         start = server.start(job.bag("start"))
@@ -88,32 +88,35 @@ def _server(job: Job, stage: Stage) -> None:
         server.close()
 
 
-def _bridge(job: Job, stage: Stage) -> None:
-    bridge = BridgeRun(job.plan, job.launch, stage)
+def _bridge(job: Job, stage: Stage, machinery: Sequence[int]) -> None:
+    bridge = BridgeRun(job.plan, job.launch, stage, machinery)
     try:
         for name in BRIDGE_SCENARIOS:
             scenario = getattr(bridge, name)
             job.begin(name, scenario.__doc__)
             job.keep(scenario(job.bag(name)))
+        for record in bridge.explained():
+            job.keep(record)
     finally:
         bridge.close()
 
 
-def _start_master() -> None:
-    """Start a master at ROS_MASTER_URI, in this process's session, which the grader ends as a whole."""
+def _start_master() -> int:
+    """Start a master at ROS_MASTER_URI, in this process's session, which the grader ends as a whole; its process id."""
     port = urlparse(os.environ["ROS_MASTER_URI"]).port
-    child.start(["rosmaster", "--core", "-p", str(port)], start_new_session=False)
+    master = child.start(["rosmaster", "--core", "-p", str(port)], start_new_session=False)
     deadline = time.monotonic() + MASTER_TIMEOUT
     while not rosgraph.is_master_online():
         if time.monotonic() > deadline:
             sys.exit(f"no ROS master within {MASTER_TIMEOUT:g} s")
         time.sleep(0.02)
+    return int(master.pid)
 
 
 def main() -> None:
     """Usage: main JOB.json, with a free port in ROS_MASTER_URI."""
     job = Job(sys.argv[1])
-    _start_master()
+    machinery = [os.getpid(), _start_master()]
     rospy.set_param("/use_sim_time", True)
     for name, value in job.parameters.items():
         rospy.set_param(name, value)
@@ -127,7 +130,7 @@ def main() -> None:
         if job.watched:
             job.watch = stage.watch = Watch(stage.robot, PARAMS, job.plan, job.out / f"{job.part}-rviz.log")
             job.watch.open()
-        (_server if job.part == "server" else _bridge)(job, stage)
+        (_server if job.part == "server" else _bridge)(job, stage, machinery)
     except GraderLostError as error:
         print(error, file=sys.stderr)
         status = 1

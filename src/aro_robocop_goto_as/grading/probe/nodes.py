@@ -32,6 +32,11 @@ class Node:
             if size <= MAX_OUTPUT:
                 self._on_line(line.decode(errors="replace").rstrip("\n"))
 
+    @property
+    def pid(self) -> int:
+        """The id of its outermost process."""
+        return int(self._process.pid)
+
     def status(self) -> Optional[int]:
         """The exit status of a node that ended by itself; None while it runs."""
         return self._process.poll()

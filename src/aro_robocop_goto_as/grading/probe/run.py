@@ -1,7 +1,7 @@
 """Advances time tick by tick, each time until the submission has answered, and records what it does."""
 
 import time
-from typing import Any, Callable, Dict, List, Optional, Set
+from typing import Any, Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import rosbag
 import rosgraph
@@ -20,7 +20,9 @@ from ...simulation.lockstep import SURE, Lockstep
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
+from . import rest
 from .nodes import Node
+from .one_shot import OneShotSubscriptions
 from .stage import Stage
 
 # [s, wall] how long a tick waits for an answer:
@@ -30,6 +32,16 @@ UNSURE_TIMEOUT = 0.06  # afterwards, for one that may not be due: a slow loop wh
 MUTE_TIMEOUT = 0.5  # instead of the first, for a node that was silent in a whole scenario; later ticks don't wait
 OTHER_STREAM_TIMEOUT = 0.15  # for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback message, but need not
+# [s, wall] how long time stands at most while the node's threads have something to do; a busy machine needs some of it:
+REST_TIMEOUT = 2.0
+RESTLESS_TIMEOUT = 0.02  # of a node that was busy throughout RESTLESS such waits: it polls in a busy loop
+RESTLESS = 3
+REST_POLL = 0.001
+POLLING_AFTER = 0.1  # a node that has not come to rest by then may poll, with a short sleep in between
+START_REST = 0.5  # while the node starts
+ONE_SHOT_TIMEOUT = 2.0  # for a node to unsubscribe after a message, if it is to be the subscription's only one
+LASTING_TIMEOUT = 0.3  # likewise, once one of the node's subscriptions has lasted
+TREE_PERIOD = 0.5  # between two looks for the node's child processes
 SETTLE = 0.15  # [s, wall] for what a node does at once, while time stands
 PACE = 0.008  # [s, wall] minimum duration of a tick that needs no answer
 STREAMS = ("command", "feedback")
@@ -42,8 +54,14 @@ NODE_LOST = "the grader's ROS node was shut down while the submission ran"
 class Run:
     """The recording of the current scenario, and the ticks that both parts share."""
 
-    def __init__(self, stage: Stage, part: str) -> None:
+    def __init__(self, stage: Stage, part: str, machinery: Sequence[int] = ()) -> None:
+        """`machinery` are the processes, besides the node's, that have to rest before time may pass."""
         self.stage = stage
+        self._machinery = list(machinery)
+        self._tree: Tuple[float, List[int]] = (0.0, [])  # when it was read, the node's processes
+        self._restless = 0  # waits in a row at whose end the node was still busy
+        self.one_shot = OneShotSubscriptions(stage.sensor_topics)
+        stage.after_publishing = self._serve_one_shot
         self.part = part
         self.node: Optional[Node] = None
         self.lockstep = Lockstep()
@@ -182,10 +200,11 @@ class Run:
 
     # -- time --
 
-    def tick(self, pace: float = PACE, real_time: bool = True) -> None:
-        """One control tick. While a goal is active it lasts until the node answers, otherwise `pace` [s, wall].
+    def tick(self, pace: float = PACE, real_time: bool = True, patience: float = REST_TIMEOUT) -> None:
+        """One control tick. While a goal is active it lasts until the node answers, otherwise `pace` [s, wall] or more.
 
-        `real_time`: a watched run is shown at real time.
+        In both cases until it is at rest, for at most `patience` [s, wall]. `real_time`: a watched run is shown at
+        real time.
         """
         if shutdown_has_begun():
             raise GraderLostError(NODE_LOST)
@@ -200,6 +219,7 @@ class Run:
             self._await_answers()
         else:
             self.drain(lambda: False, max(1e-3, pace - (self.stage.wall() - started)))
+            self.rest(patience)
         self._record_death()
 
     def _await_answers(self) -> None:
@@ -209,7 +229,8 @@ class Run:
         """
 
         def done() -> bool:
-            return self.awaiting in self.ended or not self.lockstep.missing() or self._dead()
+            answered = self.awaiting in self.ended or not self.lockstep.missing()
+            return answered or self._dead() or self.one_shot.waiting()
 
         timeout = MUTE_TIMEOUT if self.mute else FIRST_TIMEOUT
         if self.fell_silent:
@@ -222,6 +243,44 @@ class Run:
                 break
         if self.awaiting not in self.ended and len(self.heard) < len(STREAMS):
             self.drain(lambda: len(self.heard) == len(STREAMS), SAME_ITERATION)
+        self.rest()
+
+    def rest(self, timeout: float = REST_TIMEOUT) -> bool:
+        """Let time stand until the node has done all it can do now; False if it is busy for too long."""
+        if self._restless >= RESTLESS:
+            timeout = min(timeout, RESTLESS_TIMEOUT)
+        started = time.monotonic()
+        while not self._at_rest(time.monotonic() - started > POLLING_AFTER or self.one_shot.waiting()):
+            if time.monotonic() - started >= timeout:
+                self._restless += 1
+                return False
+            self.drain(lambda: False, REST_POLL)
+        self._restless = 0
+        self.stage.excuse(time.monotonic() - started)
+        return True
+
+    def _at_rest(self, polling: bool) -> bool:
+        if self.stage.loop.jobs_waiting or self.node is None:
+            return not self.stage.loop.jobs_waiting
+        read, pids = self._tree
+        if time.monotonic() - read > TREE_PERIOD:
+            pids = rest.tree([self.node.pid])
+            self._tree = time.monotonic(), pids
+        return rest.at_rest([*self._machinery, *pids], polling) and not self.stage.loop.jobs_waiting
+
+    def _serve_one_shot(self) -> None:
+        """After messages were sent: hold time until a node that needed one of them has made use of it."""
+        if not self.awaiting or self.awaiting in self.ended:
+            return
+        if self.one_shot.served():
+            timeout = LASTING_TIMEOUT if self.one_shot.lasting_seen else ONE_SHOT_TIMEOUT
+            started = time.monotonic()
+            if self.drain(lambda: self._dead() or not self.one_shot.served(), timeout):
+                self.stage.excuse(time.monotonic() - started)
+            else:
+                self.one_shot.keep_served()
+        if self.one_shot.seen:
+            self.rest()
 
     def follow_goal(self, goal: str) -> None:
         """From now on ticks wait for answers to this goal, which has just been sent."""
@@ -235,6 +294,7 @@ class Run:
         )
         self.accepts_late = not (soon or busy)
         self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
+        self.rest()
         for stream in STREAMS:
             self.lockstep.commanded(stream)
 
@@ -244,6 +304,7 @@ class Run:
         self.drain(lambda: False, SETTLE)
         for _ in range(int(round(seconds * 10))):
             self.tick()
+        self.one_shot.forget()
 
     # -- the node --
 
@@ -256,7 +317,10 @@ class Run:
         status = self.node.status()
         if status is not None:
             self.death_recorded = True
-            self.add("deaths", rec.Death(self.stage.now, status, self.node.guard.reason))
+            reason = self.node.guard.reason
+            if not reason and status in rec.OUT_OF_TIME:
+                reason = "it used more processor time than a node may"
+            self.add("deaths", rec.Death(self.stage.now, status, reason))
 
     def wait_for(self, condition: Callable[[], bool], timeout: float, pace: float = PACE) -> bool:
         """Let time pass until a condition holds, the node is dead or `timeout` [s, wall] is over; whether it holds.
@@ -268,5 +332,7 @@ class Run:
             if self._dead() or time.monotonic() >= deadline:
                 self._record_death()
                 return condition()
-            self.tick(pace, real_time=False)
+            self.rest(START_REST)  # while it loads its modules
+            self.tick(pace, real_time=False, patience=START_REST)
+            self._restless = 0
         return True

@@ -1,6 +1,6 @@
 """The server's scenarios: goals sent to it on the action's topics, as by any client."""
 
-from typing import Callable, Tuple
+from typing import Callable, Sequence, Tuple
 
 import rospy
 from actionlib_msgs.msg import GoalID
@@ -29,13 +29,13 @@ Launch = Callable[[Run], Node]
 class ServerRun:
     """One submission's server, restarted after a scenario that left it in a bad state."""
 
-    def __init__(self, plan: Plan, launch: Launch, stage: Stage) -> None:
+    def __init__(self, plan: Plan, launch: Launch, stage: Stage, machinery: Sequence[int]) -> None:
         self.plan = plan
         self.limits = plan.limits
         self.progress = GotoParams(stuck_distance=plan.limits.stall_distance, stuck_angle=plan.limits.stall_angle)
         self.launch = launch
         self.stage = stage
-        self.run = Run(stage, "server")
+        self.run = Run(stage, "server", machinery)
         self.deadline = 0.0
         self.goal_topic, self.cancel_topic = _topics()
 
@@ -51,6 +51,7 @@ class ServerRun:
         run = self.run
         run.death_recorded, run.accepts_late, run.known = False, False, {}
         run.node = self.launch(run)
+        run.one_shot.restart()
         log = run.subscribers["log"]
         run.wait_for(lambda: log.get_num_connections() > 0, START_TIMEOUT)
         up = run.wait_for(self._connected, SERVER_TIMEOUT)

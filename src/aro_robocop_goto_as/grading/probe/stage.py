@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import replace
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import genpy
 import numpy as np
@@ -39,6 +39,8 @@ STEPS_PER_TICK = PARAMS.physics_rate // PARAMS.control_rate
 DIGEST = 0.003
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
+MOST_EXCUSED = 600.0  # [s, wall]
+TELL_EVERY = 0.5  # [s, wall]
 MOST_WAITING = 20_000  # messages
 MOST_BAG = 32 * 1024**2  # bytes
 MOST_LISTED = 100  # entries of a message's list
@@ -75,12 +77,23 @@ class Stage(LoopInterface):
         self.odd_scan = False
         self.bag: Optional[rosbag.Bag] = None
         self.tick_number = 0
+        self.after_publishing: Callable[[], None] = lambda: None  # called after each step with something to publish
         self.watch: Optional[Watch] = None  # RViz, where the run is shown
         self._real_time = True
+        self._excused, self._untold = 0.0, 0.0  # [s, wall] in total, and of these not yet told to the grader
 
     def wall(self) -> float:
-        """The wall clock [s] for deadlines: without the time spent for RViz."""
-        return time.monotonic() - (0.0 if self.watch is None else self.watch.slept)
+        """The wall clock [s] for deadlines: without the time spent for RViz, and without what was excused."""
+        return time.monotonic() - self._excused - (0.0 if self.watch is None else self.watch.slept)
+
+    def excuse(self, seconds: float) -> None:
+        """Have time [s, wall] that a node needed for its work, as on a busy machine, not count towards deadlines."""
+        seconds = min(seconds, MOST_EXCUSED - self._excused)
+        self._excused += seconds
+        self._untold += seconds
+        if self._untold > TELL_EVERY:
+            print(f"slept {self._untold:.3f}", flush=True)  # the grader's own deadline
+            self._untold = 0.0
 
     @property
     def now(self) -> float:
@@ -141,10 +154,14 @@ class Stage(LoopInterface):
         """
         self.tick_number += 1
         self._real_time = real_time
-        subscriptions = self.subscriptions()
         for _ in range(STEPS_PER_TICK):
-            self.loop.advance(subscriptions)
+            if self.loop.advance(self.subscriptions()) is not None:
+                self.after_publishing()
         return self.sample()
+
+    def sensor_topics(self) -> List[rospy.Publisher]:
+        """The topics of the robot's measurements."""
+        return [*self.robot.by_sensor.values(), self._transforms.tf]
 
     def subscriptions(self) -> Subscriptions:
         """The submission's; odometry and transforms always, for the bag; wheel angles for RViz only."""
