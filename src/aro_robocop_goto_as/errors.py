@@ -117,7 +117,7 @@ class WatchError(GradingSetupError):
 
 
 class UngradableError(GradingError):
-    """A run was ended from outside, twice: neither the submission nor the grader is known to be the reason."""
+    """The grader could not start its part of a run, or the run was ended from outside, twice: it can be repeated."""
 
 
 class GraderLostError(GradingError):

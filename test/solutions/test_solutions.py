@@ -110,7 +110,9 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
         (["/"], "/: expected a submission outside /usr"),
     ],
 )
-@pytest.mark.parametrize("program", ["robocop_grade.py", "robocop_grade_class.py"])
+@pytest.mark.parametrize(
+    "program", ["robocop_grade.py", pytest.param("robocop_grade_class.py", marks=pytest.mark.slow)]
+)
 def test_what_can_not_work_is_refused_before_anything_starts(program, arguments, words, tmp_path):
     (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"].read_text())
     of_class = program == "robocop_grade_class.py"

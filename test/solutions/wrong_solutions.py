@@ -48,7 +48,6 @@ PREEMPTION = """            if self.server.is_preempt_requested():
 """
 VALID = "ahead[(ahead > msg.range_min) & (ahead < msg.range_max)]"
 
-STOP = "self.drive(0.0, 0.0)"
 # The velocity in force, for solutions that forget half of it when they stop.
 W = ("        msg.angular.z = w\n", "        msg.angular.z = self.w = w\n")
 V = ("        msg.linear.x = v\n", "        msg.linear.x = self.v = v\n")
@@ -216,16 +215,15 @@ WRONG = (
     _server(
         "left_half_only",
         "stops_at_obstacle",
-        "ran into an obstacle",
+        "stop before the obstacle",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[:30]"),
     ),
     _server(
         "right_half_only",
         "stops_at_obstacle",
-        "ran into an obstacle",
+        "stop before the obstacle",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[-30:]"),
     ),
-    _server("mean_of_sector", "stops_at_obstacle", "ran into an obstacle", ("valid.min() if", "valid.mean() if")),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
     _server("obstacle_too_early", "stops_at_obstacle", "not 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
     _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),
@@ -296,10 +294,10 @@ WRONG = (
         ("    def stop(self):\n        self.drive(0.0, 0.0)", "    def stop(self):\n        pass"),
     ),
     _server(
-        "stops_only_driving", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(0.0, self.w)"), W
+        "stops_driving_only", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(0.0, self.w)"), W
     ),
     _server(
-        "stops_only_turning", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(self.v, 0.0)"), V
+        "stops_turning_only", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(self.v, 0.0)"), V
     ),
     _server(
         "preempted_only_while_driving",

@@ -11,7 +11,7 @@ from pathlib import Path
 from subprocess import PIPE
 from typing import Callable, Dict, List, Optional, Sequence
 
-from ..errors import GradingError
+from ..errors import UngradableError
 from ..process import child
 from ..process.ports import free_port
 from . import record as rec
@@ -52,7 +52,7 @@ def run(
 ) -> Recorded:
     """Run all scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
 
-    If watched, the run is shown in RViz at real time; GradingError where RViz can't be opened.
+    If watched, the run is shown in RViz at real time. UngradableError where RViz or the ROS master can't be started.
     """
     out.mkdir(parents=True, exist_ok=True)
     home = out / "home"
@@ -140,7 +140,7 @@ def _supervise(
             elif word == "slept":  # to show the run at real time: does not count as the submission's time
                 deadline += float(rest)
             elif word == "error":
-                raise GradingError(rest)
+                raise UngradableError(rest)
     finally:
         status = child.end(process, None, grace)
         guard.stop()

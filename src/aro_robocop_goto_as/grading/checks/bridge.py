@@ -77,9 +77,11 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     if has_reports(record, limits):
         return Passed()
     cause = (
-        "Create a rospy.Timer whose callback logs, prints or publishes the action client's state; it has to report "
-        "repeatedly while a goal is active"
+        "A rospy.Timer has to log, print or publish the action client's state, and to report repeatedly while a goal "
+        "is active: is it created, and does nothing end it?"
     )
+    if not record.marks.get("clients", 1.0):  # it may wait for the server before it creates its timer
+        cause = _missing_connection(record)
     if PENDING_ENDS in record.marks:
         cause = f"{PENDING_CAUSE}. Its reports end with it"
     return Failed(

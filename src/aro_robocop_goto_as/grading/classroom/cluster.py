@@ -57,7 +57,7 @@ def connected(place: Place) -> Iterator[Client]:
                     host="127.0.0.1",
                     protocol="tls",
                     security=Security.temporary(),  # a key that nobody else on this machine has
-                    dashboard_address=None,
+                    dashboard_address="127.0.0.1:0",
                     silence_logs=50,
                     local_directory=scratch,
                 )

@@ -23,7 +23,7 @@ from .server import ServerRun
 from .stage import PARAMS, Stage
 from .watch import Watch
 
-MASTER_TIMEOUT = 20.0  # [s, wall]
+MASTER_TIMEOUT = 60.0  # [s, wall]
 
 
 class Job:
@@ -108,7 +108,8 @@ def _start_master() -> int:
     deadline = time.monotonic() + MASTER_TIMEOUT
     while not rosgraph.is_master_online():
         if time.monotonic() > deadline:
-            sys.exit(f"no ROS master within {MASTER_TIMEOUT:g} s")
+            print(f"error no ROS master within {MASTER_TIMEOUT:g} s: is the machine too busy?", flush=True)
+            sys.exit(1)
         time.sleep(0.02)
     return int(master.pid)
 

@@ -39,6 +39,7 @@ RESTLESS = 3
 REST_POLL = 0.001
 POLLING_AFTER = 0.1  # a node that has not come to rest by then may poll, with a short sleep in between
 START_REST = 0.5  # while the node starts
+MOST_BUSY = 20.0  # in total while it starts, besides the time-out for that
 ONE_SHOT_TIMEOUT = 2.0  # for a node to unsubscribe after a message, if it is to be the subscription's only one
 LASTING_TIMEOUT = 0.3  # likewise, once one of the node's subscriptions has lasted
 TREE_PERIOD = 0.5  # between two looks for the node's child processes
@@ -327,12 +328,16 @@ class Run:
 
         Not at real time even if watched: a node that takes simulated seconds to start has the same timeout.
         """
-        deadline = time.monotonic() + timeout
+        deadline, excuse = time.monotonic() + timeout, MOST_BUSY
         while not condition():
             if self._dead() or time.monotonic() >= deadline:
                 self._record_death()
                 return condition()
-            self.rest(START_REST)  # while it loads its modules
+            started = time.monotonic()
+            if not self.rest(START_REST):  # it loads its modules, for long on a busy machine
+                spent = min(excuse, time.monotonic() - started)
+                excuse, deadline = excuse - spent, deadline + spent
+                self.stage.excuse(spent)
             self.tick(pace, real_time=False, patience=START_REST)
             self._restless = 0
         return True
