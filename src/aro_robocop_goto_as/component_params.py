@@ -73,14 +73,16 @@ class OdometryParams:
     wheel_radius_error: float  # relative error of the wheel radius that odometry assumes
     slip: float  # standard deviation of the relative overcount of an encoder
     encoder_tick: float  # [rad]; 0: exact
+    source: str = "encoders"  # or "world": the true pose in the world, as Gazebo's odometrySource world
 
 
 @dataclass(frozen=True)
 class ImuNoise:
-    """Standard deviations of the IMU's white noise."""
+    """Standard deviations of the IMU's white noise, and the accelerometer's bias."""
 
     gyro: float  # [rad/s]
     accelerometer: float  # [m/s^2]
+    accelerometer_bias: float = 0.0  # [m/s^2] added to each axis
 
 
 @dataclass(frozen=True)
@@ -123,4 +125,5 @@ class TopicParams:
     ground_truth: bool
     gazebo_services: bool
     publish_map: bool
+    gazebo_topics: bool  # /gazebo/model_states, /gazebo/link_states, imu_service
     real_covariances: bool  # odom and imu carry a TurtleBot3's covariances; else those of the simulated noise

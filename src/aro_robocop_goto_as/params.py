@@ -19,6 +19,8 @@ from .component_params import (
 )
 from .param_loading import frame_problems, parameter, positive
 from .sensors.camera import CameraSpec
+from .sensors.camera_profiles import PROFILES as CAMERA_PROFILES
+from .sensors.camera_profiles import camera_of
 from .sensors.scan_profiles import PROFILES, ScanProfile
 
 MODELS_OWN = "the model's own"
@@ -44,6 +46,7 @@ class SimParams:
     odom_tf: bool = True
     ground_truth: bool = True
     gazebo_services: bool = False
+    gazebo_topics: bool = False
     moving: bool = False
     publish_map: bool = False
     map_resolution: float = positive(0.05)
@@ -78,6 +81,7 @@ class SimParams:
     scan_noise: Optional[float] = parameter(None, low=0.0, high=100.0, otherwise=PROFILES_OWN)
 
     covariances: str = parameter("gazebo", choices=("gazebo", "real"))
+    odom_source: str = parameter("encoders", choices=("encoders", "world"))
     odom_rate: int = parameter(30, low=1)
     odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)
     odom_slip: float = parameter(0.0, low=0.0, high=1.0)
@@ -89,13 +93,15 @@ class SimParams:
     battery_state_rate: int = parameter(0, low=0)
     magnetic_field_rate: int = parameter(0, low=0)
     camera_rate: int = parameter(10, low=0)
-    camera_width: int = parameter(160, low=1, high=4096)
-    camera_height: int = parameter(120, low=1, high=4096)
-    camera_angle: float = parameter(1.02974, low=0.01, high=3.0)
+    camera_profile: str = parameter("small", choices=tuple(CAMERA_PROFILES))
+    camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
+    camera_height: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
+    camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)
     camera_range_min: float = positive(0.05)
     camera_range_max: float = positive(10.0)
     gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)
     accelerometer_noise: float = parameter(1.7e-2, low=0.0, high=100.0)
+    accelerometer_bias: float = parameter(0.0, low=-100.0, high=100.0)
 
     world_frame: str = "world"
     map_frame: str = "map"
@@ -153,11 +159,13 @@ class SimParams:
 
     def odometry(self) -> OdometryParams:
         """Of wheel odometry."""
-        return OdometryParams(self.odom_rate, self.odom_wheel_radius_error, self.odom_slip, self.encoder_tick)
+        return OdometryParams(
+            self.odom_rate, self.odom_wheel_radius_error, self.odom_slip, self.encoder_tick, self.odom_source
+        )
 
     def imu_noise(self) -> ImuNoise:
         """Of the IMU."""
-        return ImuNoise(self.gyro_noise, self.accelerometer_noise)
+        return ImuNoise(self.gyro_noise, self.accelerometer_noise, self.accelerometer_bias)
 
     def frames(self) -> FrameNames:
         """Names of all frames."""
@@ -182,6 +190,7 @@ class SimParams:
             ground_truth=self.ground_truth,
             gazebo_services=self.gazebo_services,
             publish_map=self.publish_map,
+            gazebo_topics=self.gazebo_topics,
             real_covariances=self.covariances == "real",
         )
 
@@ -199,10 +208,15 @@ class SimParams:
             given["accuracy"] = ()
         return ScanProfile(rate, replace(spec, **given))
 
-    def camera(self) -> CameraSpec:
-        """The camera of the models that have one."""
+    def camera(self, model: str) -> CameraSpec:
+        """The camera of a model, by its name: the profile's figures, and those that are given in their place."""
+        width, height, angle = camera_of(self.camera_profile, model)
         return CameraSpec(
-            self.camera_width, self.camera_height, self.camera_angle, self.camera_range_min, self.camera_range_max
+            width if self.camera_width is None else self.camera_width,
+            height if self.camera_height is None else self.camera_height,
+            angle if self.camera_angle is None else self.camera_angle,
+            self.camera_range_min,
+            self.camera_range_max,
         )
 
     def conflicts(self) -> List[str]:

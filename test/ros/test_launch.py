@@ -61,6 +61,8 @@ def test_single_robot_has_no_namespace_or_prefix():
         pytest.param("50", [f"robot_{i}" for i in range(1, 51)], marks=pytest.mark.slow),
         ("red 0 0", ["red"]),
         ("red 0 0.5; blue_2 1 -1 3.14", ["red", "blue_2"]),
+        ("true 0 0", ["true"]),
+        ("FALSE 0 0; True 1 1", ["FALSE", "True"]),
     ],
 )
 def test_each_of_many_robots_has_its_nodes_in_its_namespace_and_its_frames(robots, names):
@@ -202,6 +204,23 @@ def test_strings_that_look_like_numbers_or_booleans_stay_strings():
 def test_a_seed_that_is_not_a_32_bit_integer_is_refused_by_the_node(seed):
     with pytest.raises(ParameterError, match=f"seed: expected int, got str '{seed}'"):
         from_dict(SimParams, Launch(f"seed:={seed}", file="robocop_sim.launch").given(SIM), SIM)
+
+
+def test_spawn_pose_can_be_given_as_to_turtlebot3_gazebo():
+    def spawn(*arguments):
+        return Launch(*arguments).given(SIM).get("spawn")
+
+    assert spawn() is None
+    assert spawn("x_pos:=-2.0", "y_pos:=-0.5") == "-2.0 -0.5 0"
+    assert spawn("yaw:=1.57") == "0 0 1.57"
+    assert spawn("x_pos:=1", "spawn:=3 4") == "3 4"
+
+
+@pytest.mark.parametrize("file", ["robocop_sim.launch", "robocop_goto_as.launch"])
+def test_model_comes_from_the_environment_as_for_turtlebot3_unless_it_is_given(monkeypatch, file):
+    monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle_pi")
+    assert Launch(file=file).given(SIM)["model"] == "waffle_pi"
+    assert Launch("model:=burger", file=file).given(SIM)["model"] == "burger"
 
 
 def test_profile_overrides_the_default_and_arguments_override_both():

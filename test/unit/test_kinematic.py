@@ -15,6 +15,7 @@ from aro_robocop_goto_as.robot.base_controller import wheel_speeds
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.motion import Motion
 
 RADIUS = 0.105
 WALL = World("wall", (Obstacle("wall", Pose3D((2.0, 0.0, 0.25)), Box((0.02, 4.0, 0.5))),), Pose2D(), (), "")
@@ -56,6 +57,18 @@ def test_robot_stops_in_contact_with_a_wall_at_any_speed(burger: RobotModel, v: 
         engine.step()
     assert engine.state(0).world_from_footprint.x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
     assert engine.touching(0) and engine.state(0).twist.v == pytest.approx(0.0, abs=1e-3)
+
+
+def test_robot_that_a_moving_obstacle_pushes_stops_at_another_robot(burger: RobotModel) -> None:
+    along_x = Motion(Pose2D(-0.3, 0.0), waypoints=((10.0, 1.0, 0.0),))
+    block = Obstacle("block", Pose3D((-0.3, 0.0, 0.25)), Cylinder(0.1, 0.5), along_x)
+    engine = _kinematics(burger, World("push", (block,), Pose2D(), (), ""), Pose2D(), Pose2D(0.3, 0.0))
+    for step in range(1, 100):
+        engine.step()
+        engine.move_obstacles(step / 30.0)
+    x = [engine.state(robot).world_from_footprint.x for robot in (0, 1)]
+    assert x == pytest.approx([0.3 - 2.0 * RADIUS, 0.3], abs=1e-5)
+    assert engine.touching(0)
 
 
 def test_robot_at_a_wall_can_turn_and_back_out(burger: RobotModel) -> None:

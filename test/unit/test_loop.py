@@ -8,7 +8,7 @@ from fakes import FakeClock, FakeEngine
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.component_params import LockstepParams, TimeParams
-from aro_robocop_goto_as.errors import CommandError, ShutdownError, WorldError
+from aro_robocop_goto_as.errors import CommandError, PlaceError, ShutdownError, WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.base_controller import limits_from
@@ -83,7 +83,7 @@ def make(
     world, model = world_named("empty"), model_named("burger")
     engine = FakeEngine(PARAMS.physics_rate)
     limits = [limits_from(PARAMS.limits(), model.figures)]
-    simulator = Simulator(simulator_config(PARAMS), world, engine, [RobotSpec("", model, ORIGIN)], limits)
+    simulator = Simulator(simulator_config(PARAMS, [model]), world, engine, [RobotSpec("", model, ORIGIN)], limits)
     params = LockstepParams(lockstep, PARAMS.control_rate, 2.0)
     recorder.loop = SimulationLoop(simulator, TimeParams(factor, paused, reset_time), params, recorder, clock)
     return recorder.loop
@@ -132,6 +132,18 @@ def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
     assert begun == [True, False]
     assert ended == [60]
     assert loop.paused and loop.simulator.steps == 60
+
+
+def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
+    clock, recorder = FakeClock(), Recorder(end=1.0)
+    loop = make(recorder, clock, paused=True)
+    ended: List[int] = []
+    clock.at(0.1, lambda: loop.post(lambda: loop.begin_span(0.25, lambda: ended.append(loop.simulator.steps))))
+    clock.at(0.2, lambda: loop.post(lambda: loop.set_paused(False)))
+    clock.at(5.0, lambda: setattr(recorder, "on_stopped", lambda: True))
+    loop.run()
+    assert ended == [60]
+    assert loop.simulator.time == pytest.approx(1.0, abs=0.01)
 
 
 def test_command_moves_the_robot() -> None:
@@ -232,6 +244,17 @@ def test_reset_and_place_announce_new_frames_and_drop_pending_commands() -> None
     assert recorder.events == ["frames", "frames", "status"]
     loop.run()
     assert loop.simulator.world_from_footprint() == ORIGIN
+
+
+def test_a_robot_is_placed_only_where_it_has_room() -> None:
+    recorder = Recorder()
+    loop = make(recorder, FakeClock())
+    loop.change_world(lambda world: world_named("stage_2"))
+    with pytest.raises(PlaceError, match="expected at least the robot's radius"):
+        loop.place_with_room(Pose2D(0.6, 0.6))
+    assert loop.simulator.world_from_footprint() == ORIGIN
+    loop.place_with_room(Pose2D(0.0, 1.0))
+    assert loop.simulator.world_from_footprint() == Pose2D(0.0, 1.0)
 
 
 def test_simulator_advances_before_it_measures_and_reads_bodies_only_for_subscribed_imus() -> None:

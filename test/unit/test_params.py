@@ -53,7 +53,7 @@ def test_rates_of_the_kinematic_configuration_are_consistent() -> None:
     "raw, expected",
     [
         ({"wrold": "stage_1"}, "wrold: unknown parameter; did you mean 'world'?"),
-        ({"zzz": 1}, "zzz: unknown parameter; known are: accelerometer_noise, "),
+        ({"zzz": 1}, "zzz: unknown parameter; known are: accelerometer_bias, "),
         ({"scan_rate": "10"}, "scan_rate: expected int, got str '10'"),
         ({"scan_rate": 10.0}, "scan_rate: expected int, got float 10.0"),
         ({"gui": 1}, "gui: expected bool, got int 1"),

@@ -35,6 +35,7 @@ def _params(name: str, **given: Any) -> SimParams:
     "profile, model, expected",
     [
         ("gazebo", "burger", (0.22, 2.84, 1.0, 3.2, 0.0)),
+        ("turtlebot3_gazebo", "waffle_pi", (0.26, 1.82, 1.0, 3.2, 0.0)),
         ("real", "burger", (0.2108, 2.635, 2.5, 3.2, 0.5)),
         ("real", "waffle_pi", (0.2661, 1.854, 2.5, 3.2, 0.5)),
         ("real", "turtlebot2", (1.5, 6.6, 1.0, 2.0, 0.6)),
@@ -47,6 +48,31 @@ def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, exp
 @pytest.mark.parametrize("model, timeout", [("burger", 0.5), ("waffle", 0.5), ("turtlebot2", 0.6)])
 def test_without_a_profile_a_robot_brakes_after_its_models_own_timeout(model: str, timeout: float) -> None:
     assert limits_from(SimParams().limits(), model_named(model).figures).timeout == timeout
+
+
+def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
+    p = _params("turtlebot3_gazebo")
+    scan = p.scanner()
+    assert (scan.rate, scan.spec.samples, scan.spec.range_min, scan.spec.range_max) == (5, 360, 0.12, 3.5)
+    assert (p.topics().localization, p.topics().initialpose, p.topics().gazebo_topics) == ("none", False, True)
+    cameras = [p.camera(f"turtlebot3_{name}") for name in ("waffle", "waffle_pi", "burger_rgbd")]
+    assert [(it.width, it.height, it.angle) for it in cameras] == [
+        (1920, 1080, 1.3439),
+        (640, 480, 1.0856),
+        (160, 120, 1.02974),
+    ]
+    assert _params("turtlebot3_gazebo", camera_width=80).camera("turtlebot3_waffle").width == 80
+    assert SimParams().camera("turtlebot3_waffle").width == 160
+
+
+def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
+    sim = simulator("stage_1", Pose2D(0.5, 0.0), **_profile("turtlebot3_gazebo"))
+    seen = [sim.step(everything(1)) for _ in range(240)]
+    samples = [it.imus[0].linear_acceleration for it in seen if it is not None and it.imus]
+    assert len(samples) == 240
+    assert np.mean(samples, axis=0) == pytest.approx([0.1, 0.1, 9.90665], abs=0.01)
+    scans = [it.scans[0] for it in seen if it is not None and it.scans]
+    assert len(scans) == 5 and not np.isinf(scans[0]).any()
 
 
 def test_explicit_value_overrides_the_profile() -> None:

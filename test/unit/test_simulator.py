@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from support import analytic_distances, everything, lean, world_named
 
 from aro_robocop_goto_as.errors import CommandError
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, wrap_angle
 from aro_robocop_goto_as.simulation.clock import due
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -155,6 +155,37 @@ def test_placing_the_robot_changes_map_from_odom_instead_of_odometry(simulator: 
     sim.place(Pose2D(1.0, -1.0, 1.0))
     assert sim.map_from_odom().yaw == pytest.approx(1.0, abs=0.01)
     assert sim.map_from_odom().x == pytest.approx(1.0 - 0.2 * math.cos(1.0), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "params, accuracy", [({}, 1e-9), ({"encoder_tick": 0.0015}, 1e-3), ({"odom_slip": 0.05}, 0.012)]
+)
+def test_placing_the_robot_between_odometry_updates_loses_no_travel(
+    simulator: Make, params: "dict[str, float]", accuracy: float
+) -> None:
+    sim = simulator("empty", drive="kinematic", max_linear_acceleration=1e3, odom_rate=10, **params)
+    for _ in range(240 + 23):  # 23 of the 24 steps between two updates
+        sim.command(Twist2D(0.2, 0.0))
+        sim.step({"odom": [0]})
+    sim.place(Pose2D(1.0, -1.0, 1.0))
+    for _ in range(24):
+        seen = sim.step({"odom": [0]})
+        if seen is not None and seen.odometry:
+            odom = seen.odometry[0].odom_from_footprint
+    in_world = compose(sim.map_from_odom(), odom)
+    assert (in_world.x, in_world.y, in_world.yaw) == pytest.approx((1.0, -1.0, 1.0), abs=accuracy)
+
+
+def test_odometry_of_the_world_is_the_true_pose_from_the_start(simulator: Make) -> None:
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", odom_slip=0.1)
+    _drive(sim, Twist2D(0.2, 0.3), 1.0)
+    seen = [it for it in (sim.step({"odom": [0], "ground_truth": [0]}) for _ in range(8)) if it is not None]
+    (odometry,) = [it.odometry[0] for it in seen if it.odometry]
+    (truth,) = [it.ground_truth[0] for it in seen if it.ground_truth]
+    assert odometry.odom_from_footprint == truth.world_from_footprint
+    assert odometry.twist == truth.twist
+    sim.place(Pose2D(1.0, -1.0, 1.0))
+    assert sim.map_from_odom() == Pose2D()
 
 
 def test_encoders_and_ground_truth_differ_when_the_wheels_slip(simulator: Make) -> None:

@@ -97,16 +97,20 @@ class KinematicEngine:
             robot.clearance = 0.0
 
     def move_obstacles(self, time: float) -> None:
-        """Put the moving obstacles where they are at a time [s]; robots in their way are pushed, but not into walls."""
+        """Put the moving obstacles where they are at a time [s].
+
+        Robots in their way are pushed, but not into walls or other robots.
+        """
         self._time = time
         travelled = max([walls.move(time) for walls in self._walls.values()], default=0.0)
-        for robot in self._robots:
+        for i, robot in enumerate(self._robots):
             robot.clearance -= travelled
             if robot.clearance < 0.0:
-                self._push(robot)
+                self._push(i)
 
-    def _push(self, robot: _Robot) -> None:
+    def _push(self, i: int) -> None:
         """Push a robot radially out of the circle that overlaps it most, if one does."""
+        robot = self._robots[i]
         centre = np.array([robot.pose.x, robot.pose.y])
         circles = self._walls[robot.heights].circles
         if not len(circles):
@@ -117,7 +121,11 @@ class KinematicEngine:
         deepest = int(depths.argmax())
         if depths[deepest] > 0.0 and distances[deepest] > 0.0:
             push = offsets[deepest] * (depths[deepest] / distances[deepest])
-            fraction = self._fraction_to_walls(robot, centre, push, float(depths[deepest]))
+            length = float(depths[deepest])
+            fraction = min(
+                self._fraction_to_walls(robot, centre, push, length), self._fraction_to_others(i, centre, push, length)
+            )
+            self._separation = 0.0
             x, y = (centre + push * fraction).tolist()
             robot.pose = Pose2D(x, y, robot.pose.yaw)
             robot.blocked = True
@@ -188,10 +196,12 @@ class KinematicEngine:
         robot, length = self._robots[i], math.hypot(*move)
         centre = np.array([robot.pose.x, robot.pose.y])
         fraction = self._fraction_to_walls(robot, centre, move, length) if robot.clearance < 0.0 else 1.0
-        if crowded:
-            circles = self._others(i) + [0.0, 0.0, robot.radius + CONTACT_MARGIN]
-            fraction = min(fraction, with_margin(fraction_to_circles(centre, move, circles), length))
-        return fraction
+        return min(fraction, self._fraction_to_others(i, centre, move, length)) if crowded else fraction
+
+    def _fraction_to_others(self, i: int, centre: np.ndarray, move: np.ndarray, length: float) -> float:
+        """The fraction of a displacement (2,) [m] that is free of other robots."""
+        circles = self._others(i) + [0.0, 0.0, self._robots[i].radius + CONTACT_MARGIN]
+        return with_margin(fraction_to_circles(centre, move, circles), length)
 
     def _fraction_to_walls(self, robot: _Robot, centre: np.ndarray, move: np.ndarray, length: float) -> float:
         """The fraction of a displacement (2,) [m] that is free of walls; renews the robot's clearance."""

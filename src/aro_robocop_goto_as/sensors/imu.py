@@ -41,5 +41,5 @@ def measure(
     return ImuSample(
         orientation=world_from_imu.orientation,
         angular_velocity=imu_from_world @ np.array(after.angular_velocity) + rng.normal(0.0, noise.gyro, 3),
-        linear_acceleration=imu_from_world @ force + rng.normal(0.0, noise.accelerometer, 3),
+        linear_acceleration=imu_from_world @ force + rng.normal(noise.accelerometer_bias, noise.accelerometer, 3),
     )

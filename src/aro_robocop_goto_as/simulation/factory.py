@@ -1,6 +1,6 @@
 """Parameters -> the simulator: its engine, its robots' limits, its camera renderer."""
 
-from typing import Sequence
+from typing import Iterable, Sequence
 
 from ..component_params import EngineParams
 from ..params import SimParams
@@ -22,13 +22,13 @@ def make_engine(params: EngineParams, world: World) -> Engine:
     return BulletEngine(world, params.physics_rate, params.solver_iterations, params.wheel_torque, params.gui)
 
 
-def simulator_config(p: SimParams) -> SimulatorConfig:
+def simulator_config(p: SimParams, models: Iterable[RobotModel]) -> SimulatorConfig:
     """The simulator's own parameters."""
     return SimulatorConfig(
         p.rates(),
         p.world_params(),
         p.scanner().spec,
-        p.camera(),
+        {model.name: p.camera(model.name) for model in models},
         p.odometry(),
         p.imu_noise(),
         p.localization == "truth",
@@ -45,7 +45,8 @@ def make_simulator(p: SimParams, world: World, robots: Sequence[RobotSpec]) -> S
         from ..sensors.camera_renderer import CameraRenderer
 
         make_renderer = CameraRenderer
-    return Simulator(simulator_config(p), world, make_engine(p.engine(), world), robots, limits, make_renderer)
+    config = simulator_config(p, [robot.model for robot in robots])
+    return Simulator(config, world, make_engine(p.engine(), world), robots, limits, make_renderer)
 
 
 def footprint_radius(p: SimParams, model: RobotModel) -> float:

@@ -105,6 +105,7 @@ class SimulationLoop:
         self._jobs: Jobs[Job] = queue.Queue()
         self._span_end = 0  # step at which a requested span ends; 0 = none
         self._on_span_end: Callable[[], object] = lambda: None
+        self._pause_after_span = True
         self._newly_placed = set(range(len(simulator.robots)))  # since the last clock tick
         self._pending: Dict[int, _Pending] = {}  # lockstep: newest command of each robot, applied at the tick's end
         self._resets = 0
@@ -299,22 +300,26 @@ class SimulationLoop:
     # -- simulated time --
 
     def set_paused(self, paused: bool) -> None:
-        """Hold simulated time, or let it go on."""
-        self.paused = paused
+        """Hold simulated time, or let it go on; during a span, from its end on."""
+        self.paused = self._pause_after_span = paused
         self.pacer.restart(self.simulator.time)
         self._interface.status_changed()
 
     def begin_span(self, duration: float, on_end: Callable[[], object]) -> bool:
-        """Run for `duration` [s, simulated], one step at least, then pause and call `on_end`; False while one runs."""
+        """Run for `duration` [s, simulated], one step at least, then pause and call `on_end`; False while one runs.
+
+        If somebody resumes the simulation meanwhile, it goes on instead.
+        """
         if self._span_end:
             return False
+        self._pause_after_span = True
         steps = max(1, round(duration * self.simulator.config.rates.physics))
         self._span_end, self._on_span_end = self.simulator.steps + steps, on_end
         self.pacer.restart(self.simulator.time)
         return True
 
     def _finish_span(self) -> None:
-        self._span_end, self.paused = 0, True
+        self._span_end, self.paused = 0, self._pause_after_span
         self._on_span_end()
 
     def set_real_time_factor(self, factor: float) -> None:
@@ -346,6 +351,11 @@ class SimulationLoop:
         self._pending.pop(robot, None)
         self._newly_placed.add(robot)
         self._interface.frames_changed()
+
+    def place_with_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
+        """As place, but PlaceError, naming what is in the way, where the robot would overlap something."""
+        self.simulator.require_room(world_from_footprint, robot)
+        self.place(world_from_footprint, robot)
 
     def change_world(self, edit: Callable[[World], World]) -> None:
         """Replace the world by what `edit` makes of it."""

@@ -56,7 +56,7 @@ class SimulatorConfig:
     rates: Rates
     world: WorldParams
     lidar: LidarSpec
-    camera: CameraSpec
+    cameras: Mapping[str, CameraSpec]  # by the models' names
     odometry: OdometryParams
     imu_noise: ImuNoise
     true_localization: bool = False  # map -> odom is corrected from ground truth at each odometry update
@@ -101,7 +101,7 @@ class Simulator:
         """All robots stand at their spawn poses, with odometry at zero."""
         self._controllers = [base_controller.STANDING for _ in self.robots]
         self._odometers = Odometers(self.config.odometry, [robot.model for robot in self.robots], self._states())
-        self._map_from_odom = [robot.spawn for robot in self.robots]
+        self._map_from_odom = [Pose2D() if self._odometers.in_world else robot.spawn for robot in self.robots]
 
     # -- time --
 
@@ -252,9 +252,14 @@ class Simulator:
             if base_from_camera is not None:
                 world_from_camera = compose3(bases[robot], base_from_camera)
                 images[robot] = self._renderer.render(
-                    self.config.camera, world_from_camera, robot, bases, self.world_time
+                    self.config.cameras[models[robot].name], world_from_camera, robot, bases, self.world_time
                 )
         return images
+
+    def camera_of(self, robot: int) -> Optional[CameraSpec]:
+        """The camera of a robot; None if its model has none."""
+        model = self.robots[robot].model
+        return None if model.base_from_camera is None else self.config.cameras[model.name]
 
     def _close_renderer(self) -> None:
         if self._renderer is not None:
@@ -323,10 +328,15 @@ class Simulator:
         self.engine.change_world(self.world, self.world_time)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """Place a robot elsewhere, at rest. Its odometry goes on, so map -> odom takes up the jump."""
+        """Place a robot elsewhere, at rest. Wheel odometry goes on, so map -> odom takes up the jump.
+
+        What the wheels have travelled since the last odometry update belongs to the time before the jump.
+        """
+        odom_from_footprint = self._odometers.pose_now(robot, self.engine.state(robot))
         self.engine.place(robot, world_from_footprint)
         self._controllers[robot] = base_controller.STANDING
-        odom_from_footprint = self._odometers.latest[robot].odom_from_footprint
+        if self._odometers.in_world:
+            return
         self._map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:

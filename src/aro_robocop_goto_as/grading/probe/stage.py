@@ -71,7 +71,7 @@ class Stage(LoopInterface):
         frames, messages = PARAMS.frames(), message_config(PARAMS)
         self.clock = publisher("/clock", Clock, latch=True)
         self._transforms = TransformTopics(frames, messages.topics, [""], self._table.changed)
-        self.robot = RobotTopics(0, "", messages, has_camera=False, on_change=self._table.changed)
+        self.robot = RobotTopics(0, "", messages, camera=None, on_change=self._table.changed)
         self._table.set_topics([{k: topic for k, topic in self.robot.by_sensor.items() if k != JOINTS}])
         self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
         self.odd_scan = False

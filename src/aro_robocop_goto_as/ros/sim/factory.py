@@ -35,7 +35,7 @@ def make_random(seed: int) -> str:
 
 def message_config(p: SimParams) -> MessageConfig:
     """The parameters of the messages."""
-    return MessageConfig(p.frames(), p.topics(), p.rates(), p.scanner().spec, p.camera(), p.imu_noise())
+    return MessageConfig(p.frames(), p.topics(), p.rates(), p.scanner().spec, p.imu_noise())
 
 
 def build_simulator(p: SimParams) -> Simulator:

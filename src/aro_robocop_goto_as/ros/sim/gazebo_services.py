@@ -26,7 +26,7 @@ from gazebo_msgs.srv import (
 )
 from std_srvs.srv import Empty, EmptyResponse
 
-from ...errors import FrameError, WorldError
+from ...errors import FrameError, PlaceError, WorldError
 from ...geometry import STANDSTILL, Pose2D, Pose3D, compose3, inverse3, lifted
 from ...simulation.loop import SimulationLoop
 from ...world.edit import with_model_at
@@ -56,8 +56,8 @@ class GazeboControl:
         self._loop.reset()
 
     def place(self, robot: int, pose: Pose2D) -> None:
-        """Place a robot."""
-        self._loop.place(pose, robot)
+        """Place a robot; PlaceError if something is there."""
+        self._loop.place_with_room(pose, robot)
 
     def move(self, model: str, pose: Pose3D) -> None:
         """Move a model of the world."""
@@ -163,7 +163,7 @@ class GazeboServices:
     def _answer(self, action: Callable[[], Response], kind: Callable[..., Response]) -> Response:
         try:
             return self._loop.call(action)
-        except (FrameError, WorldError) as error:
+        except (FrameError, PlaceError, WorldError) as error:
             return kind(success=False, status_message=str(error))
 
     # -- models, read in the service's thread --

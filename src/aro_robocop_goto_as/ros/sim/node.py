@@ -21,6 +21,7 @@ from ..packed import PackedClock, stamp_of
 from ..private_api import set_latched
 from ..publishing import publisher, send
 from .factory import build_simulator, message_config
+from .gazebo_topics import GazeboTopics
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
 from .robot_topics import MessageConfig, RobotTopics
@@ -53,7 +54,7 @@ class SimNode(LoopInterface):
         self._clock_message = PackedClock()
         self._transforms = TransformTopics(messages.frames, messages.topics, names, table.changed)
         self._robots = [
-            RobotTopics(index, robot.name, messages, robot.model.base_from_camera is not None, table.changed)
+            RobotTopics(index, robot.name, messages, simulator.camera_of(index), table.changed)
             for index, robot in enumerate(simulator.robots)
         ]
         table.set_topics([{**robot.by_sensor, TF: self._transforms.tf} for robot in self._robots])
@@ -67,6 +68,7 @@ class SimNode(LoopInterface):
         self._poses = PoseInputs(self.loop, messages.frames, messages.topics.initialpose)
         self._time_services = TimeServices(self.loop)
         self._world_services = WorldServices(self.loop)
+        self._gazebo = GazeboTopics(names) if messages.topics.gazebo_topics else None
         if messages.topics.gazebo_services:
             _serve_gazebo(self.loop, self._world_services)
 
@@ -104,6 +106,8 @@ class SimNode(LoopInterface):
         if observations.control and self.simulator.moving:
             self._world.publish_moving(self.simulator)
         if observations.clock:
+            if self._gazebo is not None:
+                self._gazebo.publish(self.simulator)
             self.publish_clock()
 
     def publish_clock(self) -> None:

@@ -57,8 +57,7 @@ class PoseInputs:
         FrameError for any other frame; PlaceError if something is there.
         """
         target = self._in_world(robot, frame.lstrip("/"), convert.to_possible_pose(pose))
-        self._loop.simulator.require_room(target, robot)
-        self._loop.place(target, robot)
+        self._loop.place_with_room(target, robot)
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:

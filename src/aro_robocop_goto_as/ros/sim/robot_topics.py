@@ -28,7 +28,6 @@ class MessageConfig:
     topics: TopicParams
     rates: Rates
     lidar: LidarSpec
-    camera: CameraSpec
     imu_noise: ImuNoise
 
 
@@ -40,8 +39,18 @@ def prefixed(robot: str, name: str) -> str:
 class RobotTopics:
     """Publishers in a robot's namespace; its frames carry its name as a prefix."""
 
-    def __init__(self, index: int, name: str, config: MessageConfig, has_camera: bool, on_change: Callable[[], None]):
-        """`on_change` is called when a subscriber of any topic connects or disconnects."""
+    def __init__(
+        self,
+        index: int,
+        name: str,
+        config: MessageConfig,
+        camera: Optional[CameraSpec],
+        on_change: Callable[[], None],
+    ) -> None:
+        """`camera`: None for a model without one.
+
+        `on_change` is called when a subscriber of any topic connects or disconnects.
+        """
         self.index = index
         self.name = name
         self.lidar = config.lidar
@@ -72,8 +81,8 @@ class RobotTopics:
         if rates.magnetic_field:
             self.by_sensor[sensor_names.MAGNETIC_FIELD] = topic("magnetic_field", MagneticField)
         self.camera: Optional[CameraTopics] = None
-        if has_camera and rates.camera:
-            self.camera = CameraTopics(prefixed(name, ""), config.camera, camera_frame, on_change)
+        if camera is not None and rates.camera:
+            self.camera = CameraTopics(prefixed(name, ""), camera, camera_frame, on_change)
             self.by_sensor[sensor_names.CAMERA] = self.camera
         odom_variances = (0.0,) * 6 if topics.real_covariances else convert.ODOM_VARIANCES
         self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, convert.diagonal(odom_variances))

@@ -50,7 +50,8 @@ class TimeServices:
             refusal = "another step request is being carried out"
         else:
             stamp = self._loop.wait_for(ended)
-            return StepResponse(True, f"standing at {stamp.to_sec():.6f} s", stamp)
+            state = "standing" if self._loop.paused else "running on"
+            return StepResponse(True, f"{state} at {stamp.to_sec():.6f} s", stamp)
         return StepResponse(False, refusal, self._loop.call(self._stamp))
 
     def _stamp(self) -> rospy.Time:
