@@ -41,7 +41,7 @@ ORDER = {
     "ros.sim": "component_params errors geometry params robot ros sensors simulation world",
     "ros.server": "errors geometry goto params ros simulation",
     "ros.client": "errors geometry params ros",
-    "ros.cli": "bootstrap errors geometry hosting params process robot ros ros.client",
+    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
     "grading.probe": "errors geometry goto grading params process robot ros ros.sim simulation world",

@@ -14,6 +14,7 @@ from .display import require_rviz
 from .grade_submission import grade_submission
 from .judge import Grade, Outcome, printable
 from .plan import load
+from .report_folder import make_report_folder
 from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
 from .submission import prepare_submission
 
@@ -54,6 +55,7 @@ def main() -> None:
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     try:
         plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml")
+        given = make_report_folder(Path(args.report)) if args.report else None
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
         if args.watch:
@@ -61,7 +63,7 @@ def main() -> None:
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
             submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
-            folder = Path(args.report) if args.report else state / "reports" / submission.name
+            folder = given or make_report_folder(state / "reports" / submission.name)
             grade = grade_submission(submission, plan, folder, state, sandbox, _show_progress, args.watch)
     except RobocopError as error:
         print(f"robocop grade: {error}", file=sys.stderr)

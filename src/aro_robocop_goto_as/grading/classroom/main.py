@@ -15,6 +15,7 @@ from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from ..main import INTERRUPTED
 from ..plan import Plan, load
+from ..report_folder import make_report_folder
 from .hand_ins import HandIn, collect
 from .overview import page
 from .results import Result, Results, table, write_atomically
@@ -86,7 +87,7 @@ def main() -> None:
         for name in others:
             print(f"ignored: {_printable(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
-        out = Path(args.report) if args.report else state / "classes" / folder.name
+        out = make_report_folder(Path(args.report) if args.report else state / "classes" / folder.name)
         with scratch_folder(), exclusive(out / ".run"):
             results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
