@@ -1,7 +1,12 @@
 #!/usr/bin/env python3
 """Prints the URDF of the model that the simulator's parameter files choose."""
 
-from aro_robocop_goto_as.ros.cli.description import main
+import signal
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
+signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # ./robocop blocks it while Python starts
+
+from aro_robocop_goto_as.ros.cli.description import main  # noqa: E402
 
 if __name__ == "__main__":
     main()

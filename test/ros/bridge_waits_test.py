@@ -38,10 +38,12 @@ class BridgeWaits(unittest.TestCase):
         clicks = Clicks()
         clicks.wait_for_status(f"waiting for {ACTION}")
         self.assertEqual({m.data for m in clicks.status.messages}, {f"waiting for {ACTION}"})
+        advice = clicks.wait_for_status("to start it again")
+        self.assertTrue(advice.endswith(": ./robocop shell rosrun aro_robocop_goto_as robocop_goto_as.py"), advice)
 
         misspelt = Server(MISSPELT)
         status = clicks.wait_for_status(MISSPELT)
-        self.assertEqual(status, f"waiting for {ACTION}; there is '/{MISSPELT}' of the same type: a misspelt name?")
+        self.assertIn(f"waiting for {ACTION}; there is '/{MISSPELT}' of the same type: a misspelt name?", status)
 
         clicks.click(5.0, 5.0, "odom")
         clicks.click(0.5, 0.25, "odom")

@@ -11,16 +11,16 @@ COMMAND = script("robocop_goto.py")
 
 
 class GotoCommand(SystemTest):
-    def test_goal_in_map_is_reached_with_progress_result_and_exit_status_0(self):
-        target = Pose2D(-0.5, 0.2)  # the robot starts at (-0.7, 0)
-        with Process(COMMAND, target.x, target.y, "--frame", "map") as command:
+    def test_goal_is_in_map_and_is_reached_with_progress_result_and_exit_status_0(self):
+        target = Pose2D(-0.5, 0.2)  # the robot starts at (-0.7, 0), where odom is
+        with Process(COMMAND, target.x, target.y) as command:
             self.assertEqual(command.wait_for_exit(), 0, command.output)
         self.assertRegex(command.output, r"(?m)^distance +0\.\d\d m +angle +[+-]0\.\d\d rad +rotating")
         self.assertRegex(command.output, r"(?m)^SUCCEEDED: REACHED: ")
         self.assertLess(distance(self.robot.wait_until_it_stands(), target), 0.12)
 
     def test_goal_behind_an_obstacle_is_reported_with_exit_status_1(self):
-        with Process(COMMAND, 1.6, 0.73) as command:  # behind pillar_1
+        with Process(COMMAND, 1.6, 0.73, "--frame", "odom") as command:  # behind pillar_1
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: something is ")
 

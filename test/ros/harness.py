@@ -79,6 +79,10 @@ class Recorder:
         self.times.append(rospy.get_time())
         self.messages.append(message)
 
+    def close(self):
+        """Unsubscribe."""
+        self._subscriber.unregister()
+
     def clear(self):
         """Drop the messages received so far."""
         self.messages, self.times = [], []

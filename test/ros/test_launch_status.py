@@ -37,10 +37,11 @@ class Launch:
             "robocop_launch.py",
             "-p",
             str(self.port),
+            *[argument for argument in arguments if argument.startswith("--")],
             "aro_robocop_goto_as",
             "robocop_sim.launch",
             "drive:=kinematic",
-            *arguments,
+            *[argument for argument in arguments if not argument.startswith("--")],
         ]
         with open(self.output, "wb") as stream:
             self.process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
@@ -106,6 +107,40 @@ def test_launch_fails_when_the_simulator_refuses_its_parameters(launch):
     launched = launch("world:=no_such")
     assert launched.wait_for_exit() == 1
     assert "there is no world 'no_such'" in launched.output.read_text()
+
+
+def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(launch):
+    launched = launch("--quiet", "world:=empty", "model:=waffle")
+    launched.runs("robocop_sim.py")
+    launched.wait_until(lambda: "all messages" in launched.output.read_text())
+    shown = launched.output.read_text()
+    assert "world         empty\nrobot         waffle\n" in shown and "Ctrl-C" in shown
+    assert "PARAMETERS" not in shown and "process[" not in shown and len(shown.splitlines()) < 24
+    (folder,) = [line.split()[2] for line in shown.splitlines() if line.startswith("all messages")]
+    launched.wait_until(lambda: "robot at x" in "".join(path.read_text() for path in Path(folder).glob("*.log")))
+    launched.process.send_signal(signal.SIGINT)
+    assert launched.wait_for_exit() == 0
+
+
+def test_quiet_launch_shows_why_the_simulator_failed(launch):
+    launched = launch("--quiet", "world:=no_such")
+    assert launched.wait_for_exit() == 1
+    assert "there is no world 'no_such'" in launched.output.read_text()
+
+
+@pytest.mark.parametrize(
+    "argument, words",
+    [
+        ("model:=../../etc/passwd", "there is no model '../../etc/passwd'; known are: burger, "),
+        pytest.param("config:=/no/such.yaml", "file does not exist [/no/such.yaml]", marks=pytest.mark.slow),
+        pytest.param("seed:=12345678901234567890123", "seed: expected int, got str", marks=pytest.mark.slow),
+    ],
+)
+def test_launch_explains_an_impossible_argument_without_a_traceback(launch, argument, words):
+    launched = launch(argument)
+    assert launched.wait_for_exit() == 1
+    assert words in launched.output.read_text()
+    assert "Traceback" not in launched.output.read_text()
 
 
 def test_launch_fails_when_the_simulator_is_killed(launch):

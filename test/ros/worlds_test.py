@@ -21,6 +21,11 @@ from visualization_msgs.msg import Marker, MarkerArray
 CRATE = """<sdf version="1.6"><model name="crate"><static>1</static>{}<link name="l"><pose>0 0 0.25 0 0 0</pose>
 <collision name="c"><geometry><box><size>0.4 0.4 0.5</size></box></geometry></collision></link></model></sdf>"""
 
+PATROL = """<sdf version="1.6"><model name="patrol"><static>1</static>
+<plugin name="p" filename="robocop_motion"><turn>0.5</turn></plugin><link name="l"><pose>0.2 0 0.25 0 0 0</pose>
+<collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.5</length></cylinder></geometry></collision>
+</link></model></sdf>"""
+
 
 def at(x, y=0.0):
     return Pose(position=Point(x, y, 0.0))
@@ -109,6 +114,19 @@ class Worlds(unittest.TestCase):
         self.assertTrue(self.call("delete_model", DeleteModel, "crate").success)
         self.assertAlmostEqual(self.ahead(), 3.932, delta=0.06)
         self.markers.wait_for(lambda m: [x.action for x in m.markers] == [Marker.DELETEALL], "nothing in RViz", start)
+
+    def test_late_subscriber_gets_the_whole_world_while_an_obstacle_moves(self):
+        early = Recorder("/other/robocop_sim/world", MarkerArray)
+        whole = {marker.id for marker in early.newest().markers[1:]}
+        rospy.wait_for_service("/other/robocop_sim/spawn_model", DEADLINE)
+        spawn = rospy.ServiceProxy("/other/robocop_sim/spawn_model", SpawnModel)
+        answer = spawn("", PATROL, "", at(0.5, 0.5))
+        self.assertTrue(answer.success, answer.message)
+        early.wait_for(lambda m: [x.type for x in m.markers] == [Marker.CYLINDER], "an update of what moves")
+        early.close()  # two subscribers of a process share a connection
+        late = Recorder("/other/robocop_sim/world", MarkerArray)
+        first = late.wait_for(lambda m: m.markers[0].action == Marker.DELETEALL, "the whole world").markers[1:]
+        self.assertEqual({marker.id for marker in first}, whole | {max(whole) + 1})
 
     def test_model_is_spawned_from_a_file(self):
         path = os.path.join(rospkg.get_ros_home(), "crate.sdf")

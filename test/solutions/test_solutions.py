@@ -105,7 +105,7 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
     "arguments, words",
     [
         (["SOLUTION", "--plan", "/dev/zero"], "/dev/zero: expected an ordinary file"),
-        (["SOLUTION", "--report", "/proc/here"], "/proc/here: expected a folder that can be written to"),
+        (["SOLUTION", "--report", "/proc/here"], "the report can't be written to /proc/here: "),
         (["/usr/bin/env"], "/usr/bin/env: expected a submission outside /usr"),
         (["/"], "/: expected a submission outside /usr"),
     ],

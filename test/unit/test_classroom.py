@@ -5,7 +5,6 @@ import io
 import json
 import os
 import shutil
-import subprocess
 import tempfile
 import warnings
 import zipfile

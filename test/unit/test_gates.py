@@ -44,7 +44,7 @@ ORDER = {
     "ros.server": "errors geometry goto params ros simulation",
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
-    "ros.cli": "bootstrap errors geometry hosting params process robot ros ros.client",
+    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
     "grading.probe": "errors geometry goto grading params process robot ros ros.sim simulation world",

@@ -5,6 +5,7 @@ import shutil
 import socket
 import subprocess
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from fake_index import builds, source_release
@@ -12,8 +13,11 @@ from fake_index import builds, source_release
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMANDS = ("run", "goto", "test", "bench", "shell", "completion", "doctor", "setup", "clean", "help")
-LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py aro_robocop_goto_as"
+COMMANDS = (
+    *("run", "goto", "test", "bench", "shell"),
+    *("completion", "doctor", "version", "setup", "clean", "help"),
+)
+LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
 
 
@@ -126,6 +130,12 @@ def test_run_and_sim_start_the_launcher_that_reports_the_simulators_exit_status(
 
 
 @pytest.mark.parametrize("command", ["run", "sim"])
+def test_verbose_shows_the_messages_of_all_nodes(command):
+    started = dry_run(command, "--verbose", "world:=empty", ROS_MASTER_URI=f"http://localhost:{free_port()}")[0]
+    assert LAUNCH.replace("--quiet ", "") in started and started.endswith(" world:=empty")
+
+
+@pytest.mark.parametrize("command", ["run", "sim"])
 def test_paths_of_files_are_made_absolute_as_the_nodes_run_in_another_folder(command, tmp_path, monkeypatch):
     (tmp_path / "my.sdf").write_text("<sdf/>")
     monkeypatch.chdir(tmp_path)
@@ -154,6 +164,11 @@ def test_port_that_never_answers_is_reported_within_seconds(command):
         done = robocop(*command, ROS_MASTER_URI=uri, timeout=60.0)
     assert (done.returncode, done.stdout) == (1, "")
     assert f"{uri} did not answer within 5 s: stop the process that uses this port" in done.stderr
+
+
+def test_version_is_that_of_package_xml():
+    wanted = ElementTree.parse(ROOT / "package.xml").findtext("version")
+    assert robocop("version").stdout.split()[:2] == ["aro_robocop_goto_as", wanted]
 
 
 def test_goto_passes_negative_numbers():

@@ -95,13 +95,14 @@ def _measure_all(wanted: List[cases.Case], args: argparse.Namespace) -> List[Mea
     return results
 
 
-def _on_terminate(_number: int, _frame: Any) -> None:
+def _interrupt(_number: int, _frame: Any) -> None:
     raise KeyboardInterrupt
 
 
 def main() -> None:
     """Entry point; a signal ends everything that was started."""
-    signal.signal(signal.SIGTERM, _on_terminate)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _interrupt)
     args = _arguments(sys.argv[1:])
     try:
         wanted = cases.parse_cases(args.cases)

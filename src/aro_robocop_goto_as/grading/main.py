@@ -3,11 +3,10 @@
 import argparse
 import os
 import sys
-import tempfile
 import zlib
 from pathlib import Path
 
-from ..errors import GradingSetupError, RobocopError
+from ..errors import RobocopError
 from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive
 from ..process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
@@ -15,6 +14,7 @@ from .display import require_rviz
 from .grade_submission import grade_submission
 from .judge import Grade, Outcome, printable, printable_lines
 from .plan import load
+from .report_folder import make_report_folder
 from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
 from .submission import prepare_submission
 
@@ -27,16 +27,6 @@ def _show_progress(part: str, scenario: str) -> None:
     reraise_if_interrupted()
     if sys.stderr.isatty():
         print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
-
-
-def expect_writable(folder: Path) -> None:
-    """Create the folder of the reports if it does not exist; GradingSetupError if nothing can be written to it."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise GradingSetupError(f"{folder}: expected a folder that can be written to: {error.strerror}") from error
 
 
 def as_text(grade: Grade) -> str:
@@ -66,8 +56,7 @@ def main() -> None:
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     try:
         plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml")
-        if args.report:
-            expect_writable(Path(args.report))
+        given = make_report_folder(Path(args.report)) if args.report else None
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
         if args.watch:
@@ -75,7 +64,7 @@ def main() -> None:
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
             submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
-            folder = Path(args.report) if args.report else state / "reports" / submission.name
+            folder = given or make_report_folder(state / "reports" / submission.name)
             grade = grade_submission(submission, plan, folder, state, sandbox, _show_progress, args.watch)
     except RobocopError as error:
         print(f"robocop grade: {printable_lines(str(error))}", file=sys.stderr)

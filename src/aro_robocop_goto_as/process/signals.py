@@ -59,9 +59,15 @@ class Deferred:
         self._handlers: Dict[int, Any] = {}
         self._number: Optional[int] = None
 
-    def __enter__(self) -> None:
+    @property
+    def interrupted(self) -> bool:
+        """Whether a signal has arrived."""
+        return self._number is not None
+
+    def __enter__(self) -> "Deferred":
         for number in ending_signals():
             self._handlers[number] = signal.signal(number, self._defer)
+        return self
 
     def _defer(self, number: int, _: object) -> None:
         self._number = self._number or number

@@ -174,6 +174,11 @@ def forget_later_stamps(server: actionlib.SimpleActionServer, goal: actionlib.Se
 # -- roslaunch --
 
 
+def load_launch_files(parent: Any) -> None:
+    """Load the files of a ROSLaunchParent that is not started yet; its start() loads them only if nobody has."""
+    parent._load_config()
+
+
 def add_early_listener(parent: Any, listener: Any) -> None:
     """Add a process listener to a ROSLaunchParent that is not started yet, so that it misses no process.
 

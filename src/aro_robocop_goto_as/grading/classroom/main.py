@@ -15,8 +15,9 @@ from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from ..judge import printable, printable_lines
-from ..main import INTERRUPTED, expect_writable
+from ..main import INTERRUPTED
 from ..plan import Plan, load
+from ..report_folder import make_report_folder
 from ..sandbox import expect_private
 from .hand_ins import HandIn, collect
 from .overview import page
@@ -84,8 +85,7 @@ def main() -> None:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml")
         text = plan.path.read_text(encoding="utf-8")
-        out = Path(args.report) if args.report else state / "classes" / folder.name
-        expect_writable(out)
+        out = make_report_folder(Path(args.report) if args.report else state / "classes" / folder.name)
         if not args.unsafe:
             expect_private(folder)
         hand_ins, others = collect(folder)

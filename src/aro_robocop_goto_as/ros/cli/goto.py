@@ -31,6 +31,7 @@ from .own_system import own_system
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a running system
 START_PATIENCE = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
 REACHED, NOT_REACHED = 0, 1
+DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
 PAUSE_PATIENCE = 1.0  # [s, wall] without a change of simulated time
 PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
@@ -45,7 +46,11 @@ def _parse(argv: List[str]) -> argparse.Namespace:
     private_api.accept_scientific_notation(parser)
     parser.add_argument("x", type=_finite, help="[m]")
     parser.add_argument("y", type=_finite, help="[m]")
-    parser.add_argument("--frame", default="odom", help="of X and Y: odom, map, base_footprint, ... (default odom)")
+    parser.add_argument(
+        "--frame",
+        default=DEFAULT_FRAME,
+        help="of X and Y: map (default; as a click in RViz), odom, base_footprint (relative to the robot), ...",
+    )
     parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
     parser.add_argument("--world", help="world of the simulator, if one has to be started")
     return parser.parse_args(argv)
@@ -137,6 +142,8 @@ def _go_to(args: argparse.Namespace, patience: float) -> int:
     except FrameError as error:
         signals.reraise_if_interrupted()
         _complain(str(error))
+        if args.frame == DEFAULT_FRAME:
+            _complain("--frame odom gives X and Y relative to where the robot was switched on")
         if rospy.get_rostime() == started:
             _complain(PAUSED)
         return NOT_REACHED

@@ -5,9 +5,12 @@ wait for itself, give up after 20 s and leave master and nodes running.
 """
 
 import argparse
+import contextlib
 import os
 import sys
-from typing import List, Optional
+import tempfile
+from pathlib import Path
+from typing import Iterator, List, Optional, TextIO
 
 import roslaunch
 import rospkg
@@ -15,13 +18,19 @@ from roslaunch import rlutil
 from roslaunch.core import printerrlog
 from roslaunch.parent import ROSLaunchParent
 from roslaunch.pmon import ProcessListener
+from rospkg import get_log_dir
 
+from ...errors import RobotModelError
 from ...hosting.main import prepare
 from ...process import signals
+from ...robot.catalog import urdf_of
 from .. import private_api
+from . import rviz
+from .overview import overview
 
 PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # the simulator's, and the one that starts it for other packages
 FAILED = 1  # exit status
+STDOUT, STDERR = 1, 2  # file descriptors
 
 
 class RequiredNodes(ProcessListener):
@@ -34,7 +43,9 @@ class RequiredNodes(ProcessListener):
     def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
         """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
         process = self.parent.pm.get_process(process_name)
-        if exit_code != 0 and process is not None and process.required and process.package in PACKAGES:
+        if process is None or process.name.rpartition("/")[2].startswith("rviz"):
+            return
+        if exit_code != 0 and process.required and process.package in PACKAGES:
             self.failed = True
 
 
@@ -44,27 +55,81 @@ def launch(arguments: List[str]) -> int:
     parser.add_argument("-p", "--port", type=int, help="of the ROS master, if one has to be started")
     parser.add_argument("--screen", action="store_true", help="show the output of all nodes")
     parser.add_argument("--no-summary", action="store_true", help="do not list parameters and nodes at the start")
+    parser.add_argument("--quiet", action="store_true", help="show only how to use the system, warnings and errors")
     parser.add_argument("file", nargs="+", metavar="[PACKAGE] FILE [NAME:=VALUE...]")
     options = parser.parse_args(arguments)
+    deferred = signals.Deferred()
     try:
         files = rlutil.resolve_launch_arguments(options.file)
         run_id = rlutil.get_or_generate_uuid(None, False)
+        screen = _quiet(Path(get_log_dir(), run_id)) if options.quiet else None
         roslaunch.configure_logging(run_id)
         rlutil.check_log_disk_usage()
         rlutil.change_terminal_name(files, False)
         parent = ROSLaunchParent(
-            run_id, files, port=options.port, force_screen=options.screen, show_summary=not options.no_summary
+            run_id,
+            files,
+            port=options.port,
+            force_screen=options.screen,
+            force_log=options.quiet,
+            show_summary=not options.no_summary,
         )
         required = RequiredNodes(parent)
         private_api.add_early_listener(parent, required)
         private_api.install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
-        with signals.Deferred():
+        with deferred:
+            with _held_back_errors(deferred):
+                private_api.load_launch_files(parent)
             parent.start()
+        if screen is not None:
+            print(overview(parent.config, Path(get_log_dir(), run_id)), file=screen, flush=True)
         parent.spin()
-    except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError) as error:
-        printerrlog(f"{type(error).__name__}: {error}")
+    except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
+        if not deferred.interrupted:
+            printerrlog(_explained(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
         return FAILED
     return FAILED if required.failed else 0
+
+
+def _quiet(folder: Path) -> TextIO:
+    """Send what this process and its children print to a log file, but not their errors; returns the screen."""
+    folder.mkdir(parents=True, exist_ok=True)
+    screen = os.fdopen(os.dup(STDOUT), "w", encoding="utf-8", errors="replace")
+    with open(folder / "roslaunch.log", "ab") as log:
+        os.dup2(log.fileno(), STDOUT)
+    os.environ[rviz.LOG] = str(folder / "rviz.log")
+    return screen
+
+
+@contextlib.contextmanager
+def _held_back_errors(deferred: signals.Deferred) -> Iterator[None]:
+    """Print what the block and its child processes write to standard error at its end, unless it is interrupted.
+
+    Ctrl-C also reaches the commands that roslaunch runs for parameters; Python prints a traceback for each.
+    """
+    sys.stderr.flush()
+    screen = os.dup(STDERR)
+    with tempfile.TemporaryFile() as held, os.fdopen(screen, "wb", buffering=0) as stream:
+        os.dup2(held.fileno(), STDERR)
+        try:
+            yield
+        finally:
+            sys.stderr.flush()
+            os.dup2(screen, STDERR)
+            held.seek(0)
+            if not deferred.interrupted:
+                stream.write(held.read())
+
+
+def _explained(error: OSError) -> str:
+    """An error about a file that an argument names; the file may be that of a robot's model."""
+    folder, _, model = str(error.filename).partition("/urdf/")
+    if not model.endswith(".urdf"):
+        return f"{error.filename}: {error.strerror}" if error.filename else str(error)
+    try:
+        return str(error) if urdf_of(model[: -len(".urdf")], folder) else ""
+    except RobotModelError as unknown:
+        return f"{unknown.code}: {unknown}"
 
 
 def main(arguments: Optional[List[str]] = None) -> None:

@@ -28,6 +28,14 @@ def absence(action: str) -> str:
     return f"waiting for {action}; there is {' and '.join(map(repr, others))} of the same type: {question}"
 
 
+def advice() -> str:
+    """What to do about a server that stays away, for a user of this namespace."""
+    namespace = rospy.get_namespace().rstrip("/")
+    setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
+    command = f"./robocop shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
+    return f"its output may say why it ended; to start it again, in another terminal: {command}"
+
+
 def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float) -> str:
     """Wait up to `timeout` [s, wall] for the server; returns an empty string, or why it may be missing."""
     started = time.monotonic()

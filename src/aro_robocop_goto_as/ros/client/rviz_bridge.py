@@ -1,6 +1,7 @@
 """robocop_rviz_goto_ac: RViz's 2D Nav Goal -> tf2 -> GoToPosition goal, and a periodic status report."""
 
 import threading
+import time
 import traceback
 from typing import Optional
 
@@ -23,6 +24,7 @@ from . import discovery
 from .goal_frame import GoalTransformer
 from .goal_handle import SentGoal
 
+ADVICE_AFTER = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
 
 
@@ -36,6 +38,8 @@ class Bridge:
         self.clicked = threading.Condition()
         self.sent: Optional[SentGoal] = None
         self.last_result = ""
+        self.last_status = ""
+        self.last_seen = time.monotonic()  # when the server was up
         self.warned_of_raw_goals = False
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
         self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
@@ -122,17 +126,23 @@ class Bridge:
     # -- status report --
 
     def _report(self) -> None:
-        """Log and publish one line now."""
+        """Publish the status now."""
         self._publish_status(self._describe())
 
     def _publish_status(self, text: str) -> None:
-        rospy.loginfo("%s", text)
+        """Publish a status; log it if it is news."""
+        if text != self.last_status:
+            rospy.loginfo("%s", text)
+        self.last_status = text
         self.status.publish(String(text))
 
     def _describe(self) -> str:
         """The state of the server and of the last goal, as this client knows it."""
         if not discovery.is_up(self.client):
-            return discovery.absence(ACTION)
+            absence = discovery.absence(ACTION)
+            lasting = time.monotonic() - self.last_seen > ADVICE_AFTER
+            return f"{absence}; {discovery.advice()}" if lasting else absence
+        self.last_seen = time.monotonic()
         if self.sent is None:
             return f"{ACTION} is ready, no goal yet"
         if self.sent.done.is_set():

@@ -1,0 +1,41 @@
+"""What ./robocop run shows when everything is started: the world, the robots, what to do next."""
+
+from pathlib import Path
+from typing import Any, Dict, List, Tuple
+
+from ...errors import RobocopError
+from ...param_loading import from_dict
+from ...params import SimParams
+
+SIMULATOR = "/robocop_sim/"
+SERVER = "aro_robocop_goto_as_node"
+
+
+def overview(config: Any, logs: Path) -> str:
+    """The text for a roslaunch configuration whose nodes write their messages to files in `logs`."""
+    nodes = {node.name for node in config.nodes}
+    given = {name[len(SIMULATOR) :]: p.value for name, p in config.params.items() if name.startswith(SIMULATOR)}
+    rows = [*_simulated(given)] if "robocop_sim" in nodes else []
+    robots = sorted({node.namespace.strip("/") for node in config.nodes if node.name == SERVER} - {""})
+    if SERVER in nodes:
+        if "rviz" in nodes:
+            rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
+        robot = f" --robot {robots[0]}" if robots else ""
+        rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: ./robocop goto 0.3 0{robot}"))
+    rows += [
+        ("look inside", "in a second terminal: ./robocop shell, then rostopic list, rosnode list, ..."),
+        ("end", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
+        ("all messages", f"{logs} (or start with --verbose); warnings and errors appear below"),
+    ]
+    return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
+
+
+def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
+    """World and robots; nothing where the simulator will refuse its parameters and say why."""
+    try:
+        p = from_dict(SimParams, given, SIMULATOR)
+    except RobocopError:
+        return []
+    moving = ", its obstacles move" if p.moving else ""
+    robots = f"{p.robots} ({p.model} unless named)" if p.robots else p.model
+    return [("world", p.world + moving), ("robots" if p.robots else "robot", robots)]

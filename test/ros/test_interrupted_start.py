@@ -1,0 +1,64 @@
+"""Ctrl-C while ./robocop starts: no traceback, and none of its processes is left."""
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from processes import processes_with
+
+from aro_robocop_goto_as.process.ports import free_port
+
+ROOT = Path(__file__).resolve().parents[2]
+DEADLINE = 120.0  # [s, wall]
+
+
+def has_child(process, word):
+    """Whether a process, or one it started, has this word on its command line."""
+    try:
+        tree = [process, *process.children(recursive=True)]
+        return any(word in argument for child in tree for argument in child.cmdline())
+    except psutil.Error:  # it has just ended
+        return False
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "command, word",
+    [
+        (["run", "rviz:=false"], "sys.version_info"),
+        (["run", "rviz:=false"], "_setup_util.py"),
+        (["run", "rviz:=false"], "robocop_launch.py"),
+        (["run", "rviz:=false"], "rosversion"),
+        (["goto", "1", "0"], "robocop_goto.py"),
+        (["grade", "."], "robocop_grade.py"),
+        (["bench"], "robocop_bench.py"),
+    ],
+)
+def test_interrupted_while_it_starts_it_ends_without_a_traceback(tmp_path, command, word):
+    output = tmp_path / "output"
+    setting = {"ROS_HOME": str(tmp_path), "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+    environment = {**os.environ, **setting, "ROS_HOSTNAME": "localhost"}
+    with open(output, "wb") as stream:
+        started = subprocess.Popen(
+            [ROOT / "robocop", *command],
+            env=environment,
+            cwd=tmp_path,
+            stdout=stream,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    try:
+        process, end = psutil.Process(started.pid), time.monotonic() + DEADLINE
+        while not has_child(process, word):
+            assert started.poll() is None and time.monotonic() < end, f"no {word}: {output.read_text()}"
+        os.killpg(started.pid, signal.SIGINT)  # as the terminal does
+        assert started.wait(DEADLINE) != 0
+        assert "Traceback" not in output.read_text() and "Fatal" not in output.read_text()
+        assert processes_with(b"ROS_HOME=" + os.fsencode(tmp_path)) == []
+    finally:
+        for pid in processes_with(b"ROS_HOME=" + os.fsencode(tmp_path)):
+            os.kill(pid, signal.SIGKILL)
