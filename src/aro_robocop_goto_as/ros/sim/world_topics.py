@@ -21,8 +21,12 @@ class WorldTopics:
         """`robots` are shown as markers; a lone robot without a name is shown by RViz's RobotModel instead."""
         self._frames = frames
         self._robots = robots
-        self._markers = publisher("~world", MarkerArray, latch=True)
+        self._joined = False  # somebody has subscribed since the whole world was published
+        self._markers = publisher("~world", MarkerArray, latch=True, on_change=self._on_change)
         self._maps: Optional[MapTopics] = MapTopics() if publish_map else None
+
+    def _on_change(self) -> None:
+        self._joined = True
 
     def publish(self, simulator: Simulator) -> None:
         """The whole world, which replaces what was published before."""
@@ -32,5 +36,7 @@ class WorldTopics:
         self._markers.publish([CLEAR, *markers, *robot_markers(self._robots)])
 
     def publish_moving(self, simulator: Simulator) -> None:
-        """The moving obstacles where they are now."""
-        self._markers.publish(world_markers(simulator.world, self._frames.world, simulator.world_time, moving=True))
+        """The moving obstacles where they are now; everything for a new subscriber, who got only the latched ones."""
+        joined, self._joined = self._joined, False
+        made = world_markers(simulator.world, self._frames.world, simulator.world_time, moving=not joined)
+        self._markers.publish(made + robot_markers(self._robots) if joined else made)
