@@ -43,12 +43,17 @@ class Tab:
         self.page.on("console", lambda message: message.type == "error" and self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("request", lambda request: self._note(request.url))
-        self.page.on("websocket", lambda socket: self._note(socket.url))
+        self.sockets = 0  # that were opened, one for each connection or attempt
+        self.page.on("websocket", self._note_socket)
         self.page.goto(url)
 
     def _note(self, url):
         if not url.startswith(("data:", "blob:")) and re.sub(r"^ws:", "http:", url).rstrip("/") != self.url:
             self.foreign.append(url)
+
+    def _note_socket(self, socket):
+        self.sockets += 1
+        self._note(socket.url)
 
     def close(self):
         """Close the tab."""
@@ -60,9 +65,10 @@ class Tab:
 
     def wait_for_text(self, pattern, deadline=DEADLINE):
         """Wait until the panel's text matches a regular expression."""
-        wait_for(
-            lambda: re.search(pattern, self.text()), f"text {pattern!r} on the page, which says {self.text()}", deadline
-        )
+        try:
+            wait_for(lambda: re.search(pattern, self.text()), f"text {pattern!r} on the page", deadline)
+        except AssertionError as error:
+            raise AssertionError(f"{error}, which says:\n{self.text()}\nerrors: {self.errors}") from error
 
     def button(self, label):
         """A button of the panel."""
@@ -85,6 +91,7 @@ class Tab:
     @contextlib.contextmanager
     def held(self, label):
         """Hold a button with the mouse during the block."""
+        self.button(label).scroll_into_view_if_needed()
         box = self.button(label).bounding_box()
         self.page.mouse.move(box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0)
         self.page.mouse.down()

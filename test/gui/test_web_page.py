@@ -1,18 +1,22 @@
 """The web page in a real Chromium: it shows the system, and what is clicked there reaches the robot."""
 
+import contextlib
 import http.client
 import math
 import os
+import signal
 import socket
 
 import pytest
 from browser import Tab, chromium
-from desktop import Recorder, Ros, wait_for
+from desktop import DEADLINE, Recorder, Ros, end, wait_for
+from playwright.sync_api import Error as PlaywrightError
 
 from aro_robocop_goto_as.process.ports import free_port
 
 pytestmark = [pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
 
+READY = r"stage_4[\s\S]*robocop_goto_as is ready"  # of simulator and bridge
 REACHED = 0.15  # [m] from the goal: the server's tolerance and half the click's
 
 
@@ -26,46 +30,46 @@ class NoDesktop:
 
 
 class Web:
-    """The lab without RViz, and robocop_web."""
+    """The lab without RViz, and robocop_web. Commands hold until the next one: nothing but the page stops the robot."""
 
     def __init__(self, directory, *arguments):
-        self.ros = Ros(directory, NoDesktop(), "rviz:=false", *arguments)
+        self.ros = Ros(directory, NoDesktop(), "rviz:=false", "cmd_vel_timeout:=0", *arguments)
         self.port = free_port()
         self.url = f"http://localhost:{self.port}"
-        self.process = None
 
     def start(self, *arguments):
-        """Start robocop_web; returns when it answers."""
+        """Start robocop_web; returns its process when it answers."""
         command = ("rosrun", "aro_robocop_goto_as", "robocop_web.py", f"web_port:={self.port}", *arguments)
-        self.process = self.ros.start("web", *command)
+        process = self.ros.start("web", *command)
         wait_for(self.answers, "robocop_web answers")
+        return process
 
     def answers(self):
         """Whether its port accepts connections."""
         with socket.socket() as probe:
             return probe.connect_ex(("localhost", self.port)) == 0
 
-    def status(self, path="/", **headers):
-        """The status of the answer to an HTTP request."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60.0)
+    def status(self, **headers):
+        """The status of the answer to an HTTP request; 101 = the page's WebSocket is opened."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=DEADLINE)
         try:
-            connection.request("GET", path, headers=headers)
+            connection.request("GET", "/", headers=headers)
             return connection.getresponse().status
         finally:
             connection.close()
 
-    def pose(self):
-        """The robot's true x, y [m] and heading [rad] in the world."""
-        pose = self.ros.latest("/ground_truth_odom")["pose"]["pose"]
-        return (
-            pose["position"]["x"],
-            pose["position"]["y"],
-            2.0 * math.atan2(pose["orientation"]["z"], pose["orientation"]["w"]),
-        )
+    def position(self):
+        """The robot's true x, y [m] in the world."""
+        position = self.ros.latest("/ground_truth_odom")["pose"]["pose"]["position"]
+        return position["x"], position["y"]
 
-    def velocity(self):
-        """The robot's true speed [m/s]."""
-        return self.ros.latest("/ground_truth_odom")["twist"]["twist"]["linear"]["x"]
+    def turn(self):
+        """The robot's true angular velocity [rad/s]; the tests turn it on the spot, where no wall is in its way."""
+        return self.ros.latest("/ground_truth_odom")["twist"]["twist"]["angular"]["z"]
+
+    def sim(self):
+        """The simulator's newest report."""
+        return self.ros.latest("/robocop_sim/status")
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +89,7 @@ def browser():
 @pytest.fixture
 def tab(web, browser):
     tab = Tab(browser, web.url)
-    tab.wait_for_text(r"stage_4[\s\S]*robocop_goto_as is ready|robocop_goto_as[\s\S]*stage_4")
+    tab.wait_for_text(READY)
     yield tab
     tab.close()
 
@@ -97,6 +101,101 @@ def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_err
     tab.wait_for_text("position error")
     wait_for(results.messages, "a result")
     tab.wait_for_text("REACHED")
-    assert math.hypot(*web.pose()[:2]) < REACHED
+    assert math.hypot(*web.position()) < REACHED
     assert tab.errors == []
     assert tab.foreign == []
+
+
+WEBSOCKET = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+}
+
+
+def test_only_requests_of_its_own_page_are_answered(web):
+    ours, foreign = {"Host": f"localhost:{web.port}"}, {"Host": f"evil.example:{web.port}"}
+    assert web.status(**ours) == 200
+    assert web.status(**ours, **WEBSOCKET, Origin=web.url) == 101
+    assert web.status(**ours, **WEBSOCKET, Origin="http://evil.example") == 403
+    assert web.status(**foreign, **WEBSOCKET, Origin=f"http://evil.example:{web.port}") == 403
+    assert web.status(**foreign) == 403
+
+
+@pytest.mark.slow
+def test_the_robot_turns_while_a_button_is_held_and_stops_when_it_is_released(web, tab):
+    with tab.held("Turn right (L)"):
+        wait_for(lambda: web.turn() < -0.5, "the robot turns right")
+    wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")
+
+
+@pytest.mark.slow
+def test_the_robot_turns_while_a_key_is_repeated_and_stops_when_it_is_released(web, tab):
+    commands = Recorder(web.ros, "/robocop_web", "/cmd_vel")
+
+    def repeated():
+        tab.page.keyboard.down("j")
+        return any(command["angular"]["z"] > 0.5 for command in commands.messages())
+
+    wait_for(repeated, "the robot is told to turn left")
+    tab.page.keyboard.up("j")
+    wait_for(lambda: commands.messages()[-1]["angular"]["z"] == 0.0, "the robot is told to stop")
+    wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")
+
+
+@pytest.mark.slow
+def test_the_robot_stops_when_the_page_that_drives_it_is_closed(web, browser):
+    tab = Tab(browser, web.url)
+    tab.wait_for_text(READY)
+    with contextlib.suppress(PlaywrightError), tab.held("Turn right (L)"):
+        wait_for(lambda: web.turn() < -0.5, "the robot turns right")
+        tab.close()
+        wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")
+
+
+@pytest.mark.slow
+def test_two_pages_show_the_same_state_and_a_reloaded_one_too(web, tab, browser):
+    other = Tab(browser, web.url)
+    other.wait_for_text(READY)
+    tab.button("Pause").click()
+    wait_for(lambda: web.sim()["paused"], "the simulator is paused")
+    for page in (tab, other):
+        page.wait_for_text("s, paused")
+    other.page.reload()
+    other.wait_for_text("s, paused")
+    before = web.sim()["stamp"]
+    other.button("Step").click()
+    wait_for(lambda: web.sim()["stamp"] != before, "a step")
+    other.button("Run").click()
+    wait_for(lambda: not web.sim()["paused"], "the simulator runs")
+    tab.wait_for_text("s, factor")
+    other.close()
+
+
+@pytest.mark.slow
+def test_on_a_phone_nothing_is_wider_than_the_screen(web, browser):
+    tab = Tab(browser, web.url, (390, 844))
+    tab.wait_for_text("robocop")
+    assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert tab.errors == []
+    tab.close()
+
+
+@pytest.mark.slow
+def test_page_and_node_go_on_when_master_and_simulator_are_started_again(tmp_path, browser):
+    web = Web(tmp_path)
+    with web.ros:
+        web.start()
+        tab = Tab(browser, web.url)
+        tab.wait_for_text(READY)
+        first = web.ros.running[0][0]
+        end(first, signal.SIGINT, signal.SIGTERM)
+        tab.wait_for_text("ROS does not answer")
+        web.ros.launch()
+        wait_for(lambda: "ROS does not answer" not in tab.text(), "the page no longer misses ROS")
+        tab.wait_for_text(READY)
+        tab.click_floor(0.0, 0.0)
+        tab.wait_for_text("REACHED")
+        assert math.hypot(*web.position()) < REACHED
+        tab.close()

@@ -99,6 +99,23 @@ def test_without_a_display_rviz_is_left_out_with_a_message():
     assert "display" in messages
 
 
+def test_without_a_display_the_web_page_is_recommended_unless_it_is_started():
+    assert "web:=true shows the robot in a browser" in dry_run("run")[2]
+    command, _, messages = dry_run("run", "web:=true")
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:=true")
+    assert "web:=true" not in messages
+
+
+def test_web_starts_the_page_with_its_arguments():
+    assert dry_run("web", "web_port:=8090")[0].endswith("/robocop_web.py web_port:=8090")
+
+
+def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
+    done = robocop("setup", "wbe")
+    assert done.returncode == 1
+    assert "no part 'wbe'; there are: class grade " in done.stderr
+
+
 def test_unreachable_display_counts_as_none():
     assert "rviz:=false" in dry_run("run", DISPLAY=":4711")[0]
 

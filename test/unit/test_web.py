@@ -179,7 +179,7 @@ def test_frames_that_are_not_connected_give_no_pose() -> None:
     assert tree.lookup("map", "base") is None
     assert tree.lookup("map", "nowhere") is None
     assert tree.lookup("nowhere", "nowhere") == Pose3D()
-    assert tree.names() == ["base", "map", "odom", "other"]
+    assert tree.names() == ["map", "other", "base", "odom"]
 
 
 def test_an_older_transform_replaces_a_newer_one_as_after_a_restart_of_the_simulator() -> None:

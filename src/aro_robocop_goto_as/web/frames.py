@@ -26,9 +26,10 @@ class FrameTree:
         self._parents = {}
 
     def names(self) -> List[str]:
-        """All frames, sorted."""
+        """All frames: roots first, then their children, and so on."""
         parents = dict(self._parents)
-        return sorted({*parents, *(parent for parent, _ in parents.values())})
+        names = {*parents, *(parent for parent, _ in parents.values())}
+        return sorted(names, key=lambda name: (len(self._chain(name)), name))
 
     def knows(self, frame: str) -> bool:
         """Whether a transform to or from the frame has been received."""

@@ -1,5 +1,6 @@
 """The 3D scene: shapes, robots, scan, trail and frames, drawn by viser."""
 
+import math
 from dataclasses import replace
 from typing import Any, Dict, Hashable, List, Mapping, Optional, Tuple
 
@@ -9,9 +10,10 @@ from ..geometry import Pose3D
 from .shapes import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape
 
 FLOOR_SIZE = 40.0  # [m] of the grid
-SCAN_COLOR, SCAN_SIZE, SCAN_HEIGHT = (255, 85, 70), 0.035, 0.0
+SCAN_COLOR, SCAN_SIZE = (255, 85, 70), 0.025
 TRAIL_COLOR, TRAIL_WIDTH, TRAIL_HEIGHT = (90, 200, 250), 0.012, 0.012
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
+CROWDED = 0.06  # [m] between two frames; nearer ones hide each other's names
 STILL = 1e-4  # [m] and quaternion units: smaller changes of a pose are not sent
 
 
@@ -37,6 +39,14 @@ def _restyled(handle: Any, old: Shape, new: Shape) -> bool:
     else:
         handle.color, handle.opacity = new.color, new.opacity
     return True
+
+
+def _apart(poses: Mapping[str, Pose3D]) -> Dict[str, Pose3D]:
+    kept: Dict[str, Pose3D] = {}
+    for name, pose in poses.items():
+        if all(math.dist(pose.position, other.position) > CROWDED for other in kept.values()):
+            kept[name] = pose
+    return kept
 
 
 class _Node:
@@ -176,7 +186,8 @@ class Scene:
             self._trail.points = segments
 
     def show_frames(self, poses: Mapping[str, Pose3D]) -> None:
-        """Axes and names of these frames; of no others."""
+        """Axes and names of these frames, of no others, and of the first one only where several are in one place."""
+        poses = _apart(poses)
         for name in [name for name in self._frames if name not in poses]:
             self._frames.pop(name).handle.remove()
         for name, pose in poses.items():

@@ -18,7 +18,7 @@ def plain(text: str) -> str:
 
 def _table(rows: Iterable[Tuple[str, str]]) -> str:
     cells = "".join(
-        f'<tr><td style="padding-right:0.8em;opacity:0.7;vertical-align:top">{plain(name)}</td>'
+        f'<tr><td style="padding-right:0.8em;opacity:0.7;vertical-align:top;white-space:nowrap">{plain(name)}</td>'
         f"<td>{plain(value)}</td></tr>"
         for name, value in rows
     )

@@ -23,8 +23,11 @@ def scan_points(scan: LaserScan, fixed_from_scan: Pose3D) -> np.ndarray:
 
 
 def map_image(data: Any, columns: int, rows: int) -> np.ndarray:
-    """Cells of an occupancy grid, row by row from its origin -> an image (rows, columns, 4), the last row first."""
-    cells = np.array(data, dtype=np.int16).reshape(rows, columns)[::-1]
+    """Cells of an occupancy grid, row by row from its origin -> an image (rows, columns, 4).
+
+    The first row has the lowest y in both: viser's images have x to the right and y down, as cameras do.
+    """
+    cells = np.array(data, dtype=np.int16).reshape(rows, columns)
     stride = -(-max(rows, columns) // LARGEST_MAP)
     cells = cells[::stride, ::stride]
     share = np.clip(cells, 0, 100)[..., np.newaxis] / 100.0
