@@ -144,11 +144,6 @@ class Ros:
         self.master = rosgraph.Master(CALLER, uri)
 
     def __enter__(self):
-        self.launch()
-        return self
-
-    def launch(self):
-        """Start the lab with its master; once more, after it has been ended."""
         launch = self.start(
             "roslaunch", "roslaunch", "-p", self.port, "aro_robocop_goto_as", "robocop_goto_as.launch", *self.arguments
         )
@@ -158,6 +153,7 @@ class Ros:
         except BaseException:
             self._end()
             raise
+        return self
 
     def __exit__(self, failure, *_):
         try:

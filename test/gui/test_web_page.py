@@ -4,12 +4,11 @@ import contextlib
 import http.client
 import math
 import os
-import signal
 import socket
 
 import pytest
 from browser import Tab, chromium
-from desktop import DEADLINE, Recorder, Ros, end, wait_for
+from desktop import DEADLINE, Recorder, Ros, wait_for
 from playwright.sync_api import Error as PlaywrightError
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -180,22 +179,3 @@ def test_on_a_phone_nothing_is_wider_than_the_screen(web, browser):
     assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
     assert tab.errors == []
     tab.close()
-
-
-@pytest.mark.slow
-def test_page_and_node_go_on_when_master_and_simulator_are_started_again(tmp_path, browser):
-    web = Web(tmp_path)
-    with web.ros:
-        web.start()
-        tab = Tab(browser, web.url)
-        tab.wait_for_text(READY)
-        first = web.ros.running[0][0]
-        end(first, signal.SIGINT, signal.SIGTERM)
-        tab.wait_for_text("ROS does not answer")
-        web.ros.launch()
-        wait_for(lambda: "ROS does not answer" not in tab.text(), "the page no longer misses ROS")
-        tab.wait_for_text(READY)
-        tab.click_floor(0.0, 0.0)
-        tab.wait_for_text("REACHED")
-        assert math.hypot(*web.position()) < REACHED
-        tab.close()
