@@ -206,6 +206,7 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
     assert {it["worker"].split(":")[1] for it in stamps(group).values()} <= {str(it.pid) for it in workers.values()}
 
 
+@pytest.mark.timeout(900)
 def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, count, start, tmp_path, monkeypatch):
     scratch = tmp_path / "scratch"
     scratch.mkdir()

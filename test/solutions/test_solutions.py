@@ -22,6 +22,9 @@ from aro_robocop_goto_as.grading.plan import load
 SOME_RIGHT = ("base_server", "base_bridge")
 SOME_WRONG = ("misspelt_name", "bridge_never_cancels")
 
+# The slowest grade, of a loop without pauses, took 235 s beside two others on two cores.
+pytestmark = pytest.mark.timeout(900)
+
 
 def pytest_generate_tests(metafunc):
     everything = metafunc.config.getoption("--all")

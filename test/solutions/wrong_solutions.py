@@ -221,7 +221,7 @@ WRONG = (
     _server(
         "right_half_only",
         "stops_at_obstacle",
-        "stop before the obstacle",
+        "ran into an obstacle",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[-30:]"),
     ),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
