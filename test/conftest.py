@@ -28,9 +28,9 @@ def pytest_report_header(config):
 
 
 def pytest_collection_modifyitems(config, items):
-    if config.getoption("--all"):
-        return
-    slow = [item for item in items if item.get_closest_marker("slow")]
-    if slow:
-        config.hook.pytest_deselected(items=slow)
-        items[:] = [item for item in items if item not in slow]
+    left_out = set() if config.getoption("--all") else {"slow"}
+    if config.getoption("--faults") is None and not config.getoption("--episode"):
+        left_out.add("faults")
+    chosen = {item: not any(item.get_closest_marker(name) for name in left_out) for item in items}
+    config.hook.pytest_deselected(items=[item for item in items if not chosen[item]])
+    items[:] = [item for item in items if chosen[item]]

@@ -67,7 +67,7 @@ def test_every_goal_ends_once_and_the_robot_stops_whatever_goes_wrong(
     assert report["goals"] >= goals
 
 
-@pytest.mark.slow
+@pytest.mark.faults
 @pytest.mark.timeout(0)
 @pytest.mark.parametrize("configuration", OTHERS)
 def test_every_goal_ends_once_with_other_drives_robots_and_in_free_time(
