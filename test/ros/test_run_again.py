@@ -40,7 +40,7 @@ def simulator_at(environment):
 def run(environment, output, until):
     """Start the command; returns it when `until` is in its output, or when it has ended."""
     with open(output, "wb") as stream:
-        command = [str(ROBOCOP), "run", "rviz:=false", "world:=empty", "drive:=kinematic"]
+        command = [str(ROBOCOP), "run", "--verbose", "rviz:=false", "world:=empty", "drive:=kinematic"]
         process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
     end = time.monotonic() + DEADLINE
     while until not in output.read_text() and process.poll() is None and time.monotonic() < end:

@@ -220,7 +220,8 @@ def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
-    files=st.dictionaries(st.text(min_size=1), st.binary(max_size=20), max_size=5),
+    # zipfile ends a name at its first NUL, and can't write an empty one.
+    files=st.dictionaries(st.text(min_size=1).filter(lambda name: name[0] != "\0"), st.binary(max_size=20), max_size=5),
     noise=st.binary(max_size=30),
 )
 def test_no_zip_stops_the_class(files, noise, tmp_path):

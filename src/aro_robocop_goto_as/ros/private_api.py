@@ -6,7 +6,7 @@ import re
 import select
 import socket
 import threading
-from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple, Union
 
 import actionlib
 import rospy
@@ -95,6 +95,11 @@ def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> 
 def set_latched(publisher: rospy.Publisher, message: Any) -> None:
     """Set the message that a latching topic sends to new subscribers, for use with write_message."""
     publisher.impl.latch = message
+
+
+def message_definition(kind: Any) -> Tuple[str, str]:
+    """Type name of a message class, and its definition with those of its parts; genpy has no public names for them."""
+    return kind._type, kind._full_text
 
 
 def clock_condition() -> Optional[threading.Condition]:

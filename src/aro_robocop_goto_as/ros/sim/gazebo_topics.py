@@ -16,6 +16,7 @@ from ...geometry import STANDSTILL, Pose3D, compose3, lifted, quaternion_from_rp
 from ...robot.model import WHEEL_JOINTS, RobotModel, RobotState
 from ...simulation.simulator import Simulator
 from .. import convert
+from ..private_api import message_definition
 from ..publishing import publisher
 from .robot_topics import prefixed
 
@@ -29,7 +30,8 @@ def message_type(name: str) -> Any:
     """The class of gazebo_msgs/ModelStates or LinkStates."""
     parts = [DEFINITION]
     for part in (Pose, Twist):
-        parts.append(f"{SEPARATOR}\nMSG: {part._type}\n{part._full_text}")
+        name_of_part, definition = message_definition(part)
+        parts.append(f"{SEPARATOR}\nMSG: {name_of_part}\n{definition}")
     kind = f"gazebo_msgs/{name}"
     return genpy.dynamic.generate_dynamic(kind, "\n".join(parts))[kind]
 
