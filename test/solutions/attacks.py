@@ -143,11 +143,14 @@ time.sleep(60.0)
 """
 FLOOD = """
 import threading
+import time
 def flood():
     from rosgraph_msgs.msg import Log
     while not rospy.core.is_initialized():
         pass
     topic = rospy.Publisher('/rosout', Log, queue_size=10)
+    while not topic.get_num_connections():
+        time.sleep(0.01)
     log = Log(name='/flood', level=8, msg='x' * 4 * 2 ** 20)
     for _ in range(400):
         topic.publish(log)
