@@ -14,9 +14,9 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.xdist_group("hosting")  # it uses the workspace that hosting tests build
 AHEAD = 1.0  # [m] of the goal
 DURATION = 4.5  # [s, simulated] until it is reached: this server drives at 0.2 m/s and stops 0.1 m before
-# Less wall time than the run takes at real time: waiting for real time does not count.
+SPARE = 0.5  # [s] less wall time than the run takes at real time: waiting for real time does not count
 PLAN = """
-limits: {wall_time: 4.0}
+limits: {wall_time: WALL}
 scenarios:
   - name: beside_a_wall
     about: A goal ahead, a wall beside the way
@@ -40,7 +40,8 @@ class Watched:
         self.desktop = desktop
         submission = folder / "robocop_goto_as.py"
         shutil.copy(ROOT / "test" / "solutions" / "base_server.py.in", submission)
-        (folder / "plan.yaml").write_text(PLAN.replace("AHEAD", str(ahead)))
+        wall_time = DURATION - SPARE + (ahead - AHEAD) / 0.2
+        (folder / "plan.yaml").write_text(PLAN.replace("AHEAD", str(ahead)).replace("WALL", str(wall_time)))
         self.out, self.errors = folder / "grade.log", folder / "grade.err"
         with open(self.out, "wb") as log, open(self.errors, "wb") as errors:
             self.process = subprocess.Popen(
