@@ -197,8 +197,8 @@ def test_what_keeps_a_script_from_being_started_in_the_lab_is_noted(package, tmp
     script.write_bytes(script.read_bytes().replace(b"\n", b"\r\n"))
     script.chmod(0o644)
     assert [note.partition(",")[0] for note in prepared(package, tmp_path / "workshop").notes] == [
-        "server: robocop_goto_as.py has no run bit",
-        "server: robocop_goto_as.py has Windows line ends (CRLF)",
+        "server: robocop_goto_as.py is not executable",
+        "server: robocop_goto_as.py has Windows line endings (CRLF)",
     ]
 
 
@@ -216,5 +216,5 @@ def test_node_that_is_killed_by_nobody_known_is_not_gradable(tmp_path):
     text = RIGHT["base_server"].read_text().replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
     (tmp_path / "solution.py").write_text(text)
     submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
-    with pytest.raises(UngradableError, match=r"not gradable: the server was killed in scenario \w+ by SIGKILL"):
+    with pytest.raises(UngradableError, match=r"not gradable: the server was killed in scenario \w+ by a SIGKILL"):
         grade_submission(submission, load(PLAN), tmp_path / "report", STATE, sandbox())

@@ -10,13 +10,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import distributed
 import pytest
 from distributed.security import Security
 from graded import RIGHT
 from processes import busy_processes, processes_mentioning
+from waiting import wait_for
 
 from aro_robocop_goto_as.grading.classroom.cluster import connected
 from aro_robocop_goto_as.grading.classroom.worker import Place
@@ -99,17 +99,6 @@ def grade_class(start, folder, *arguments):
         *arguments,
     ]
     return start(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-
-
-def wait_for(condition, what):
-    """Wait until a condition is true; its value."""
-    deadline = time.monotonic() + PATIENCE
-    while time.monotonic() < deadline:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.02)
-    raise AssertionError(f"not within {PATIENCE:g} s: {what}")
 
 
 def stamps(folder):
@@ -233,6 +222,7 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     assert all(stamps(group)[name] == done[name] for name in done)
 
 
+@pytest.mark.slow
 def test_unreachable_scheduler_is_reported(group, start, credentials):
     grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1", "--credentials", str(credentials))
     output, _ = grading.communicate(timeout=PATIENCE)
@@ -261,7 +251,13 @@ Client(f"tcp://127.0.0.1:{sys.argv[1]}", timeout=3.0).run_on_scheduler(print, "S
 """
 
 
-@pytest.mark.parametrize("code, refusal", [(STRANGER, "alert certificate required"), (PLAIN, "OSError: Timed out")])
+@pytest.mark.parametrize(
+    "code, refusal",
+    [
+        (STRANGER, "alert certificate required"),
+        pytest.param(PLAIN, "OSError: Timed out", marks=pytest.mark.slow),
+    ],
+)
 def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run(code, refusal):
     other = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     with connected(Place(workers=1)) as client:

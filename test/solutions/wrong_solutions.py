@@ -178,7 +178,7 @@ WRONG = (
     _server(
         "never_reaches",
         "reaches_goal",
-        "no nearer",
+        "made no progress",
         ("if position_error < 0.1:", "if position_error < 0.0:"),
         ("self.drive(0.2, 0.0)", "self.drive(0.2 if position_error > 0.1 else 0.0, 0.0)"),
         (CONDITION, "if abs(angle_error) > 0.1 and position_error > 0.1:"),
@@ -236,7 +236,7 @@ WRONG = (
     _server(
         "waits_at_obstacle",
         "stops_at_obstacle",
-        "no nearer",
+        "made no progress",
         (
             OBSTACLE + "\n                success = False\n                break",
             OBSTACLE + "\n                self.stop()",
@@ -254,7 +254,7 @@ WRONG = (
         "set_aborted",
         ("np.concatenate([ranges[:30], ranges[-30:]])", "ranges[150:210]"),
     ),
-    _server("zero_is_near", "odd_scans", "0 or NaN is taken", (VALID, "ahead[ahead < msg.range_max]")),
+    _server("zero_is_near", "odd_scans", "0 or NaN is treated as an obstacle", (VALID, "ahead[ahead < msg.range_max]")),
     _server("nan_hides", "odd_scans", "hides the wall", (VALID, "np.where(ahead == 0.0, np.inf, ahead)")),
     _server("no_preemption", "cancel", "is_preempt_requested", (PREEMPTION, "")),
     _server(
@@ -355,7 +355,7 @@ WRONG = (
     _server(
         "blocks_for_ever",
         "reaches_goal",
-        "no nearer",
+        "made no progress",
         (
             "        rate = rospy.Rate(10)\n",
             "        rate = rospy.Rate(10)\n        import threading\n        threading.Event().wait()\n",
@@ -398,7 +398,7 @@ WRONG = (
     _bridge(
         "bridge_pending_is_stopped",
         "reports_status",
-        "While the goal is PENDING the bridge takes it for ended",
+        "The bridge treats a PENDING goal as finished",
         ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
         ("        if self.sent:\n", "        if self.timer:\n"),
         ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),

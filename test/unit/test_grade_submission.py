@@ -29,13 +29,13 @@ def test_killed_part_is_run_again_and_the_grade_says_so(tmp_path, monkeypatch):
     grade = graded([KILLED, GRADED], tmp_path, monkeypatch)
     assert len(grade.checks) > 0
     assert grade.problems == (
-        "server: the server was killed in scenario far by SIGKILL, which was not the grader's "
+        "server: the server was killed in scenario far by a SIGKILL that did not come from the grader "
         "(is the machine short of memory?); this part was run again",
     )
 
 
 def test_part_that_is_killed_twice_is_not_gradable(tmp_path, monkeypatch):
-    with pytest.raises(UngradableError, match="not gradable: the server was killed in scenario far by SIGKILL"):
+    with pytest.raises(UngradableError, match="not gradable: the server was killed in scenario far by a SIGKILL"):
         graded([KILLED, KILLED], tmp_path, monkeypatch)
 
 

@@ -17,7 +17,7 @@ from .submission import Submission
 
 Progress = Callable[[str, str], None]  # part, scenario
 ATTEMPTS = 2
-KILLED = " by SIGKILL, which was not the grader's (is the machine short of memory?)"
+KILLED = " by a SIGKILL that did not come from the grader (is the machine short of memory?)"
 
 
 def grade_submission(
@@ -55,7 +55,7 @@ def grade_submission(
                 if not recorded.killed:
                     break
                 if attempt == ATTEMPTS:
-                    raise UngradableError(f"not gradable: {recorded.killed}{KILLED}, as in the attempt before")
+                    raise UngradableError(f"not gradable: {recorded.killed}{KILLED}, as in the previous attempt")
                 notes.append(f"{script.part}: {recorded.killed}{KILLED}; this part was run again")
                 remove(out)
             records[script.part], problems[script.part] = recorded.records, recorded.problem

@@ -48,7 +48,7 @@ class Guard:
 
 
 def _exceeds(pid: int, limit: int) -> bool:
-    """Whether a process and its descendants take more than `limit` bytes of memory.
+    """Whether a process and its descendants use more than `limit` bytes of memory.
 
     Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
     once, are only read when the resident sizes exceed the limit.

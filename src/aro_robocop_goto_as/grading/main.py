@@ -72,7 +72,7 @@ def main() -> None:
     except KeyboardInterrupt:
         ignore_all()
         sys.exit(INTERRUPTED)
-    except Exception as error:  # a submission that the grader can't cope with: its own problem, told in one line
+    except Exception as error:  # the grader failed on this submission: report it in one line
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MOST_SHOWN]}", file=sys.stderr)
         sys.exit(1)
     if sys.stderr.isatty():

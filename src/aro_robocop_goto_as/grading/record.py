@@ -9,9 +9,9 @@ import math
 import signal
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Tuple, Type
+from typing import Any, Dict, List, Tuple, Type, Union
 
-from ..geometry import wrap_angle
+from ..geometry import Pose2D, wrap_angle
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 STATUS_NAMES = tuple(
@@ -209,7 +209,7 @@ def wrapped(angle: float) -> float:
     return wrap_angle(angle) if math.isfinite(angle) else angle
 
 
-def errors_at(sample: Sample, goal: Goal) -> Tuple[float, float]:
-    """The true position_error [m] and angle_error [rad], as the handout defines them."""
+def errors_at(sample: Union[Sample, Pose2D], goal: Goal) -> Tuple[float, float]:
+    """From a pose in odom, the true position_error [m] and angle_error [rad], as the handout defines them."""
     dx, dy = goal.x - sample.x, goal.y - sample.y
     return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - sample.yaw)

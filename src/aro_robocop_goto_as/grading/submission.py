@@ -33,7 +33,7 @@ CLICKS = "move_base_simple"
 LAUNCH_TIMEOUT = 30.0  # [s, wall]
 DEEPEST = 20  # nested lists and mappings of a parameter
 MOST_SHOWN = 200  # characters of a parameter in a message
-TYPES = "expected a truth value, a number of 32 bits, a text, or a list or mapping of them"
+TYPES = "expected a boolean, a 32-bit number, a string, or a list or mapping of these"
 MAX_PARAMETERS = 100_000  # bytes of roslaunch's output
 
 
@@ -61,7 +61,7 @@ class Submission:
     environment: Environment
     scripts: List[Script]
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    notes: Sequence[str] = ()  # what does not matter here, but does in the lab
+    notes: Sequence[str] = ()  # problems that affect the lab but not the grade
 
 
 def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
@@ -180,9 +180,9 @@ def _obstacles_to_starting(script: Script) -> Iterator[str]:
     """Why roslaunch could not start a script that is started here by its interpreter."""
     name = script.path.name
     if not os.access(script.path, os.X_OK):
-        yield f"{script.part}: {name} has no run bit, so roslaunch can't start it in the lab: chmod +x {name}"
+        yield f"{script.part}: {name} is not executable, so roslaunch can't start it in the lab: chmod +x {name}"
     if read_bytes(script.path).partition(b"\n")[0].endswith(b"\r"):
-        yield f"{script.part}: {name} has Windows line ends (CRLF), so roslaunch can't start it in the lab"
+        yield f"{script.part}: {name} has Windows line endings (CRLF), so roslaunch can't start it in the lab"
 
 
 def _launch_nodes(copy: Path) -> Dict[str, Dict[str, str]]:

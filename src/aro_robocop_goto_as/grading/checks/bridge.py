@@ -11,10 +11,9 @@ from .verdict import Failed, NotReached, Passed, Verdict, check
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
-PENDING_ENDS = "pending_ends"  # mark: what is missing here is there for a goal that was never seen PENDING
+PENDING_ENDS = "pending_ends"  # mark: what is missing here appears for a goal that was never seen PENDING
 PENDING_CAUSE = (
-    "While the goal is PENDING the bridge takes it for ended, but PENDING only means that the server has not accepted "
-    "it yet"
+    "The bridge treats a PENDING goal as finished; PENDING only means that the server has not accepted it yet"
 )
 
 
@@ -83,7 +82,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     if not record.marks.get("clients", 1.0):  # it may wait for the server before it creates its timer
         cause = _missing_connection(record)
     if PENDING_ENDS in record.marks:
-        cause = f"{PENDING_CAUSE}. Its reports end with it"
+        cause = f"{PENDING_CAUSE}. Its reports then stop"
     return Failed(
         f"{limits.status_reports} reports within {limits.status_span:g} s",
         f"{len(_reports(record))}",

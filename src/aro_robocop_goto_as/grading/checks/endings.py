@@ -89,7 +89,7 @@ def _wrong_state(record: Record, status: int, wanted: int) -> str:
     if wanted == SUCCEEDED and status == ABORTED:
         return (
             "set_aborted is called although nothing is in the way: which beams count as ahead, which ranges as valid, "
-            "or does the server give up after a time of its own?"
+            "or does the server have a timeout of its own?"
         )
     if wanted == PREEMPTED:
         return "Call set_preempted for a goal that is cancelled or replaced"

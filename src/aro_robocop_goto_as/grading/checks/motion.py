@@ -10,8 +10,8 @@ from ..record import SUCCEEDED, Command, Goal, Record, errors_at, results_of, sa
 from .endings import success_too_far, wrong_ending
 from .verdict import Failed, NotReached, Passed, Verdict, check
 
-WINDOW = 0.45  # [s] the angle error has to stay within a range for so long before a command is judged by it
-NEAR = 0.2  # [m] closer to the goal its direction changes fast
+WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
+NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
 MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
@@ -126,7 +126,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
-    """A robot that drives backward, or stands although it heads for the goal."""
+    """A robot that drives backward, or does not move although it faces the goal."""
     backward = [it for it in driving if it.command.v < 0.0]
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
@@ -171,7 +171,7 @@ def reaches_goal(record: Record, limits: Limits) -> Verdict:
 
 @check("track")
 def goal_behind(record: Record, limits: Limits) -> Verdict:
-    """Goals behind are reached by the shorter turn, also where the heading passes from pi to -pi."""
+    """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
     for goal in record.goals:
         problem = (
             wrong_ending(record, goal, SUCCEEDED, limits)

@@ -61,6 +61,6 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return Passed()
     hint = (
-        "A range of 0 or NaN is taken for an obstacle" if wanted == SUCCEEDED else "A range of 0 or NaN hides the wall"
+        "A range of 0 or NaN is treated as an obstacle" if wanted == SUCCEEDED else "A range of 0 or NaN hides the wall"
     )
     return replace(problem, cause=sentences(problem.cause, f"{hint}: only range_min < r < range_max is a valid range"))

@@ -57,6 +57,6 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
         return Passed()
     first = status_name(results_of(record, record.goals[0])[0].status)
     cause = (
-        f"The second goal fails after the first one ended as {first}: is everything reset that the first one changed?"
+        f"The second goal fails after the first one ended as {first}: is all state that the first goal changed reset?"
     )
     return replace(problem, cause=sentences(problem.cause, cause))

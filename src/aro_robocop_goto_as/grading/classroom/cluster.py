@@ -20,7 +20,7 @@ START = "start workers with: ./robocop grade-worker"
 def _shared_credentials(place: Place) -> Security:
     """TLS with the key that scheduler, workers and client share.
 
-    Whoever reaches the port of a scheduler without TLS can have its workers run any code, with their user's rights.
+    Anyone who can reach the port of a scheduler without TLS can run any code on its workers, with their user's rights.
     """
     if not place.scheduler.startswith("tls://"):
         raise GradingSetupError(f"--scheduler {place.scheduler}: expected tls://HOST:PORT, see docs/grading.md")

@@ -14,14 +14,14 @@ from ...errors import GradingSetupError, RobocopError
 from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
-from ..judge import printable, printable_lines
+from ..judge import printable_lines
 from ..main import INTERRUPTED
 from ..plan import Plan, load
 from ..report_folder import make_report_folder
 from ..sandbox import expect_private
 from .hand_ins import HandIn, collect
 from .overview import page
-from .results import Result, Results, table, write_atomically
+from .results import Result, Results, one_line, table, write_atomically
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
@@ -43,14 +43,14 @@ class Class:
         """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
         if isinstance(outcome, str):
             self.problems[name] = outcome
-            return _printable(f"{name}: {outcome}")
+            return one_line(f"{name}: {outcome}")
         self._results.keep(outcome)
         result = self.done[name] = self._results.read(name)
         self.waiting = [hand_in for hand_in in self.waiting if hand_in.name != name]
         self.write(running=True)
         problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
         counter = f"[{len(self.done)}/{self.count}]"
-        return _printable(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
+        return one_line(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
@@ -58,11 +58,6 @@ class Class:
         write_atomically(folder / CSV, table(results, self.plan, self.problems))
         waiting = {hand_in.name: self.problems.get(hand_in.name, "waiting") for hand_in in self.waiting}
         write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
-
-
-def _printable(text: str) -> str:
-    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
-    return printable(text.encode("utf-8", "replace").decode())
 
 
 def main() -> None:
@@ -92,7 +87,7 @@ def main() -> None:
         for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
             raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
         for name in others:
-            print(f"ignored: {_printable(name)}, which is not a folder, zip or Python file", flush=True)
+            print(f"ignored: {one_line(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         with scratch_folder(), exclusive(out / ".run"):
             results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})

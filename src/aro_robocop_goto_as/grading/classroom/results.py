@@ -17,7 +17,7 @@ from .hand_ins import HandIn
 from .worker import Done
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
-# A spreadsheet takes text that starts with one of them, the last ones in Asian scripts, for a formula.
+# A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 MOST_CELL = 2_000  # characters of a cell
 BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
@@ -136,9 +136,14 @@ def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = M
     return text.getvalue()
 
 
+def one_line(text: str) -> str:
+    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
+    return printable(text.encode("utf-8", "replace").decode())
+
+
 def _plain(text: str) -> str:
     """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
-    text = printable(text.encode("utf-8", "replace").decode())[:MOST_CELL].replace(";", ",")
+    text = one_line(text)[:MOST_CELL].replace(";", ",")
     return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text
 
 

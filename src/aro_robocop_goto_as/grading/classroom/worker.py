@@ -70,7 +70,7 @@ def work(task: Task) -> Done:
             grade_submission(submission, plan, folder, state, sandbox, scratch=top)
         except UngradableError:
             raise
-        except Exception as error:  # whatever a hand-in makes of the grader is its own row, and nobody else's
+        except Exception as error:  # a hand-in that breaks the grader affects only its own row
             folder.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
             problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]

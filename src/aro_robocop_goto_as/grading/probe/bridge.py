@@ -19,6 +19,7 @@ from aro_robocop_goto_as.msg import (
 
 from ...geometry import Pose2D, Twist2D, compose, inverse
 from ...ros import graph
+from ...ros.private_api import goal_senders, has_client
 from .. import record as rec
 from ..checks.bridge import PENDING_ENDS, has_reports
 from ..handout import ACTION
@@ -47,16 +48,16 @@ class BridgeRun:
     """One submission's bridge.
 
     Its goals stay PENDING for a fixed simulated time: how long they do with a real server depends on that server, and
-    a bridge that takes PENDING for the end would be right or wrong by chance.
+    a bridge that treats PENDING as the end would pass or fail by chance.
     """
 
-    def __init__(self, plan: Plan, launch: Callable[[Run], Node], stage: Stage, machinery: Sequence[int]) -> None:
+    def __init__(self, plan: Plan, launch: Callable[[Run], Node], stage: Stage, grader_pids: Sequence[int]) -> None:
         self.plan = plan
         self.launch = launch
         self.stage = stage
-        # A timer with a longer period can't report often enough, so every timer that can meets a PENDING goal.
+        # A timer with a longer period can't report often enough, so one that can always meets a PENDING goal.
         self.pending_time = plan.limits.status_span / max(1.0, plan.limits.status_reports)
-        self.run = Run(stage, "bridge", machinery)
+        self.run = Run(stage, "bridge", grader_pids)
         self.run.handlers.update({"sent": self._on_sent, "goal": self._on_goal, "cancel": self._on_cancel})
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}  # of goals that have not ended, by id
@@ -158,7 +159,7 @@ class BridgeRun:
     def _tick(self) -> None:
         self.run.tick()
         self._accept_goals()
-        self.run.rest()  # its client has learned the state before time goes on
+        self.run.rest()  # its client has learned the state before time continues
 
     def _advance(self, seconds: float) -> None:
         for _ in range(int(seconds * 10)):
@@ -196,7 +197,7 @@ class BridgeRun:
         self._advance(0.5)
         run.marks["clicked"] = self.stage.now
         run.marks["listeners"] = float(self.clicks.get_num_connections())
-        run.marks["clients"] = float(self.server.goal_sub.get_num_connections())
+        run.marks["clients"] = float(goal_senders(self.server))
         self._click("odom", 1.2, -0.4)
         while run.parts["goals"] and self.stage.now < run.parts["goals"][-1].time + self.pending_time:
             self._tick()
@@ -215,13 +216,7 @@ class BridgeRun:
             self._tick()
 
     def _server_is_connected(self) -> bool:
-        inner = self.server
-        return (
-            self.clicks.get_num_connections() > 0
-            and inner.status_pub.get_num_connections() > 0
-            and inner.result_pub.get_num_connections() > 0
-            and inner.goal_sub.get_num_connections() > 0
-        )
+        return bool(self.clicks.get_num_connections() > 0 and has_client(self.server))
 
     def replace(self, bag: str) -> Record:
         """A second click while the first one's goal is active."""

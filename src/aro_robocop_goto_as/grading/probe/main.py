@@ -74,8 +74,8 @@ def _serve_gazebo(stage: Stage) -> None:
     serve(stage.loop)
 
 
-def _server(job: Job, stage: Stage, machinery: Sequence[int]) -> None:
-    server = ServerRun(job.plan, job.launch, stage, machinery)
+def _server(job: Job, stage: Stage, grader_pids: Sequence[int]) -> None:
+    server = ServerRun(job.plan, job.launch, stage, grader_pids)
     try:
         job.begin("start", "The node starts")
         start = server.start(job.bag("start"))
@@ -88,8 +88,8 @@ def _server(job: Job, stage: Stage, machinery: Sequence[int]) -> None:
         server.close()
 
 
-def _bridge(job: Job, stage: Stage, machinery: Sequence[int]) -> None:
-    bridge = BridgeRun(job.plan, job.launch, stage, machinery)
+def _bridge(job: Job, stage: Stage, grader_pids: Sequence[int]) -> None:
+    bridge = BridgeRun(job.plan, job.launch, stage, grader_pids)
     try:
         for name in BRIDGE_SCENARIOS:
             scenario = getattr(bridge, name)
@@ -117,7 +117,7 @@ def _start_master() -> int:
 def main() -> None:
     """Usage: main JOB.json, with a free port in ROS_MASTER_URI."""
     job = Job(sys.argv[1])
-    machinery = [os.getpid(), _start_master()]
+    grader_pids = [os.getpid(), _start_master()]
     rospy.set_param("/use_sim_time", True)
     for name, value in job.parameters.items():
         rospy.set_param(name, value)
@@ -131,7 +131,7 @@ def main() -> None:
         if job.watched:
             job.watch = stage.watch = Watch(stage.robot, PARAMS, job.plan, job.out / f"{job.part}-rviz.log")
             job.watch.open()
-        (_server if job.part == "server" else _bridge)(job, stage, machinery)
+        (_server if job.part == "server" else _bridge)(job, stage, grader_pids)
     except GraderLostError as error:
         print(error, file=sys.stderr)
         status = 1

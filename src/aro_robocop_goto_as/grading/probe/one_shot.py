@@ -55,7 +55,7 @@ class OneShotSubscriptions:
         return any(not link.is_served for link in self._links.values())
 
     def keep_served(self) -> None:
-        """Those that have received a message and still exist last."""
+        """Those that have received a message and still exist are lasting ones."""
         for link in self._links.values():
             if link.is_served:
                 self._lasting.append(link.connection)

@@ -20,7 +20,7 @@ from ...simulation.lockstep import SURE, Lockstep
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
-from . import rest
+from . import idle
 from .nodes import Node
 from .one_shot import OneShotSubscriptions
 from .stage import Stage
@@ -32,7 +32,7 @@ UNSURE_TIMEOUT = 0.06  # afterwards, for one that may not be due: a slow loop wh
 MUTE_TIMEOUT = 0.5  # instead of the first, for a node that was silent in a whole scenario; later ticks don't wait
 OTHER_STREAM_TIMEOUT = 0.15  # for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback message, but need not
-# [s, wall] how long time stands at most while the node's threads have something to do; a busy machine needs some of it:
+# [s, wall] how long time is held at most while the node's threads are busy; a loaded machine needs some of it:
 REST_TIMEOUT = 2.0
 RESTLESS_TIMEOUT = 0.02  # of a node that was busy throughout RESTLESS such waits: it polls in a busy loop
 RESTLESS = 3
@@ -43,7 +43,7 @@ MOST_BUSY = 20.0  # in total while it starts, besides the time-out for that
 ONE_SHOT_TIMEOUT = 2.0  # for a node to unsubscribe after a message, if it is to be the subscription's only one
 LASTING_TIMEOUT = 0.3  # likewise, once one of the node's subscriptions has lasted
 TREE_PERIOD = 0.5  # between two looks for the node's child processes
-SETTLE = 0.15  # [s, wall] for what a node does at once, while time stands
+SETTLE = 0.15  # [s, wall] for what a node does at once, while time is held
 PACE = 0.008  # [s, wall] minimum duration of a tick that needs no answer
 STREAMS = ("command", "feedback")
 MAX_ENTRIES = 20_000  # of each kind in one record
@@ -55,11 +55,12 @@ NODE_LOST = "the grader's ROS node was shut down while the submission ran"
 class Run:
     """The recording of the current scenario, and the ticks that both parts share."""
 
-    def __init__(self, stage: Stage, part: str, machinery: Sequence[int] = ()) -> None:
-        """`machinery` are the processes, besides the node's, that have to rest before time may pass."""
+    def __init__(self, stage: Stage, part: str, grader_pids: Sequence[int] = ()) -> None:
+        """`grader_pids` are the processes, besides the node's, that have to rest before time may pass."""
         self.stage = stage
-        self._machinery = list(machinery)
+        self._grader_pids = list(grader_pids)
         self._tree: Tuple[float, List[int]] = (0.0, [])  # when it was read, the node's processes
+        self._threads = idle.Threads()
         self._restless = 0  # waits in a row at whose end the node was still busy
         self.one_shot = OneShotSubscriptions(stage.sensor_topics)
         stage.after_publishing = self._serve_one_shot
@@ -247,7 +248,7 @@ class Run:
         self.rest()
 
     def rest(self, timeout: float = REST_TIMEOUT) -> bool:
-        """Let time stand until the node has done all it can do now; False if it is busy for too long."""
+        """Hold simulated time until the node is idle; False if it is busy for too long."""
         if self._restless >= RESTLESS:
             timeout = min(timeout, RESTLESS_TIMEOUT)
         started = time.monotonic()
@@ -257,7 +258,7 @@ class Run:
                 return False
             self.drain(lambda: False, REST_POLL)
         self._restless = 0
-        self.stage.excuse(time.monotonic() - started)
+        self.stage.exclude_from_deadlines(time.monotonic() - started)
         return True
 
     def _at_rest(self, polling: bool) -> bool:
@@ -265,9 +266,9 @@ class Run:
             return not self.stage.loop.jobs_waiting
         read, pids = self._tree
         if time.monotonic() - read > TREE_PERIOD:
-            pids = rest.tree([self.node.pid])
+            pids = idle.tree([self.node.pid])
             self._tree = time.monotonic(), pids
-        return rest.at_rest([*self._machinery, *pids], polling) and not self.stage.loop.jobs_waiting
+        return self._threads.at_rest([*self._grader_pids, *pids], polling) and not self.stage.loop.jobs_waiting
 
     def _serve_one_shot(self) -> None:
         """After messages were sent: hold time until a node that needed one of them has made use of it."""
@@ -277,7 +278,7 @@ class Run:
             timeout = LASTING_TIMEOUT if self.one_shot.lasting_seen else ONE_SHOT_TIMEOUT
             started = time.monotonic()
             if self.drain(lambda: self._dead() or not self.one_shot.served(), timeout):
-                self.stage.excuse(time.monotonic() - started)
+                self.stage.exclude_from_deadlines(time.monotonic() - started)
             else:
                 self.one_shot.keep_served()
         if self.one_shot.seen:
@@ -328,16 +329,16 @@ class Run:
 
         Not at real time even if watched: a node that takes simulated seconds to start has the same timeout.
         """
-        deadline, excuse = time.monotonic() + timeout, MOST_BUSY
+        deadline, excludable = time.monotonic() + timeout, MOST_BUSY
         while not condition():
             if self._dead() or time.monotonic() >= deadline:
                 self._record_death()
                 return condition()
             started = time.monotonic()
             if not self.rest(START_REST):  # it loads its modules, for long on a busy machine
-                spent = min(excuse, time.monotonic() - started)
-                excuse, deadline = excuse - spent, deadline + spent
-                self.stage.excuse(spent)
+                spent = min(excludable, time.monotonic() - started)
+                excludable, deadline = excludable - spent, deadline + spent
+                self.stage.exclude_from_deadlines(spent)
             self.tick(pace, real_time=False, patience=START_REST)
             self._restless = 0
         return True

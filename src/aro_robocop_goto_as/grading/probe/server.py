@@ -8,8 +8,7 @@ from actionlib_msgs.msg import GoalID
 from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 
 from ...geometry import Pose2D, compose
-from ...goto import Goal, errors_to, track_progress
-from ...params import GotoParams
+from ...goto import Errors, track_progress
 from ...ros import graph
 from .. import record as rec
 from ..handout import ACTION
@@ -29,13 +28,12 @@ Launch = Callable[[Run], Node]
 class ServerRun:
     """One submission's server, restarted after a scenario that left it in a bad state."""
 
-    def __init__(self, plan: Plan, launch: Launch, stage: Stage, machinery: Sequence[int]) -> None:
+    def __init__(self, plan: Plan, launch: Launch, stage: Stage, grader_pids: Sequence[int]) -> None:
         self.plan = plan
         self.limits = plan.limits
-        self.progress = GotoParams(stuck_distance=plan.limits.stall_distance, stuck_angle=plan.limits.stall_angle)
         self.launch = launch
         self.stage = stage
-        self.run = Run(stage, "server", machinery)
+        self.run = Run(stage, "server", grader_pids)
         self.deadline = 0.0
         self.goal_topic, self.cancel_topic = _topics()
 
@@ -113,7 +111,7 @@ class ServerRun:
         """Run one step of a script; returns the problem, or an empty text."""
         run = self.run
         if step.place:
-            self.stage.set_down(index, Pose2D(*step.place))
+            self.stage.teleport(index, Pose2D(*step.place))
             run.settle(WARM_UP)
             return ""
         if step.goal:
@@ -149,7 +147,7 @@ class ServerRun:
     def _advance(self, goal: rec.Goal, seconds: float) -> str:
         for _ in range(int(round(seconds * 10))):
             if goal.id in self.run.ended:
-                return "the goal ended before its time"
+                return "the goal ended too early"
             problem = self._tick()
             if problem:
                 return problem
@@ -163,10 +161,10 @@ class ServerRun:
             if problem:
                 return problem
             now = self.stage.now
-            errors = errors_to(Goal(goal.x, goal.y), self.stage.odom_from_footprint())
-            progress = track_progress(progress, errors, now, self.progress)
+            errors = Errors(*rec.errors_at(self.stage.odom_from_footprint(), goal))
+            progress = track_progress(progress, errors, now, self.limits.stall_distance, self.limits.stall_angle)
             if now - progress.since > self.limits.stall:
-                return f"the robot got no nearer for {self.limits.stall:g} s, and the goal did not end"
+                return f"the robot made no progress for {self.limits.stall:g} s, and the goal did not end"
             if now - started > self.limits.goal_time:
                 return f"the goal did not end within {self.limits.goal_time:g} s"
         return ""

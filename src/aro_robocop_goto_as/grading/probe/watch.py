@@ -65,7 +65,7 @@ class Watch:
         self._joints = publisher(f"{NAMESPACE}/joint_states", JointState)
         self._scene = publisher(f"{NAMESPACE}/scene", MarkerArray)
         self._obstacles = world_markers(world_of(plan), params.world_frame, 0.0)
-        self._text = markers.text("scenario", "", robot.base_frame)
+        self._text = markers.text("scenario", "", robot.footprint_frame)
 
     def open(self) -> None:
         """Start RViz, and wait until it has subscribed to everything it shows; WatchError if it does not."""
@@ -123,7 +123,7 @@ class Watch:
     def close(self) -> None:
         """End RViz and robot_state_publisher."""
         for process in self._processes:
-            child.end(process, None, grace=0.0)  # nothing in them is worth an orderly end
+            child.end(process, None, grace=0.0)  # no cleanup needed
 
     # -- called by the stage and the run --
 
@@ -131,7 +131,7 @@ class Watch:
         """Start a scenario: show its name and description above the robot, and start a new path."""
         self._path = []
         text = "\n".join([name, *textwrap.wrap(about.strip().rstrip("."), TEXT_WIDTH)])
-        self._text = markers.text("scenario", text, self._robot.base_frame)
+        self._text = markers.text("scenario", text, self._robot.footprint_frame)
         self._text.scale.z, self._text.pose.position.z = TEXT_SIZE, TEXT_HEIGHT
 
     def observe(self, seen: Observations, real_time: bool) -> None:

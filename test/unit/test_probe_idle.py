@@ -6,11 +6,16 @@ import time
 
 import pytest
 
-from aro_robocop_goto_as.grading.probe import rest
+from aro_robocop_goto_as.grading.probe import idle
 
 PATIENCE = 60.0  # [s, wall]
 SLEEPS = "import threading, sys\nprint('up', flush=True)\nsys.stdin.read()\n"
 WORKS = "import threading\ndef work():\n    while True:\n        pass\nprint('up', flush=True)\nwork()\n"
+MANY_THREADS = (
+    "import threading, sys\nfor _ in range(20):\n    threading.Thread(target=sys.stdin.read, daemon=True).start()\n"
+    "print('up', flush=True)\nthreading.Event().wait()\n"
+)
+SLEEPS_BRIEFLY = "import time\nprint('up', flush=True)\nwhile True:\n    time.sleep(0.001)\n"
 CHILD_WORKS = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {WORKS!r}])\n"
 
 
@@ -27,7 +32,7 @@ def started():
 
     yield start
     for process in processes:
-        for pid in rest.tree([process.pid])[1:]:
+        for pid in idle.tree([process.pid])[1:]:
             subprocess.run(["kill", "-KILL", str(pid)], check=False)
         process.kill()
         process.communicate()
@@ -35,9 +40,9 @@ def started():
 
 def comes_to_rest(pid):
     """Whether a process and its children come to rest within a second or two of looking."""
-    deadline = time.monotonic() + PATIENCE
+    deadline, threads = time.monotonic() + PATIENCE, idle.Threads()
     for _ in range(50):
-        if rest.at_rest(rest.tree([pid])):
+        if threads.at_rest(idle.tree([pid])):
             return True
         if time.monotonic() > deadline:
             break
@@ -57,5 +62,17 @@ def test_process_that_works_or_has_a_child_that_does_is_not(code, started):
 def test_process_that_has_ended_is_at_rest():
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait(PATIENCE)
-    assert rest.tree([process.pid]) == []
-    assert rest.at_rest([process.pid])
+    assert idle.tree([process.pid]) == []
+    assert idle.Threads().at_rest([process.pid])
+
+
+def test_process_with_more_threads_than_files_may_be_open_comes_to_rest(started, monkeypatch):
+    monkeypatch.setattr(idle, "MOST_OPEN", 5)
+    assert comes_to_rest(started(MANY_THREADS))
+
+
+def test_thread_that_wakes_up_between_two_looks_is_not_at_rest(started, monkeypatch):
+    pid, threads = started(SLEEPS_BRIEFLY), idle.Threads()
+    busy = threads._busy
+    monkeypatch.setattr(threads, "_busy", lambda found: busy(found) or time.sleep(0.1) or False)
+    assert not threads.at_rest([pid])
