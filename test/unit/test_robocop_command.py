@@ -352,6 +352,7 @@ def test_missing_debian_package_is_named_with_the_line_to_type(checkout):
     assert "apt-get install --no-install-recommends no-such-package\n" in done.stderr
 
 
+@pytest.mark.slow
 def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(checkout, index):
     done = in_copy(checkout, "setup", BUILD_FAILS="1", **index)
     assert done.returncode == 1
@@ -360,6 +361,7 @@ def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(chec
     assert "robocop: pybullet==3.2.7 could not be built from its source release (full log: " in done.stderr
 
 
+@pytest.mark.slow
 def test_index_without_pybullet_is_reported_and_nothing_is_built(checkout, index):
     done = in_copy(checkout, "setup", **{**index, "PIP_FIND_LINKS": str(checkout)})
     assert done.returncode == 1

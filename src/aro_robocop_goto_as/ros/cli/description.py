@@ -1,5 +1,6 @@
 """Parameter files -> the URDF of the model they choose, for launch files that were not given a model."""
 
+import os
 import sys
 from typing import Any, Dict, List, Optional
 
@@ -8,6 +9,8 @@ import yaml
 from ...errors import ParameterError, RobocopError
 from ...params import SimParams
 from ...robot.catalog import urdf_of
+
+MODEL_VARIABLE = "TURTLEBOT3_MODEL"  # the model where no file chooses one, as in the launch file
 
 
 def merged(paths: List[str]) -> Dict[str, Any]:
@@ -36,7 +39,8 @@ def main(arguments: Optional[List[str]] = None) -> None:
                 "does not start their other nodes; pass it as the argument robots:=... instead",
                 file=sys.stderr,
             )
-        with open(urdf_of(str(values.get("model", SimParams.model)), package), encoding="utf-8") as urdf:
+        model = str(values.get("model", os.environ.get(MODEL_VARIABLE) or SimParams.model))
+        with open(urdf_of(model, package), encoding="utf-8") as urdf:
             print(urdf.read(), end="")
     except RobocopError as error:
         sys.exit(f"{error.code}: {error}")

@@ -143,7 +143,7 @@ def _go_to(args: argparse.Namespace, patience: float) -> int:
         signals.reraise_if_interrupted()
         _complain(str(error))
         if args.frame == DEFAULT_FRAME:
-            _complain("--frame odom gives X and Y relative to where the robot was switched on")
+            _complain("--frame odom gives X and Y relative to where the robot's odometry started")
         if rospy.get_rostime() == started:
             _complain(PAUSED)
         return NOT_REACHED

@@ -78,7 +78,7 @@ def launch(arguments: List[str]) -> int:
         private_api.add_early_listener(parent, required)
         private_api.install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
         with deferred:
-            with _held_back_errors(deferred):
+            with buffered_stderr(deferred):
                 private_api.load_launch_files(parent)
             parent.start()
         if screen is not None:
@@ -102,23 +102,23 @@ def _quiet(folder: Path) -> TextIO:
 
 
 @contextlib.contextmanager
-def _held_back_errors(deferred: signals.Deferred) -> Iterator[None]:
+def buffered_stderr(deferred: signals.Deferred) -> Iterator[None]:
     """Print what the block and its child processes write to standard error at its end, unless it is interrupted.
 
     Ctrl-C also reaches the commands that roslaunch runs for parameters; Python prints a traceback for each.
     """
     sys.stderr.flush()
     screen = os.dup(STDERR)
-    with tempfile.TemporaryFile() as held, os.fdopen(screen, "wb", buffering=0) as stream:
-        os.dup2(held.fileno(), STDERR)
+    with tempfile.TemporaryFile() as buffer, os.fdopen(screen, "wb", buffering=0) as stream:
+        os.dup2(buffer.fileno(), STDERR)
         try:
             yield
         finally:
             sys.stderr.flush()
             os.dup2(screen, STDERR)
-            held.seek(0)
+            buffer.seek(0)
             if not deferred.interrupted:
-                stream.write(held.read())
+                stream.write(buffer.read())
 
 
 def _explained(error: OSError) -> str:

@@ -1,0 +1,175 @@
+"""robocop teleop: drive a robot with the keyboard; it moves while a key is held, and stops when the key is released."""
+
+import argparse
+import contextlib
+import os
+import select
+import sys
+import termios
+import time
+import tty
+from typing import Iterator, List
+
+import rospy
+from geometry_msgs.msg import Twist, Vector3
+
+from ...bootstrap import master
+from ...errors import RobocopError, TeleopError
+from ...geometry import STANDSTILL, Twist2D
+from ...process import signals
+from ..publishing import publisher
+from ..ticker import wait_until
+from .held_key import HeldKey
+
+LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models
+PERIOD = 0.1  # [s, wall] between two commands, well below the simulator's command timeout
+CONNECT_PATIENCE = 5.0  # [s, wall]
+MOST_READ = 4096  # [byte] so that a read never ends within a key's escape sequence
+# Factors of the linear and angular speed.
+KEYS = {
+    "w": (1.0, 0.0),
+    "x": (-1.0, 0.0),
+    "a": (0.0, 1.0),
+    "d": (0.0, -1.0),
+    "q": (1.0, 1.0),
+    "e": (1.0, -1.0),
+    "\x1b[A": (1.0, 0.0),  # arrows, in the terminal's normal mode and in its application mode
+    "\x1b[B": (-1.0, 0.0),
+    "\x1b[D": (0.0, 1.0),
+    "\x1b[C": (0.0, -1.0),
+    "\x1bOA": (1.0, 0.0),
+    "\x1bOB": (-1.0, 0.0),
+    "\x1bOD": (0.0, 1.0),
+    "\x1bOC": (0.0, -1.0),
+}
+HELP = """\
+  q  w  e       forward, and turning left or right
+  a     d       turn left, turn right            (arrow keys work as well)
+     x          backward
+The robot stops when the key is released. Ctrl-C ends.
+"""
+
+
+def command(key: str, linear: float, angular: float) -> Twist2D:
+    """The velocity for a key, given the speeds [m/s], [rad/s]; zero for no key and for one without a meaning."""
+    forward, left = KEYS.get(key, (0.0, 0.0))
+    return Twist2D(forward * linear, left * angular)
+
+
+def keys_of(text: str) -> List[str]:
+    """The keys in what a terminal has sent: single characters and escape sequences of three, such as an arrow's."""
+    keys = []
+    while text:
+        length = 3 if text[:2] in ("\x1b[", "\x1bO") else 1
+        keys.append(text[:length])
+        text = text[length:]
+    return keys
+
+
+@contextlib.contextmanager
+def _raw_keys(terminal: int) -> Iterator[None]:
+    """Keys arrive at once and are not shown; Ctrl-C remains a signal."""
+    before = termios.tcgetattr(terminal)
+    tty.setcbreak(terminal, termios.TCSANOW)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(termios.error):  # the terminal is gone
+            termios.tcsetattr(terminal, termios.TCSANOW, before)
+
+
+class Teleop:
+    """Publishes the held key's velocity, and zero once when it is released, so that goals are not disturbed."""
+
+    def __init__(self, topic: str, linear: float, angular: float) -> None:
+        self._publisher = publisher(topic, Twist)
+        self._speeds = linear, angular
+        self._keys = HeldKey()
+        self._moving = False
+        if not wait_until(lambda: self._publisher.get_num_connections() > 0, CONNECT_PATIENCE):
+            advice = "is the simulator running? With several robots, --robot NAME says which one"
+            raise TeleopError(f"nobody subscribes to {self._publisher.resolved_name}: {advice}")
+
+    def run(self, terminal: int) -> None:
+        """Follow the keys until the terminal is closed or the node is shut down."""
+        while not rospy.is_shutdown():
+            ready, _, _ = select.select([terminal], [], [], PERIOD)
+            if ready:
+                try:
+                    read = os.read(terminal, MOST_READ)
+                except OSError:  # the terminal is gone
+                    return
+                if not read:
+                    return
+                for key in keys_of(read.decode(errors="replace")):
+                    self._keys.press(key, time.monotonic())
+            self._send(command(self._keys.at(time.monotonic()), *self._speeds))
+
+    def stop(self) -> None:
+        """Publish a zero velocity if the robot was commanded to move."""
+        self._keys.release()
+        self._send(STANDSTILL)
+
+    def _send(self, twist: Twist2D) -> None:
+        if twist == STANDSTILL and not self._moving:
+            return
+        self._moving = twist != STANDSTILL
+        with contextlib.suppress(rospy.ROSException):  # shut down meanwhile
+            self._publisher.publish(Twist(Vector3(twist.v, 0.0, 0.0), Vector3(0.0, 0.0, twist.w)))
+
+
+def _parse(argv: List[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="robocop teleop",
+        description="Drive a robot with the keyboard; it stops when the key is released.",
+        epilog="Exit status 0 when it was ended, 1 when it could not start.",
+    )
+    parser.add_argument("--robot", default="", help="name of one of several robots")
+    parser.add_argument(
+        "--linear", type=_speed, default=LINEAR, help="forward and backward [m/s] (default %(default)s)"
+    )
+    parser.add_argument("--angular", type=_speed, default=ANGULAR, help="turning [rad/s] (default %(default)s)")
+    return parser.parse_args(argv)
+
+
+def _speed(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 < value < 100.0:
+        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
+    return value
+
+
+def _require_terminal_and_master(terminal: int) -> None:
+    """Raise TeleopError unless there are a terminal and a ROS master."""
+    if not os.isatty(terminal):
+        raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
+    if not master.master_answers(master.master_uri()):
+        raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
+
+
+def main() -> None:
+    """Entry point; exit status 0 when it was ended by a key or signal, 1 when it could not start."""
+    args = _parse(rospy.myargv()[1:])
+    signals.interrupt_on_signal()
+    terminal = sys.stdin.fileno()
+    teleop = None
+    try:
+        _require_terminal_and_master(terminal)
+        # Wall time: a paused simulator must not keep keys from being read.
+        rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
+        teleop = Teleop(f"/{args.robot}/cmd_vel".replace("//", "/"), args.linear, args.angular)
+        with _raw_keys(terminal):
+            print(HELP, flush=True)
+            teleop.run(terminal)
+    except KeyboardInterrupt:
+        pass
+    except RobocopError as error:
+        sys.exit(f"robocop teleop: {error}")
+    finally:
+        signals.begin_cleanup()
+        if teleop is not None:
+            teleop.stop()
+        rospy.signal_shutdown("ended")

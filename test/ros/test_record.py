@@ -1,0 +1,81 @@
+"""./robocop record and replay: what was recorded of a run is published again, with its clock."""
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+import rosbag
+import rosgraph
+from waiting import wait_for
+
+from aro_robocop_goto_as.process.ports import free_port
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Commands:
+    """Runs ./robocop on a master of its own; `start` ends with the test."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.uri = f"http://localhost:{free_port()}"
+        self.master = rosgraph.Master("/record_test", self.uri)
+        self.environment = {**os.environ, "ROS_MASTER_URI": self.uri, "ROS_HOSTNAME": "localhost", "DISPLAY": ""}
+        self.running = []
+
+    def start(self, *command):
+        process = subprocess.Popen([ROOT / "robocop", *command], cwd=self.folder, env=self.environment)
+        self.running.append(process)
+        return process
+
+    def publishes(self, topic, node):
+        """Whether a node publishes a topic."""
+        if not self.master.is_online():
+            return False
+        publishers = dict(self.master.getSystemState()[0])
+        return node in publishers.get(topic, [])
+
+    def end(self, process):
+        """Interrupt a process; its exit status."""
+        process.send_signal(signal.SIGINT)
+        return process.wait(60.0)
+
+
+@pytest.fixture
+def robocop(tmp_path):
+    commands = Commands(tmp_path)
+    yield commands
+    for process in reversed(commands.running):
+        if process.poll() is None:
+            commands.end(process)
+
+
+@pytest.mark.slow
+def test_a_recorded_goal_is_played_again(robocop):
+    system = robocop.start("run", "rviz:=false", "real_time_factor:=5")
+    wait_for(lambda: robocop.publishes("/robocop_goto_as/result", "/aro_robocop_goto_as_node"), "the server")
+    recorder = robocop.start("record", "run.bag")
+    wait_for((robocop.folder / "run.bag.active").exists, "the bag")
+    assert robocop.start("goto", "-0.5", "0").wait(60.0) == 0
+    robocop.end(recorder)
+    robocop.end(system)
+    with rosbag.Bag(robocop.folder / "run.bag") as bag:
+        topics = bag.get_type_and_topic_info().topics
+        assert {"/clock", "/scan", "/odom", "/tf_static", "/robocop_sim/world"} <= set(topics)
+        assert topics["/robocop_goto_as/result"].message_count == 1
+
+    wait_for(lambda: not robocop.master.is_online(), "the end of the system")
+    replay = robocop.start("replay", "run.bag", "rate:=5")
+    echo = ["rostopic", "echo", "-n", "1", "/robocop_goto_as/result"]
+    wait_for(lambda: robocop.publishes("/robocop_goto_as/result", "/replay"), "the replay")
+    done = subprocess.run(echo, env=robocop.environment, capture_output=True, text=True, timeout=120)
+    assert "REACHED" in done.stdout, done.stderr
+    assert robocop.end(replay) == 0
+
+
+def test_recording_never_overwrites_a_bag(robocop):
+    (robocop.folder / "run.bag").write_text("precious")
+    assert robocop.start("record", "run").wait(60.0) == 1
+    assert (robocop.folder / "run.bag").read_text() == "precious"
