@@ -9,15 +9,15 @@ From a velocity command to odometry, scan, tf and clock:
         physics.engine            wheel speeds + world -> robot states, by bullet or kinematic
         sensors                   states, distances -> measurements
     simulation.observations       what the step yielded
-    ros.sim.node                  -> robot_topics, transform_topics, and the clock last
+    ros.sim.node                  -> robot_topics, transform_topics, moving obstacles, and the clock last
 
 From a goal to its result:
 
     ros.server.goal_server        goal -> the control loop in ros.server.node
-    ros.server.inputs             newest odom and scan -> pose, clearance ahead
-    ros.server.goal_execution     one control period of the goal, decided by
-    goto                          the handout's rule: rotate, move forward or end
-    ros.server.node               -> cmd_vel, feedback, in the end result and terminal state
+    ros.server.goal_execution     one control period of the goal; ends one that is stuck, late or without sensor data
+        ros.server.inputs         newest odom and scan -> pose, clearance ahead
+        goto                      the handout's rule: rotate, move forward, reached or obstacle
+    ros.server.node               -> feedback, cmd_vel, in the end result and terminal state
 
     A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2), goal_handle.
 
@@ -25,17 +25,18 @@ From a world file to a scan:
 
     world.load                    by world.sdf or world.grid_map -> world.model.World
     raycast.cross_section         the world at a scanner's height: segments and circles
-    raycast.scene                 the cross-sections and all robots, laid out for caster.c, which library loads
+    raycast.scene                 the cross-sections and all robots, laid out for caster.c
     raycast.fleet                 + robot poses -> exact distances along all beams
+        raycast.beams             calls caster.c, which caster_library loads
     sensors.lidar                 noise, range limits -> ranges
 
 From the system to a browser and back, by viser:
 
     ros.web.topics                topics, tf -> ros.web.view -> web.scene, web.page
-    web.page                      clicks, buttons, keys -> ros.web.commands -> topics, services
+    web.page                      clicks, buttons, keys -> ros.web.node -> ros.web.commands -> topics, services
 
-Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component gets
-its own small set from `component_params`. `process` is about operating system processes, `bootstrap` runs before
-anything is installed, `hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the
-simulator.
+Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of the
+simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them there
+and in `config/` before the code. `process` is about operating system processes, `bootstrap` needs nothing installed,
+`hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the simulator.
 """

@@ -87,12 +87,12 @@ class ImuNoise:
 
 @dataclass(frozen=True)
 class FrameNames:
-    """TF frames; of several robots, odom, base, scan and imu get the robot's name as a prefix."""
+    """TF frames; of several robots, odom, footprint, scan and imu get the robot's name as a prefix."""
 
     world: str
     map: str
     odom: str
-    base: str
+    footprint: str  # base_footprint
     scan: str
     imu: str
 

@@ -65,9 +65,15 @@ class InstallationError(RobocopError):
 
 
 class MasterError(RobocopError):
-    """The port of the ROS master is taken by something that does not answer as a master does."""
+    """The port of the ROS master is used by something that does not answer like a master."""
 
     code = "MASTER"
+
+
+class TeleopError(RobocopError):
+    """No robot can be driven from here; the message says what is missing."""
+
+    code = "TELEOP"
 
 
 class WebError(RobocopError):
@@ -109,7 +115,7 @@ class SubmissionError(GradingError):
 
 
 class GradingSetupError(GradingError):
-    """Something that grading needs is not installed or not running here; whoever grades has to provide it."""
+    """Something that grading needs is not installed or not running here; the person grading has to provide it."""
 
 
 class WatchError(GradingSetupError):
@@ -117,7 +123,7 @@ class WatchError(GradingSetupError):
 
 
 class UngradableError(GradingError):
-    """The grader could not start its part of a run, or the run was ended from outside, twice: it can be repeated."""
+    """The grader could not start its part of a run, or the run was ended from outside twice; it can be repeated."""
 
 
 class GraderLostError(GradingError):

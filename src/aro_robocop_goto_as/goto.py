@@ -119,13 +119,13 @@ class Progress:
     since: float
 
 
-def track_progress(progress: Optional[Progress], errors: Errors, now: float, params: GotoParams) -> Progress:
-    """The newest progress: nearer to the goal by stuck_distance, or turned towards it by stuck_angle."""
-    if progress is None:
+def track_progress(last: Optional[Progress], errors: Errors, now: float, distance: float, angle: float) -> Progress:
+    """The newest progress at a time [s]: nearer to the goal by a distance [m], or turned to it by an angle [rad]."""
+    if last is None:
         return Progress(errors, now)
-    nearer = errors.position < progress.errors.position - params.stuck_distance
-    turned = abs(errors.angle) < abs(progress.errors.angle) - params.stuck_angle
-    return Progress(errors, now) if nearer or turned else progress
+    nearer = errors.position < last.errors.position - distance
+    turned = abs(errors.angle) < abs(last.errors.angle) - angle
+    return Progress(errors, now) if nearer or turned else last
 
 
 def clearance_ahead(

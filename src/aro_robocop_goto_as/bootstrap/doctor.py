@@ -64,7 +64,7 @@ def versions(python: str) -> Dict[str, str]:
         done = subprocess.run(command, capture_output=True, timeout=PROBE_TIMEOUT)
         return dict(json.loads(done.stdout.decode().splitlines()[-1]))
     except (OSError, subprocess.TimeoutExpired, IndexError, ValueError) as error:
-        return {name: f"not found out, {python} failed: {error}" for name in PACKAGES}
+        return {name: f"unknown, {python} failed: {error}" for name in PACKAGES}
 
 
 def master_row() -> Tuple[str, Optional[str]]:

@@ -1,4 +1,4 @@
-"""Folders of others: walking, finding and removing without recursion, however deep they are nested.
+"""Other people's folders: walking, finding and removing without recursion, however deep they are nested.
 
 os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels.
 """

@@ -3,12 +3,11 @@
 import math
 from typing import Dict, List, Sequence, Set, Tuple
 
-import pybullet
-
 from ..geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Twist2D, compose3, lifted, yaw_of
 from ..robot.model import CASTER_PREFIX, WHEEL_JOINTS, BodyState, Pair, RobotModel, RobotState
 from ..world.model import Obstacle, Plane, World
 from .bullet_shapes import FLOOR, load_urdf, shapes_of
+from .quiet_pybullet import pybullet
 
 WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower motion with stopped wheels is solver creep

@@ -5,12 +5,12 @@ import tempfile
 from typing import Any, Dict, List
 
 import numpy as np
-import pybullet
 
 from ..errors import RobotModelError
 from ..geometry import Pose3D
 from ..robot.model import RobotModel
 from ..world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls
+from .quiet_pybullet import pybullet
 
 FLOOR = Obstacle("floor", Pose3D(), Plane((0.0, 0.0, 1.0)))
 MAX_TRIANGLES = 30000  # per shape; pybullet refuses more than 131,072 vertices

@@ -2,7 +2,7 @@
 
 Each step moves a disc along the chord of its arc as far as the way is free, which is computed exactly, so it passes
 through nothing at any speed or step length. Rotation is never blocked. Wheels turn as commanded even where a robot is
-blocked, so its encoders count on, as those of slipping wheels do.
+blocked, so its encoders keep counting, as those of slipping wheels do.
 """
 
 import math

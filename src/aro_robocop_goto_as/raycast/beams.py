@@ -2,12 +2,12 @@
 
 import ctypes
 import math
-from typing import Optional, Sequence
+from typing import Sequence
 
 import numpy as np
 
+from .caster_library import FanStruct, address
 from .cross_section import Slice
-from .library import FanStruct, address
 from .scene import Plane, Scene
 
 TURN = 2.0 * math.pi
@@ -58,21 +58,13 @@ class Fan:
             raise ValueError(REFUSED[status])
         return distances
 
-    def cast(
-        self, world_from_scans: np.ndarray, walls: Slice, others: Optional[np.ndarray] = None, reach: float = math.inf
-    ) -> np.ndarray:
+    def cast(self, world_from_scans: np.ndarray, walls: Slice, reach: float = math.inf) -> np.ndarray:
         """Distances (r, samples) [m] from poses (r, 3) [x m, y m, yaw rad]; +inf where nothing is within `reach` [m].
 
-        `others` (r, k, 3) are circles [x m, y m, radius m] that only the scanner of that row sees. For repeated scans
-        in one world a Scene is faster.
+        For repeated scans in one world a Scene is faster.
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        if others is None:
-            scene = Scene([Plane(walls)], [0] * len(poses), np.zeros_like(poses))
-            scene.bases[:] = poses
-            return self.scan(scene, range(len(poses)), reach)
-        circles = np.ascontiguousarray(others, dtype=np.float64)
-        address("others", circles, (len(poses), None, 3))
-        rows = [self.cast(pose[None, :], walls.with_circles(own), reach=reach) for pose, own in zip(poses, circles)]
-        return np.concatenate([np.empty((0, self.samples)), *rows])
+        scene = Scene([Plane(walls)], [0] * len(poses), np.zeros_like(poses))
+        scene.footprints[:] = poses
+        return self.scan(scene, range(len(poses)), reach)

@@ -4,7 +4,7 @@
  * that beams pass through are compared. Each distance depends on one beam and one shape only, and a beam's result is
  * their minimum, so results depend neither on the order of the shapes nor on which other scanners are cast.
  *
- * The structures are mirrored in library.py; ARO_CASTER_VERSION changes with them.
+ * The structures are mirrored in caster_library.py; ARO_CASTER_VERSION changes with them.
  */
 
 #include <math.h>
@@ -58,7 +58,7 @@ struct plane {
 
 struct fleet {
     int64_t n_robots, n_planes;
-    const double *bases;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
+    const double *footprints;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
     const double *mounts;    /* (n_robots, 3) the scanner's pose in its robot's frame */
     const int64_t *plane_of; /* (n_robots,) */
     struct plane *planes;
@@ -310,7 +310,7 @@ int aro_cast(const struct fan *fan, const struct fleet *fleet, int64_t n_scans, 
 {
     int64_t i, k;
     for (i = 0; i < 3 * fleet->n_robots; i++)
-        if (!isfinite(fleet->bases[i]))
+        if (!isfinite(fleet->footprints[i]))
             return POSE_NOT_FINITE;
     for (i = 0; i < n_scans; i++)
         if (robots[i] < 0 || robots[i] >= fleet->n_robots)
@@ -319,15 +319,15 @@ int aro_cast(const struct fan *fan, const struct fleet *fleet, int64_t n_scans, 
         const struct plane *plane = fleet->planes + i;
         for (k = 0; k < plane->n_bodies; k++) {
             double *moved = plane->moved_bodies + 3 * k;
-            to_world(fleet->bases + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
+            to_world(fleet->footprints + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
             moved[2] = plane->bodies[3 * k + 2];
         }
     }
     for (i = 0; i < n_scans; i++) {
-        const double *base = fleet->bases + 3 * robots[i], *mount = fleet->mounts + 3 * robots[i];
-        double yaw = base[2] + mount[2];
+        const double *footprint = fleet->footprints + 3 * robots[i], *mount = fleet->mounts + 3 * robots[i];
+        double yaw = footprint[2] + mount[2];
         struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + i * fan->samples};
-        to_world(base, mount, &scan.x, &scan.y);
+        to_world(footprint, mount, &scan.x, &scan.y);
         for (k = 0; k < fan->samples; k++)
             scan.nearest[k] = INFINITY;
         cast_plane(&scan, fleet->planes + fleet->plane_of[robots[i]], robots[i]);

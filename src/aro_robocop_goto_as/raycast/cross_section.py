@@ -54,12 +54,6 @@ class Slice:
         moved.move(time)
         return moved
 
-    def with_circles(self, circles: np.ndarray) -> "Slice":
-        """This cross-section with more circles (k, 3) in it, which stay where they are."""
-        more = copy.copy(self)
-        more.circles = np.concatenate([self.circles, circles])
-        return more
-
     def move(self, time: float) -> None:
         """Set the moving circles to where they are at a time [s], in place."""
         for row, motion, start in self._moving:

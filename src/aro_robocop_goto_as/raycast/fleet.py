@@ -72,5 +72,5 @@ class Scanners:
         """
         for walls in self._slices:
             walls.move(time)
-        self._scene.bases[:] = [(pose.x, pose.y, pose.yaw) for pose in world_from_footprints]
+        self._scene.footprints[:] = [(pose.x, pose.y, pose.yaw) for pose in world_from_footprints]
         return fan.scan(self._scene, robots, max_range)

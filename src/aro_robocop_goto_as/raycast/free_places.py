@@ -80,7 +80,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
                 heapq.heappush(waiting, (neighbour[0] ** 2 + neighbour[1] ** 2, neighbour))
     if len(places) < count:
         raise ParameterError(
-            f"robots: world {world.name!r} has room for {len(places)} around its spawn, {count} were asked for"
+            f"robots: world {world.name!r} has room for {len(places)} around its spawn, {count} were requested"
         )
     return places
 

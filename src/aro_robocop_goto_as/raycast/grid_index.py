@@ -5,7 +5,7 @@ from typing import Tuple
 
 import numpy as np
 
-from .library import GridStruct, address
+from .caster_library import GridStruct, address
 
 TILE = 1.0  # [m] side length, larger in worlds of more than MOST_TILES
 MOST_TILES = 1 << 20

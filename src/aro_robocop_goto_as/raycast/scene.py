@@ -5,8 +5,8 @@ from typing import Sequence
 
 import numpy as np
 
+from .caster_library import FleetStruct, PlaneStruct, address, load
 from .cross_section import Slice
-from .library import FleetStruct, PlaneStruct, address, load
 
 NO_BODIES = np.zeros((0, 3))
 NO_OWNERS = np.zeros(0, np.int64)
@@ -46,14 +46,14 @@ class Scene:
             raise ValueError(f"plane_of: expected numbers from 0 to {len(planes) - 1}, got {list(plane_of)}")
         if any(not 0 <= owner < count for plane in planes for owner in plane.owners):
             raise ValueError(f"owners: expected numbers from 0 to {count - 1}")
-        self.bases = np.zeros((count, 3))  # [x m, y m, yaw rad] of the robots in the world, to be filled by the user
+        self.footprints = np.zeros((count, 3))  # [x m, y m, yaw rad] in the world, to be filled by the user
         self._mounts = mounts
         self._planes = list(planes)
         self._plane_structs = (PlaneStruct * len(planes))(*(plane.struct for plane in planes))
         self.struct = FleetStruct(
             count,
             len(planes),
-            address("bases", self.bases, (count, 3)),
+            address("footprints", self.footprints, (count, 3)),
             address("mounts", mounts, (count, 3)),
             address("plane_of", self._plane_of, (count,), np.int64),
             self._plane_structs,

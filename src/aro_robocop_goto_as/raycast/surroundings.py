@@ -1,4 +1,4 @@
-"""The distance from a point on the floor to the nearest obstacle that is as low as a robot is high."""
+"""The distance from a point on the floor to the nearest obstacle within a robot's height."""
 
 import math
 from dataclasses import replace

@@ -39,13 +39,13 @@ def circle(namespace: str, radius: float, x: float, y: float, frame: str, color:
     return made
 
 
-def goal(tolerance: float, x: float, y: float, frame: str) -> Tuple[Marker, Marker]:
+def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GOAL_COLOR) -> Tuple[Marker, Marker]:
     """A circle of radius `tolerance` [m] around the goal, and a pin at the goal."""
-    pin = marker("goal_pin", Marker.CYLINDER, frame, GOAL_COLOR)
+    pin = marker("goal_pin", Marker.CYLINDER, frame, color)
     pin.scale.x = pin.scale.y = 0.02
     pin.scale.z = 0.4
     pin.pose.position.x, pin.pose.position.y, pin.pose.position.z = x, y, 0.2
-    return circle("goal_circle", tolerance, x, y, frame, GOAL_COLOR), pin
+    return circle("goal_circle", tolerance, x, y, frame, color), pin
 
 
 def text(namespace: str, content: str, frame: str) -> Marker:

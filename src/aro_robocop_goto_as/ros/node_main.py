@@ -17,8 +17,8 @@ from . import private_api
 def node(name: str, **options: Any) -> Iterator[None]:
     """rospy.init_node for the block in which the node lives; a RobocopError in it is logged, with exit status 1.
 
-    rospy shuts down inside its signal handler. If that interrupts a call to the master, it waits for ever for the lock
-    that the interrupted call holds. Here a thread shuts down, so that the call can complete.
+    rospy shuts down inside its signal handler. If the signal interrupts a call to the master, the handler waits forever
+    for the lock that this call holds. Here a thread shuts down, so that the call can complete.
     """
     for number in ending_signals():
         signal.signal(number, _shut_down)

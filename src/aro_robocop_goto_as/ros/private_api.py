@@ -131,6 +131,17 @@ def connected_to_server(client: actionlib.ActionClient) -> bool:
     )
 
 
+def goal_senders(server: actionlib.ActionServer) -> int:
+    """How many nodes can send goals to an action server; actionlib keeps its topics to itself."""
+    return int(server.goal_sub.get_num_connections())
+
+
+def has_client(server: actionlib.ActionServer) -> bool:
+    """Whether somebody can send goals to an action server, and hears of their status and result."""
+    topics = (server.goal_sub, server.status_pub, server.result_pub)
+    return all(topic.get_num_connections() > 0 for topic in topics)
+
+
 def set_default_result(server: actionlib.SimpleActionServer, make_result: Callable[[], Any]) -> None:
     """The result of goals that the server ends by itself, before they are accepted; actionlib's is empty."""
     server.action_server.ActionResultType = make_result
@@ -240,5 +251,5 @@ def checked_requests(refusal: Callable[[Any], str], headers: Dict[str, str]) -> 
 
 
 def accept_scientific_notation(parser: argparse.ArgumentParser) -> None:
-    """Let a parser take -5e-1 for a number; argparse takes it for an unknown option."""
+    """Let a parser accept -5e-1 as a number; argparse treats it as an unknown option."""
     parser._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")

@@ -16,6 +16,6 @@ def start_timer(period: float, callback: Callable[[], None]) -> rospy.Timer:
             rospy.logdebug("timer callback: %s", error)
         except Exception:  # the timer thread's outermost level: rospy would end the thread silently
             if not rospy.is_shutdown():
-                rospy.logerr_throttle(10.0, "timer callback failed, the timer goes on:\n%s", traceback.format_exc())
+                rospy.logerr_throttle(10.0, "timer callback failed, the timer continues:\n%s", traceback.format_exc())
 
     return rospy.Timer(rospy.Duration.from_sec(period), guarded, reset=True)

@@ -6,10 +6,10 @@ So both engines have cameras, and rendering never affects the simulation.
 from typing import List, Sequence, Tuple
 
 import numpy as np
-import pybullet
 
 from ..geometry import Pose3D, rotation_matrix
 from ..physics.bullet_shapes import FLOOR, load_urdf, visual_shapes
+from ..physics.quiet_pybullet import pybullet
 from ..robot.model import RobotModel
 from ..world.model import Obstacle, World
 from .camera import CameraImage, CameraSpec, depth_of, projection

@@ -1,11 +1,10 @@
 """A planar laser scanner: exact distances in a cross-section of the world, and ranges with the scanner's errors."""
 
-from typing import Dict, Optional
+from typing import Dict
 
 import numpy as np
 
 from ..raycast.beams import Fan
-from ..raycast.cross_section import Slice
 from .scan_profiles import LidarSpec
 
 
@@ -26,13 +25,6 @@ class Lidar:
         if samples not in self._turns:
             self._turns[samples] = Lidar(self.spec.with_samples(samples))
         return self._turns[samples]
-
-    def distances(self, world_from_scans: np.ndarray, walls: Slice, others: Optional[np.ndarray] = None) -> np.ndarray:
-        """Exact distances (r, samples) [m] from poses (r, [x, y, yaw]); +inf where nothing is within range_max.
-
-        Beams start at the scanner's centre, not at range_min, so ranges have no offset. `others` as in Fan.cast.
-        """
-        return self.fan.cast(world_from_scans, walls, others, self.spec.range_max)
 
     def measure(self, distances: np.ndarray, noise: np.ndarray) -> np.ndarray:
         """Ranges [m] from exact distances [m] and standard normal noise, all of the same shape.

@@ -38,7 +38,7 @@ def simulator_config(p: SimParams, models: Iterable[RobotModel]) -> SimulatorCon
 
 def make_simulator(p: SimParams, world: World, robots: Sequence[RobotSpec]) -> Simulator:
     """A simulator of these robots in this world."""
-    world = world if p.moving else world.standing()
+    world = world if p.moving else world.without_motion()
     limits = [limits_from(p.limits(), robot.model.figures) for robot in robots]
     make_renderer = None
     if any(robot.model.base_from_camera is not None for robot in robots):

@@ -1,6 +1,6 @@
 """Which controllers a lockstep simulator waits for before simulated time passes a tick: bookkeeping without a clock.
 
-A tick is the number of a control period. Simulated time stands at a tick until no controller is `missing`.
+A tick is the number of a control period. Simulated time is held at a tick until no controller is `missing`.
 
 A controller that stamps its answers names the tick of each one, so it is followed exactly. A controller that only sends
 velocity commands is followed by counting: what arrives after time has left tick k, and before it leaves tick k + 1, is
@@ -137,7 +137,7 @@ class Lockstep(Generic[Name]):
     def restart(self, tick: int) -> None:
         """The simulation was reset and runs towards this tick, which stamping controllers still have to answer.
 
-        The period of a plain loop stays known if time goes on; it has to be learned again if time was set back.
+        The period of a plain loop stays known if time continues; it has to be learned again if time was set back.
         """
         for name, it in self._controllers.items():
             if it.stamped:

@@ -46,7 +46,7 @@ class LoopInterface:
         """Send one step's observations, and the clock last."""
 
     def publish_clock(self) -> None:
-        """Repeat the clock while simulated time stands still."""
+        """Repeat the clock while simulated time is held."""
 
     def report(self) -> None:
         """Called at clock ticks and while waiting: report the status if it is due."""
@@ -72,7 +72,7 @@ class LoopInterface:
         """A velocity command was not finite; the previous one stays in force."""
 
     def controllers_late(self, controllers: Sequence[Controller]) -> None:
-        """These did not answer a control tick in time; simulated time goes on without them."""
+        """These did not answer a control tick in time; simulated time continues without them."""
 
     def controller_gone(self, controller: Controller) -> None:
         """This controller disconnected; its robot is stopped."""
@@ -195,7 +195,7 @@ class SimulationLoop:
     def run_jobs_until(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Run jobs until a condition holds, for `timeout` [s, wall] at most; whether it holds.
 
-        Then also runs the jobs that are there already, and no more: their senders may be faster than the loop.
+        Then also runs the jobs that are already queued, and no more: their senders may be faster than the loop.
         """
         deadline = self._clock.now() + timeout
         while not condition():
@@ -300,7 +300,7 @@ class SimulationLoop:
     # -- simulated time --
 
     def set_paused(self, paused: bool) -> None:
-        """Hold simulated time, or let it go on; during a span, from its end on."""
+        """Pause or resume simulated time; during a span, from its end on."""
         self.paused = self._pause_after_span = paused
         self.pacer.restart(self.simulator.time)
         self._interface.status_changed()
@@ -308,7 +308,7 @@ class SimulationLoop:
     def begin_span(self, duration: float, on_end: Callable[[], object]) -> bool:
         """Run for `duration` [s, simulated], one step at least, then pause and call `on_end`; False while one runs.
 
-        If somebody resumes the simulation meanwhile, it goes on instead.
+        If somebody resumes the simulation meanwhile, it keeps running instead.
         """
         if self._span_end:
             return False
@@ -353,7 +353,7 @@ class SimulationLoop:
         self._interface.frames_changed()
 
     def place_with_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """As place, but PlaceError, naming what is in the way, where the robot would overlap something."""
+        """Like place(), but raises PlaceError, naming the obstacle, if the robot would overlap something."""
         self.simulator.require_room(world_from_footprint, robot)
         self.place(world_from_footprint, robot)
 

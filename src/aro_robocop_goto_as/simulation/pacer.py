@@ -6,21 +6,21 @@ from typing import Callable, Optional
 
 REPORT_PERIOD = 1.0  # [s, wall]
 MOST_BEHIND = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
-TOLERANCE = 0.95  # share of the factor asked for, below which the simulation counts as behind
+TOLERANCE = 0.95  # share of the requested factor, below which the simulation counts as behind
 
 
 @dataclass(frozen=True)
 class FactorReport:
-    """Real-time factor reached over the last period, and the one asked for (0 = as fast as possible)."""
+    """Real-time factor reached over the last period, and the requested one (0 = as fast as possible)."""
 
     reached: float
     asked: float
     step_time: float  # [s, wall] of work per step, without waiting
-    lag: float  # [s, wall] behind the factor asked for
+    lag: float  # [s, wall] behind the requested factor
 
     @property
     def behind(self) -> bool:
-        """Whether the machine is too slow for the factor asked for."""
+        """Whether the machine is too slow for the requested factor."""
         return self.asked > 0.0 and self.reached < TOLERANCE * self.asked
 
 

@@ -321,14 +321,14 @@ class Simulator:
 
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
-        self.world = world if self.config.world.moving else world.standing()
+        self.world = world if self.config.world.moving else world.without_motion()
         self.moving = bool(self.world.moving())
         self._scanners.change_world(self.world)
         self._close_renderer()
         self.engine.change_world(self.world, self.world_time)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """Place a robot elsewhere, at rest. Wheel odometry goes on, so map -> odom takes up the jump.
+        """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
 
         What the wheels have travelled since the last odometry update belongs to the time before the jump.
         """
@@ -342,7 +342,7 @@ class Simulator:
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
         """Robots to their spawn poses, odometry to zero, noise to its start, with a new seed if one is given.
 
-        Simulated time goes on, unless `restart_time` sets it back to zero.
+        Simulated time continues, unless `restart_time` sets it back to zero.
         """
         self.engine.reset([robot.spawn for robot in self.robots])
         self._start()

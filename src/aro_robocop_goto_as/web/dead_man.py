@@ -34,7 +34,7 @@ class DeadMan:
         self._is_moving = False
 
     def request(self, page: int, robot: str, twist: Twist2D, now: float) -> bool:
-        """A page asks that the robot drives; returns whether nobody was driving it before."""
+        """A page requests that the robot drive; returns whether nobody was driving it before."""
         begins = self._hold is None or self._hold.robot != robot or now >= self._hold.until
         self._hold = _Hold(page, robot, twist, now + self._patience)
         return begins
@@ -45,7 +45,7 @@ class DeadMan:
             self._hold = None
 
     def stop(self) -> None:
-        """Whoever drives, stop."""
+        """Stop, whichever page is driving."""
         self._hold = None
 
     @property

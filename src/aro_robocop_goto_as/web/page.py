@@ -127,7 +127,7 @@ class Page:
         return hold
 
     async def _on_release(self, event: Any) -> None:
-        """A button of the pad was released over itself; elsewhere, the requests just end."""
+        """The pointer was released over its button of the pad; if released elsewhere, the requests just stop."""
         self._actions.release(event.client_id)
 
     def _on_time(self, event: Any) -> None:

@@ -34,7 +34,7 @@ def overview(sim: Optional[SimState], robots: int, bridge: str) -> str:
     """World, seed and speed, if there is a simulator, and what the bridge says."""
     rows: List[Tuple[str, str]] = []
     if sim is not None:
-        state = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, asked for {factor(sim.factor_asked)}"
+        state = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, requested {factor(sim.factor_asked)}"
         rows += [
             ("world", sim.world),
             ("seed", str(sim.seed)),

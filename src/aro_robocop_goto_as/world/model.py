@@ -128,7 +128,7 @@ class World:
         """The obstacles that move."""
         return tuple(obstacle for obstacle in self.obstacles if obstacle.motion is not None)
 
-    def standing(self) -> "World":
+    def without_motion(self) -> "World":
         """The same world with all obstacles at rest. Obstacles that never move stay the same objects."""
         return replace(
             self, obstacles=tuple(o if o.motion is None else replace(o, motion=None) for o in self.obstacles)

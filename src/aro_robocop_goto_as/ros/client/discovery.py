@@ -33,7 +33,7 @@ def advice() -> str:
     namespace = rospy.get_namespace().rstrip("/")
     setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
     command = f"./robocop shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
-    return f"its output may say why it ended; to start it again, in another terminal: {command}"
+    return f"the server's output may say why it ended; to start it again, in another terminal: {command}"
 
 
 def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float) -> str:

@@ -43,7 +43,7 @@ class GoalTransformer:
         frame = pose.header.frame_id.lstrip("/")
         if not frame:
             frame = self.default_frame
-            rospy.logwarn("the goal names no frame; taken as %r, the default", frame)
+            rospy.logwarn("the goal has no frame_id; the default %r is assumed", frame)
         if frame == self.goal_frame:
             return Point(x, y, z)
         position = self._transform(Point(x, y, z), frame, pose.header.stamp)

@@ -1,7 +1,7 @@
 """A goal from the client's side: sent, followed, cancelled.
 
 Uses ActionClient because SimpleActionClient has two races: it reports an error when a newer goal's first transition
-arrives before that goal's handle is stored, and it takes the older goal's last transitions for the newer goal's.
+arrives before that goal's handle is stored, and it mistakes the older goal's last transitions for the newer goal's.
 """
 
 import threading

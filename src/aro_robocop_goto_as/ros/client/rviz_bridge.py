@@ -15,7 +15,7 @@ from aro_robocop_goto_as.msg import GoToPositionAction
 
 from ...errors import FrameError
 from ...params import BridgeParams
-from .. import params
+from .. import param_server
 from ..action import ACTION
 from ..node_main import node
 from ..ticker import wait_until
@@ -153,4 +153,4 @@ class Bridge:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     with node("robocop_rviz_goto_ac_node"):
-        Bridge(params.load(BridgeParams)).run()
+        Bridge(param_server.load(BridgeParams)).run()

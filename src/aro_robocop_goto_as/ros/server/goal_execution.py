@@ -72,7 +72,9 @@ class GoalExecution:
             return Step()
         pose, clearance = inputs
         decision = goto.decide(pose, clearance, self.goal, self.p)
-        self.progress = goto.track_progress(self.progress, decision.errors, now, self.p)
+        self.progress = goto.track_progress(
+            self.progress, decision.errors, now, self.p.stuck_distance, self.p.stuck_angle
+        )
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / self.p.control_rate, self.p)
         feedback = GoToPositionFeedback(decision.errors.position, decision.errors.angle, describe(decision))
         return Step(self.twist, feedback, self._ending(decision, clearance, now, self.started, self.progress))
@@ -89,7 +91,7 @@ class GoalExecution:
             limit = f"limit {self.p.obstacle_distance:g} m"
             return Ending(decision.outcome, f"something is {clearance:.3f} m ahead, {limit}; {where}")
         if now - progress.since > self.p.stuck_timeout:
-            return Ending(Outcome.STUCK, f"no nearer and not turned for {now - progress.since:.1f} s; {where}")
+            return Ending(Outcome.STUCK, f"no progress for {now - progress.since:.1f} s; {where}")
         if 0.0 < self.p.goal_timeout < elapsed:
             return Ending(Outcome.TIMEOUT, f"limit {self.p.goal_timeout:g} s; {where}")
         return None

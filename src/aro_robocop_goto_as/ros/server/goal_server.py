@@ -14,10 +14,10 @@ from ..timer import start_timer
 class GoalServer(actionlib.SimpleActionServer):
     """A SimpleActionServer without an execute callback: its owner accepts goals and ends them."""
 
-    def __init__(self, bumped: GoToPositionResult) -> None:
-        """`bumped` is the result of goals that were cancelled or replaced before they were accepted."""
+    def __init__(self, not_started: GoToPositionResult) -> None:
+        """`not_started` is the result of goals that were cancelled or replaced before they were accepted."""
         super().__init__(ACTION, GoToPositionAction, auto_start=False)
-        private_api.set_default_result(self, lambda: bumped)
+        private_api.set_default_result(self, lambda: not_started)
         private_api.ignore_future_cancels(self)
 
     def start(self) -> None:

@@ -92,7 +92,7 @@ class Inputs:
             if received is not None and received.at <= now:  # not so for a message from before the clock was set back
                 last = max(started, received.at)
             if now - last > self.p.data_timeout and not wait_until(self._has_data, LATE_DATA):
-                since = "ever" if received is None else f"for {now - received.at:.1f} s"
+                since = "so far" if received is None else f"for {now - received.at:.1f} s"
                 return outcome, f"no {self._what_is_missing(outcome, now)} {since}, limit {self.p.data_timeout:g} s"
         return None
 

@@ -1,21 +1,36 @@
-"""Server state -> RViz markers: the goal with its tolerance, the obstacle sector, the state as text above the robot."""
+"""Server state -> RViz markers: the newest goal with its tolerance, the obstacle sector, the state as text."""
 
 import textwrap
-from typing import Optional
+from typing import NamedTuple, Optional
 
 from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...goto import Goal
+from ...goto import Goal, Outcome
 from ...params import GotoParams
 from .. import markers
 
 FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
+REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
 TEXT_WIDTH = 36  # characters per line
 NEAR_FACTOR = 2.0  # the sector turns yellow within this multiple of the obstacle distance
+
+
+class ShownGoal(NamedTuple):
+    """The newest goal, which stays in RViz until the next one, and how it ended; None while it is executed."""
+
+    goal: Goal
+    outcome: Optional[Outcome] = None
+
+    @property
+    def color(self) -> ColorRGBA:
+        """Green when it was reached, grey when it ended otherwise."""
+        if self.outcome is None:
+            return markers.GOAL_COLOR
+        return REACHED if self.outcome is Outcome.REACHED else NOT_REACHED
 
 
 def sector_color(clearance: Optional[float], limit: float) -> ColorRGBA:
@@ -40,20 +55,19 @@ def _obstacle_sector(p: GotoParams, clearance: Optional[float], frame: str) -> M
 
 def server_markers(
     p: GotoParams,
-    goal: Optional[Goal],
+    shown: Optional[ShownGoal],
     clearance: Optional[float],
     scan_frame: str,
     odom: Optional[Odometry],
     state: str,
 ) -> MarkerArray:
-    """All of the server's markers; the goal's are deleted while there is no goal."""
+    """All of the server's markers; without a goal until the first one."""
     made = []
     if scan_frame:
         made.append(_obstacle_sector(p, clearance, scan_frame))
     if odom is not None:
         made.append(markers.text("state", textwrap.fill(state, TEXT_WIDTH), odom.child_frame_id))
-        if goal is None:
-            made += [markers.deletion("goal_circle"), markers.deletion("goal_pin")]
-        else:
-            made += markers.goal(p.position_tolerance, goal.x, goal.y, odom.header.frame_id)
+        if shown is not None:
+            x, y = shown.goal.x, shown.goal.y
+            made += markers.goal(p.position_tolerance, x, y, odom.header.frame_id, shown.color)
     return MarkerArray(made)

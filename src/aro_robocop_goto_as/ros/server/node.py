@@ -15,7 +15,7 @@ from ...errors import RobocopError
 from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...params import GotoParams
-from .. import convert, params, private_api
+from .. import convert, param_server, private_api
 from ..node_main import node
 from ..publishing import publisher
 from ..ticker import Ticker
@@ -28,7 +28,7 @@ from .inputs import Inputs
 MARKER_PERIOD = 0.1  # [s]
 SHUTDOWN_PATIENCE = 1.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
 SEND_TIME = 0.1  # [s, wall] for rospy's sender threads to write what was just published
-BUMPED = Ending(Outcome.PREEMPTED, "it was cancelled, or a newer goal came, before it began")
+NOT_STARTED = Ending(Outcome.PREEMPTED, "it was cancelled or replaced before it started")
 
 
 class GotoServer:
@@ -44,12 +44,13 @@ class GotoServer:
         self.goal: Optional[GoalExecution] = None
         self.command: Optional[Twist2D] = None  # published since the last answer to a lockstep simulator
         self.state = "idle"  # for RViz
+        self.shown_goal: Optional[markers.ShownGoal] = None
         self.logged_z = False
         self.stopping = threading.Event()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
-        self.server = GoalServer(GoToPositionResult(False, BUMPED.message))
+        self.server = GoalServer(GoToPositionResult(False, NOT_STARTED.message))
         self.loop = threading.Thread(target=self._control_loop, name="control loop", daemon=True)
         self.loop.start()
         rospy.on_shutdown(self._shut_down)
@@ -65,7 +66,7 @@ class GotoServer:
                 self._run_once(ticker)
             except Exception:  # the thread's outermost level: without the loop no goal would be executed again
                 if not rospy.is_shutdown():
-                    rospy.logerr("the control loop failed and goes on:\n%s", traceback.format_exc())
+                    rospy.logerr("the control loop failed and continues:\n%s", traceback.format_exc())
 
     def _run_once(self, ticker: Ticker) -> None:
         """Serve a request or run one control period, whichever is due first."""
@@ -101,7 +102,7 @@ class GotoServer:
         elif self.stopping.is_set():
             self._end(self.goal.stopped_early(Outcome.SHUTDOWN, "the server is shutting down"))
         elif self.server.is_new_goal_available():
-            self._end(self.goal.stopped_early(Outcome.PREEMPTED, "a newer goal came"))
+            self._end(self.goal.stopped_early(Outcome.PREEMPTED, "a newer goal replaced it"))
         else:
             self._end(self.goal.stopped_early(Outcome.PREEMPTED, "it was cancelled"))
 
@@ -114,6 +115,7 @@ class GotoServer:
             self._end(refusal)
             return
         self.goal = goal
+        self.shown_goal = markers.ShownGoal(goal.goal)
         rospy.loginfo("goal accepted: x %.2f y %.2f", goal.goal.x, goal.goal.y)
         if goal.z != 0.0 and not self.logged_z:
             self.logged_z = True
@@ -155,6 +157,8 @@ class GotoServer:
     def _end(self, ending: Ending) -> None:
         """Stop the robot and give the active goal its terminal state."""
         self._publish_command(STANDSTILL)
+        if self.goal is not None:
+            self.shown_goal = markers.ShownGoal(self.goal.goal, ending.outcome)
         self.goal = None
         self.state = ending.message
         result = GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message)
@@ -196,11 +200,11 @@ class GotoServer:
     def _publish_markers(self) -> None:
         if not self.markers.get_num_connections():
             return
-        goal, odom, scan = self.goal, self.inputs.odom, self.inputs.scan
+        odom, scan = self.inputs.odom, self.inputs.scan
         self.markers.publish(
             markers.server_markers(
                 self.p,
-                None if goal is None else goal.goal,
+                self.shown_goal,
                 self.inputs.clearance(),
                 "" if scan is None else scan.message.header.frame_id,
                 None if odom is None else odom.message,
@@ -212,5 +216,5 @@ class GotoServer:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     with node("aro_robocop_goto_as_node"):
-        GotoServer(params.load(GotoParams))
+        GotoServer(param_server.load(GotoParams))
         rospy.spin()

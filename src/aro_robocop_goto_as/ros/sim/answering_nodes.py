@@ -22,7 +22,7 @@ def is_fully_connected(node: str) -> bool:
     try:
         topics = graph.topics_between(rospy.get_name(), node)
     except (OSError, rosgraph.MasterException):
-        return True  # nobody can tell
+        return True  # unknown: the master does not answer
     return all(private_api.is_topic_connected_to(topic, node) for topic in topics)
 
 

@@ -50,7 +50,7 @@ def build_simulator(p: SimParams) -> Simulator:
 
 def _log(p: SimParams, world: World, simulator: Simulator) -> None:
     if world.moving() and not p.moving:
-        rospy.loginfo("the obstacles of world %s that can move stand still; moving:=true moves them", world.name)
+        rospy.loginfo("world %s has moving obstacles, which are disabled; moving:=true enables them", world.name)
     rospy.loginfo("world %s from %s", world.name, world.path)
     first = simulator.robots[0].spawn
     if not (world.has_spawn or p.spawn.strip()) and first != world.spawn and (p.robots.strip() or "1").isdigit():

@@ -1,6 +1,6 @@
 """Gazebo's services, for code that calls them: /gazebo/pause_physics, get_model_state, set_model_state, ...
 
-A lone robot goes by its model's name, as Gazebo's spawn_model has it; of many, each by its own.
+A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
 from typing import Any, Callable, List, TypeVar
@@ -48,7 +48,7 @@ class GazeboControl:
     # -- called in the loop's thread --
 
     def set_paused(self, paused: bool) -> None:
-        """Hold simulated time, or let it go on."""
+        """Pause or resume simulated time."""
         self._loop.set_paused(paused)
 
     def reset(self) -> None:
@@ -172,7 +172,7 @@ class GazeboServices:
         try:
             reference = self._loop.call(lambda: self._world_from(request.reference_frame))
             if request.model_name in self._names:
-                raise WorldError(f"model name [{request.model_name}] is taken, by a robot")
+                raise WorldError(f"model name [{request.model_name}] is already used by a robot")
             pose = compose3(reference, from_pose(request.initial_pose))
             done = self._control.spawn(request.model_name, request.model_xml, pose)
         except (FrameError, WorldError) as error:
@@ -181,7 +181,8 @@ class GazeboServices:
 
     def _on_delete(self, request: DeleteModelRequest) -> DeleteModelResponse:
         if request.model_name in self._names:
-            return DeleteModelResponse(False, f"DeleteModel: [{request.model_name}] is a robot; robots stay")
+            refusal = f"[{request.model_name}] is a robot; robots cannot be deleted"
+            return DeleteModelResponse(False, f"DeleteModel: {refusal}")
         try:
             return DeleteModelResponse(True, f"DeleteModel: {self._control.delete(request.model_name)}")
         except WorldError as error:

@@ -15,7 +15,7 @@ from ...simulation.lockstep import Controller
 from ...simulation.loop import LoopInterface, SimulationLoop
 from ...simulation.observations import TF, Observations, Subscriptions
 from ...simulation.simulator import Simulator
-from .. import convert, params
+from .. import convert, param_server
 from ..node_main import node
 from ..packed import PackedClock, stamp_of
 from ..private_api import set_latched
@@ -59,7 +59,7 @@ class SimNode(LoopInterface):
         ]
         table.set_topics([{**robot.by_sensor, TF: self._transforms.tf} for robot in self._robots])
         markers: Sequence[NamedRobot] = [
-            (robot.name, robot.base_frame, radius) for robot, radius in zip(self._robots, radii) if robot.name
+            (robot.name, robot.footprint_frame, radius) for robot, radius in zip(self._robots, radii) if robot.name
         ]
         publish_map = messages.topics.publish_map or simulator.world.occupancy is not None
         self._world = WorldTopics(messages.frames, publish_map, markers)
@@ -144,10 +144,10 @@ class SimNode(LoopInterface):
         rospy.logwarn_throttle(5.0, "%s", error)
 
     def controllers_late(self, controllers: Sequence[Controller]) -> None:
-        """Warn that simulated time goes on without these."""
+        """Warn that simulated time continues without these."""
         names = ", ".join(controller_name(controller, self.simulator.robots) for controller in controllers)
         timeout = self.loop.lockstep_timeout
-        rospy.logwarn("lockstep: no answer within %g s from %s; simulated time goes on without", timeout, names)
+        rospy.logwarn("lockstep: no answer from %s within %g s; simulated time continues without it", names, timeout)
 
     def controller_gone(self, controller: Controller) -> None:
         """Warn that a controller disconnected."""
@@ -155,7 +155,7 @@ class SimNode(LoopInterface):
         rospy.logwarn("lockstep: %s disconnected; the robot is stopped", name)
 
     def placed_in_contact(self, robot: int) -> None:
-        """Warn that a robot stands in something."""
+        """Warn that a robot was placed in contact with something."""
         name, pose = self.simulator.robots[robot].name, self.simulator.world_from_footprint(robot)
         rospy.logwarn(
             "robot %sis placed in contact with an obstacle or another robot, at x %.2f y %.2f",
@@ -179,7 +179,7 @@ def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node("robocop_sim", disable_rostime=True):
-        p = params.load(SimParams)
+        p = param_server.load(SimParams)
         with contextlib.closing(build_simulator(p)) as simulator:
             radii = [footprint_radius(p, robot.model) for robot in simulator.robots]
             SimNode(simulator, message_config(p), p.time(), p.lockstep(), p.drive, radii).run()

@@ -19,7 +19,7 @@ class PoseInputs:
     """Poses are resolved and robots placed in the loop's thread, between two steps."""
 
     def __init__(self, loop: SimulationLoop, frames: FrameNames, initialpose: bool) -> None:
-        """Without `initialpose` that topic is left to others, such as amcl, which every tutorial sends the pose to."""
+        """Without `initialpose` that topic is not subscribed to, so that amcl alone receives it."""
         self._loop = loop
         self._frames = frames
         self._names: List[str] = [robot.name for robot in loop.simulator.robots]

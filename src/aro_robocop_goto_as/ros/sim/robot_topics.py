@@ -54,9 +54,15 @@ class RobotTopics:
         self.index = index
         self.name = name
         self.lidar = config.lidar
-        self.odom_frame, self.base_frame, self.scan_frame, self.imu_frame, camera_frame = (
+        self.odom_frame, self.footprint_frame, self.scan_frame, self.imu_frame, camera_frame = (
             prefixed(name, frame)
-            for frame in (config.frames.odom, config.frames.base, config.frames.scan, config.frames.imu, CAMERA_FRAME)
+            for frame in (
+                config.frames.odom,
+                config.frames.footprint,
+                config.frames.scan,
+                config.frames.imu,
+                CAMERA_FRAME,
+            )
         )
         rates, topics = config.rates, config.topics
 
@@ -85,9 +91,9 @@ class RobotTopics:
             self.camera = CameraTopics(prefixed(name, ""), camera, camera_frame, on_change)
             self.by_sensor[sensor_names.CAMERA] = self.camera
         odom_variances = (0.0,) * 6 if topics.real_covariances else convert.ODOM_VARIANCES
-        self._odom_message = PackedOdometry(self.odom_frame, self.base_frame, convert.diagonal(odom_variances))
+        self._odom_message = PackedOdometry(self.odom_frame, self.footprint_frame, convert.diagonal(odom_variances))
         self._truth_message = PackedOdometry(
-            config.frames.world, self.base_frame, convert.diagonal(convert.TRUTH_VARIANCES)
+            config.frames.world, self.footprint_frame, convert.diagonal(convert.TRUTH_VARIANCES)
         )
         covariances = convert.imu_covariances(config.imu_noise, topics.real_covariances)
         self._imu_message = PackedImu(self.imu_frame, covariances)
@@ -120,7 +126,7 @@ class RobotTopics:
             topics[sensor_names.MAGNETIC_FIELD].publish(convert.to_magnetic_field(field, time, self.imu_frame))
         if robot in observed.batteries:
             time = convert.to_time(observed.stamp_ns)
-            topics[sensor_names.BATTERY].publish(convert.to_battery(time, self.base_frame))
+            topics[sensor_names.BATTERY].publish(convert.to_battery(time, self.footprint_frame))
         if robot in observed.images and self.camera is not None:
             self.camera.publish(observed.images[robot], convert.to_time(observed.stamp_ns))
 

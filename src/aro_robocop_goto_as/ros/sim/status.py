@@ -45,7 +45,7 @@ class StatusTopics:
             if report.behind and not self._loop.paused:
                 rospy.logwarn_throttle(
                     10.0,
-                    "real-time factor %.2f reached, %.2f asked for: this machine is too slow; simulated time runs "
+                    "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs "
                     "slower, results are the same",
                     report.reached,
                     report.asked,
@@ -85,7 +85,7 @@ class StatusTopics:
         loop, simulator, report = self._loop, self._loop.simulator, self._report
         level, text = DiagnosticStatus.OK, "paused" if loop.paused else "running"
         if report.behind and not loop.paused:
-            level, text = DiagnosticStatus.WARN, "slower than the real-time factor asks"
+            level, text = DiagnosticStatus.WARN, "slower than the requested real-time factor"
         values = {
             "world": simulator.world.name,
             "robots": len(simulator.robots),

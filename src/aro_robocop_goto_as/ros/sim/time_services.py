@@ -47,10 +47,10 @@ class TimeServices:
         elif not self._loop.call(
             lambda: self._loop.begin_span(request.duration, lambda: ended.set_result(self._stamp()))
         ):
-            refusal = "another step request is being carried out"
+            refusal = "another step request is in progress"
         else:
             stamp = self._loop.wait_for(ended)
-            state = "standing" if self._loop.paused else "running on"
+            state = "paused" if self._loop.paused else "running"
             return StepResponse(True, f"{state} at {stamp.to_sec():.6f} s", stamp)
         return StepResponse(False, refusal, self._loop.call(self._stamp))
 
@@ -67,7 +67,7 @@ class TimeServices:
         simulator = self._loop.simulator
         return (
             f"robots at their spawn poses, odometry at zero, seed {simulator.seed}; "
-            f"time goes on from {simulator.time:.3f} s"
+            f"time continues from {simulator.time:.3f} s"
         )
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:

@@ -25,7 +25,7 @@ class TransformTopics:
         self._frames = frames
         self._topics = topics
         self._odom = [prefixed(robot, frames.odom) for robot in robots]
-        self._base = [prefixed(robot, frames.base) for robot in robots]
+        self._footprint = [prefixed(robot, frames.footprint) for robot in robots]
         self._packed: Dict[Tuple[int, ...], PackedTransforms] = {}  # by the robots in the message
         self.tf = publisher("/tf", TFMessage, on_change=on_change)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
@@ -55,7 +55,7 @@ class TransformTopics:
 
     def _pairs(self, robot: int) -> List[Tuple[str, str]]:
         """Parent and child of each transform of a robot: odom -> base; map -> odom if it follows ground truth."""
-        odom_tf = [(self._odom[robot], self._base[robot])] if self._topics.odom_tf else []
+        odom_tf = [(self._odom[robot], self._footprint[robot])] if self._topics.odom_tf else []
         return odom_tf + ([(self._frames.map, self._odom[robot])] if self._topics.localization == "truth" else [])
 
     def _poses(self, transforms: RobotTransforms) -> List[Pose2D]:

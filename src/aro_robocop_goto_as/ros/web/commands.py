@@ -31,7 +31,7 @@ POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.
 
 
 class Commands:
-    """Carries out one request after the other; `answer` says what became of the last one."""
+    """Carries out one request after the other; `answer` holds the outcome of the last one."""
 
     def __init__(self) -> None:
         self.answer = ""
@@ -139,7 +139,7 @@ class Commands:
 class Driver:
     """Publishes cmd_vel while somebody drives, from a thread of its own, so that nothing else can delay a stop.
 
-    Otherwise there is no publisher: a simulator in lockstep takes whoever publishes cmd_vel for a controller.
+    Otherwise there is no publisher: a simulator in lockstep treats every publisher of cmd_vel as a controller.
     """
 
     def __init__(self, dead_man: DeadMan, linear: float, angular: float) -> None:
@@ -165,7 +165,7 @@ class Driver:
             self._wake.notify()
 
     def stop(self) -> None:
-        """Whoever drives, stop now."""
+        """Stop now, whichever page is driving."""
         with self._wake:
             self._dead_man.stop()
             self._wake.notify()

@@ -26,7 +26,7 @@ def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
     length = math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
     if not all(math.isfinite(value) for value in (p.x, p.y, p.z, length)):
         return None
-    if length < 1e-6:  # what RViz takes for no rotation, with a warning
+    if length < 1e-6:  # what RViz treats as no rotation, with a warning
         return Pose3D((p.x, p.y, p.z))
     return Pose3D((p.x, p.y, p.z), (q.x / length, q.y / length, q.z / length, q.w / length))
 
@@ -53,7 +53,7 @@ class MarkerStore:
     def __init__(self) -> None:
         self._markers: Dict[Key, Marked] = {}
 
-    def take(self, message: MarkerArray) -> None:
+    def apply(self, message: MarkerArray) -> None:
         """Apply a message in the order of its markers; what can't be shown is left out."""
         for marker in message.markers:
             key = (marker.ns, marker.id)

@@ -71,7 +71,7 @@ def start_server(p: WebParams) -> Any:
             server = viser.ViserServer(host=p.web_host, port=p.web_port, label="robocop", verbose=False)
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
         server.stop()
-        raise WebError(f"port {p.web_port} was taken just now by another program; choose another one with web_port:=N")
+        raise WebError(f"port {p.web_port} has just been taken by another program; choose another one with web_port:=N")
     return server
 
 
@@ -184,7 +184,7 @@ def warn_of_strangers(p: WebParams) -> None:
     """A page that other machines can reach lets them drive the robot."""
     if not access.is_loopback(p.web_host):
         rospy.logwarn(
-            "the page can be opened from every machine that reaches %s:%d, without a password, and so the robot can be "
+            "the page can be opened from every machine that reaches %s:%d, without a password, so the robot can be "
             "driven from there",
             p.web_host,
             p.web_port,
@@ -192,7 +192,7 @@ def warn_of_strangers(p: WebParams) -> None:
 
 
 def main() -> None:
-    """Serve the page until a signal; begin anew when the ROS master was replaced, since rospy registers only once."""
+    """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
     try:
         p = load_params(sys.argv[1:])
         server = start_server(p)
@@ -203,7 +203,7 @@ def main() -> None:
     web = WebNode(server, p)
     web.wait_for_master()
     replaced = False
-    with node(NAME, disable_rostime=True):  # wall time: the page is alive while simulated time stands still
+    with node(NAME, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
         warn_of_strangers(p)
         replaced = web.run()
     server.stop()

@@ -179,7 +179,7 @@ class View:
     def _show_markers(self) -> None:
         for queue, store in ((self.system.markers, self._world), (self._robot.markers, self._server)):
             while queue:
-                store.take(queue.popleft())
+                store.apply(queue.popleft())
         self._scene.show_group("world", self._world.placed(self._lookup, DRAWN_BY_SCENE if self._links else ()))
         self._scene.show_group("server", self._server.placed(self._lookup))
 

@@ -133,7 +133,7 @@ def _cells(pixels: np.ndarray, spec: MapSpec) -> np.ndarray:
     """Cell values (...) int8 of pixels (..., channels) uint8, with the arithmetic of map_server's image_loader.
 
     In mode trinary all channels are averaged, alpha included. Else the last of several is left out, and where it is 0
-    no shade between the thresholds is known: it is taken for alpha, also in an image without.
+    no shade between the thresholds is known: it is treated as alpha, even in an image without alpha.
     """
     shaded = spec.mode != "trinary" and pixels.shape[-1] > 1
     greys = (pixels[..., :-1] if shaded else pixels).mean(axis=-1)

@@ -70,7 +70,7 @@ class FleetStruct(ctypes.Structure):
     _fields_ = [
         ("n_robots", ctypes.c_int64),
         ("n_planes", ctypes.c_int64),
-        ("bases", ctypes.c_void_p),
+        ("footprints", ctypes.c_void_p),
         ("mounts", ctypes.c_void_p),
         ("plane_of", ctypes.c_void_p),
         ("planes", ctypes.POINTER(PlaneStruct)),
