@@ -67,6 +67,11 @@ class Client:
         rospy.Subscriber(f"{prefix}/odom", Odometry, self._on_odom)
         rospy.Subscriber(f"{prefix}/ground_truth_odom", Odometry, self._on_truth)
 
+    def last_command_of(self, node):
+        """The last velocity command that a node has sent; None if there was none."""
+        of_node = [message for message in list(self.commands) if message._connection_header["callerid"] == node]
+        return of_node[-1] if of_node else None
+
     def forget(self):
         """Forget all goals."""
         self.expected = []  # ids of the goals that must have an ending

@@ -384,6 +384,7 @@ def second_publisher(e):
     prefix = f"/{e.client.namespace}" if e.client.namespace else ""
     topic = publisher(f"{prefix}/cmd_vel", Twist)
     with contextlib.closing(_Closing(topic)):
+        wait_for(lambda: is_connected(topic, rospy.get_name()), "the client receives the other commands, too")
         drive(e)
         twist = Twist()
         for _ in range(20):
@@ -391,6 +392,7 @@ def second_publisher(e):
             topic.publish(twist)
             e.stage.pass_time(TICK)
         topic.publish(Twist())
+        e.stage.wait_for(lambda: e.client.last_command_of(rospy.get_name()) == Twist(), "the last of these commands")
     return ANY
 
 

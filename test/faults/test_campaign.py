@@ -52,7 +52,7 @@ def only_episode(request):
     return request.config.getoption("--episode")
 
 
-@pytest.mark.parametrize("configuration", QUICK)
+@pytest.mark.parametrize("configuration", [pytest.param(QUICK[0], marks=pytest.mark.slow), *QUICK[1:]])
 def test_every_goal_ends_once_and_the_robot_stops_whatever_goes_wrong(
     request, tmp_path, capsys, only_episode, configuration
 ):

@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from desktop import DEADLINE, wait_for
 from playwright.sync_api import sync_playwright
+from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.web.page import CAMERA, FIELD, LOOK_AT
 

@@ -8,28 +8,15 @@ import re
 import signal
 import socket
 import subprocess
-import time
 import xmlrpc.client
 
 import numpy as np
 import rosgraph
 import yaml
+from waiting import DEADLINE, wait_for
 
-DEADLINE = 120.0  # [s, wall] for any one condition
 END = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to kill a node that does not end
-POLL = 0.1  # [s, wall]
 CALLER = "/gui_test"
-
-
-def wait_for(condition, what, deadline=DEADLINE):
-    """The first true value of `condition`; AssertionError naming `what` after `deadline` [s]."""
-    until = time.monotonic() + deadline
-    while True:
-        value = condition()
-        if value:
-            return value
-        assert time.monotonic() < until, f"not within {deadline:g} s: {what}"
-        time.sleep(POLL)
 
 
 def end(process, *signals):
@@ -99,10 +86,10 @@ class Desktop:
         return max(sizes, key=sizes.get, default=None)
 
     def geometry(self, window):
-        """A window's x, y of the upper left corner on the screen, width and height [pixel]."""
+        """A window's x, y of the upper left corner on the screen, width and height [pixel]; zeros if it is gone."""
         lines = self._run("xdotool", "getwindowgeometry", "--shell", str(window)).decode().split()
         values = dict(line.split("=") for line in lines)
-        return tuple(int(values[name]) for name in ("X", "Y", "WIDTH", "HEIGHT"))
+        return tuple(int(values.get(name, 0)) for name in ("X", "Y", "WIDTH", "HEIGHT"))
 
     def pixels(self, window):
         """The part of the screen that a window covers: (height, width, 3) red, green, blue from 0 to 255.

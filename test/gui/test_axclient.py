@@ -4,7 +4,8 @@ import math
 import signal
 from pathlib import Path
 
-from desktop import Desktop, Recorder, Ros, end, wait_for
+from desktop import Desktop, Recorder, Ros, end
+from waiting import wait_for
 
 SUCCEEDED = 3  # actionlib_msgs/GoalStatus
 SERVER = "/aro_robocop_goto_as_node"

@@ -7,8 +7,9 @@ import time
 from pathlib import Path
 
 import pytest
-from desktop import DEADLINE, Desktop, end, wait_for
+from desktop import Desktop, end
 from processes import busy_processes
+from waiting import DEADLINE, wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.xdist_group("hosting")  # it uses the workspace that hosting tests build
@@ -89,9 +90,18 @@ class Watched:
         return self.out.read_text() + self.errors.read_text()
 
     def view(self):
-        """Wait for RViz's 3D view; the id of its window."""
-        window = self.wait_for(lambda: self.desktop.window(TITLE), "RViz's window")
-        return self.wait_for(lambda: self.desktop.canvas(window), "RViz's view")
+        """The id of the window of RViz's 3D view, looked for anew each time: an RViz that crashes is restarted."""
+        window = self.desktop.window(TITLE)
+        return window and self.desktop.canvas(window)
+
+    def wait_for_picture(self, parts, what):
+        """Wait until RViz shows these parts of the scenario."""
+
+        def drawn():
+            view = self.view()
+            return view and shown(self.desktop.pixels(view)) >= parts
+
+        self.wait_for(drawn, what)
 
 
 def shown(pixels):
@@ -110,11 +120,10 @@ def shown(pixels):
 
 def test_watched_run_is_shown_in_real_time_and_gets_full_marks(tmp_path):
     with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop) as grading:
-        view = grading.view()
-        grading.wait_for(lambda: "goal" in shown(desktop.pixels(view)), "the goal drawn in RViz")
+        grading.wait_for_picture({"goal"}, "the goal drawn in RViz")
         started = time.monotonic()
         everything = {"scan", "goal", "text", "wall", "way", "robot"}
-        grading.wait_for(lambda: shown(desktop.pixels(view)) >= everything, "the scenario drawn in RViz")
+        grading.wait_for_picture(everything, "the scenario drawn in RViz")
         grading.wait_for_full_marks()
         assert time.monotonic() - started > DURATION - 1.0, "RViz may draw the goal late, but not by a second"
         assert desktop.window(TITLE) is None, "RViz outlived the grading"
@@ -123,8 +132,7 @@ def test_watched_run_is_shown_in_real_time_and_gets_full_marks(tmp_path):
 @pytest.mark.slow
 def test_grading_continues_when_rviz_is_closed(tmp_path):
     with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop, ahead=5.0) as grading:
-        view = grading.view()
-        grading.wait_for(lambda: "goal" in shown(desktop.pixels(view)), "the goal drawn in RViz")
+        grading.wait_for_picture({"goal"}, "the goal drawn in RViz")
         x, y, _, _ = desktop.geometry(desktop.window(TITLE))
         desktop.input(
             "mousemove", x + 20, y + 10, "click", 1, "key", "Up", "key", "Return"
@@ -137,7 +145,7 @@ def test_grading_continues_when_rviz_is_closed(tmp_path):
 @pytest.mark.slow
 def test_rviz_ends_with_a_grading_that_is_interrupted(tmp_path):
     with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop) as grading:
-        grading.view()
+        grading.wait_for(grading.view, "RViz's view")
         with busy_processes():
             grading.process.send_signal(signal.SIGINT)
             assert grading.process.wait(DEADLINE) == INTERRUPTED, grading.text()

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from desktop import Desktop, Recorder, Ros, wait_for
+from desktop import Desktop, Recorder, Ros
+from waiting import wait_for
 
 SUCCEEDED = 3  # actionlib_msgs/GoalStatus
 VIEW_CENTRE = (0.0, -0.15)  # [m] in map, the focal point of the view in rviz/robocop.rviz
@@ -23,6 +24,15 @@ def displays_the_robot(pixels):
     return scan.sum() > 300 and cone.sum() > 100
 
 
+def view_of_the_robot(desktop, ros):
+    """RViz's view, once it shows the robot. Looked for from the start each time: an RViz that crashes is restarted."""
+    window = desktop.window(" - RViz$")
+    canvas = window and desktop.canvas(window)
+    if canvas and all(ros.linked(node, "/rviz", topic) for node, topic in SEEN):
+        return canvas if displays_the_robot(desktop.pixels(canvas)) else None
+    return None
+
+
 def click_and_drag_up(desktop, canvas):
     """Use the tool 2D Nav Goal: press the button at the position, drag in the direction to face."""
     x, y, width, height = desktop.geometry(canvas)
@@ -37,10 +47,7 @@ def test_robot_drives_to_a_2d_nav_goal_clicked_in_rviz(tmp_path):
     with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=true") as ros:
         clicks = Recorder(ros, "/rviz", "/move_base_simple/goal")
         results = Recorder(ros, SERVER, "/robocop_goto_as/result")
-        window = wait_for(lambda: desktop.window(" - RViz$"), "RViz's window")
-        canvas = wait_for(lambda: desktop.canvas(window), "RViz's view")
-        wait_for(lambda: all(ros.linked(node, "/rviz", topic) for node, topic in SEEN), "RViz subscribed to its topics")
-        wait_for(lambda: displays_the_robot(desktop.pixels(canvas)), "scan and safety cone drawn in RViz")
+        canvas = wait_for(lambda: view_of_the_robot(desktop, ros), "scan and safety cone drawn in RViz")
         wait_for(lambda: ros.linked(BRIDGE, "/rviz", "/move_base_simple/goal"), "the bridge connected to RViz")
         wait_for(clicks.connected, "clicks recorded")
         wait_for(results.connected, "results recorded")

@@ -72,7 +72,7 @@ class BridgeFrames(SystemTest):
     def test_goal_without_a_frame_is_in_map_with_a_warning(self):
         self.clicks.click(-0.6, 0.0, "")
         self.assertAlmostEqual(self.sent()[0].x, 0.1, places=6)
-        self.goals.log.wait_for(lambda m: "names no frame; taken as 'map'" in m.msg, "a warning")
+        self.goals.log.wait_for(lambda m: "the default 'map' is assumed" in m.msg, "a warning")
         self.goals.of_others()[0].result("REACHED")
 
     def test_goal_stamped_after_all_transforms_uses_the_latest_one_with_a_warning(self):

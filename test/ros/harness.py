@@ -340,10 +340,11 @@ def script(name):
 class Process:
     """A program in a session of its own; as a context manager it ends with the block."""
 
-    def __init__(self, *command, **environment):
+    def __init__(self, *command, stdin=None, **environment):
         self.lines = []
         self.process = subprocess.Popen(
             [str(word) for word in command],
+            stdin=stdin,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -39,7 +39,7 @@ class Preempt(SystemTest):
     def test_newer_goal_preempts_the_older_and_is_reached(self):
         older = self.driving_goal()
         newer = self.goals.send(0.1, -0.1)
-        self.assertIn("a newer goal came", older.result("PREEMPTED").result.message)
+        self.assertIn("a newer goal replaced it", older.result("PREEMPTED").result.message)
         self.assertEqual(older.result().status.status, GoalStatus.PREEMPTED)
         newer.result("REACHED")
         self.robot.wait_until_it_stands()
@@ -54,12 +54,12 @@ class Preempt(SystemTest):
         for goal in [first, *waiting]:
             goal.result("PREEMPTED")
         texts = [goal.result().result.message for goal in waiting]
-        self.assertIn("PREEMPTED: it was cancelled, or a newer goal came, before it began", texts)
+        self.assertIn("PREEMPTED: it was cancelled or replaced before it started", texts)
 
     def test_goal_received_later_preempts_the_older_one_even_if_stamped_earlier(self):
         older = self.driving_goal()
         newer = self.goals.send(0.1, 0.1, stamp=rospy.Time(0, 1))  # of a client whose clock is behind
-        self.assertIn("a newer goal came", older.result("PREEMPTED").result.message)
+        self.assertIn("a newer goal replaced it", older.result("PREEMPTED").result.message)
         newer.result("REACHED")
 
 

@@ -9,11 +9,11 @@ from harness import ACTION, SERVER, Process, SystemTest, run, wait_for
 
 
 def rostopic_subscribes(topic):
-    """Whether the server is connected to a rostopic process on a topic."""
+    """Whether the server is connected to a rostopic process, /rostopic_PID_TIME, on a topic; this node is /rostopic."""
     server = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(SERVER))
     _, _, connections = server.getBusInfo(rospy.get_name())
     return any(
-        direction == "o" and name == topic and str(node).startswith("/rostopic")
+        direction == "o" and name == topic and str(node).startswith("/rostopic_")
         for _, node, direction, _, name, *_ in connections
     )
 

@@ -139,7 +139,7 @@ class ServerEnds(unittest.TestCase):
         self.robot.obeys = False
         took = self.robot.follow(goal)
         self.assertTrue(4.5 < took < 5.5, took)
-        self.assertRegex(self.assert_ended(goal, "STUCK"), r"^STUCK: no nearer and not turned for 5\.\d s; 1\.\d+ m")
+        self.assertRegex(self.assert_ended(goal, "STUCK"), r"^STUCK: no progress for 5\.\d s; 1\.\d+ m")
 
     def test_goal_ends_as_stuck_without_turning_progress(self):
         goal = self.start(-2.0, 0.1)

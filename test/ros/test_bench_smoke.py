@@ -70,6 +70,7 @@ def test_a_case_that_fails_is_reported_and_the_others_continue(tmp_path):
         assert f"{name} failed: the simulator ended with status 5: this one is broken" in bench.stdout
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_every_process_of_the_bench(tmp_path):
     bench = start(tmp_path, "--seconds", "600", "--cases", "wheels:1")
     deadline = time.monotonic() + DEADLINE

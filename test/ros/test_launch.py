@@ -217,10 +217,24 @@ def test_spawn_pose_can_be_given_as_to_turtlebot3_gazebo():
 
 
 @pytest.mark.parametrize("file", ["robocop_sim.launch", "robocop_goto_as.launch"])
-def test_model_comes_from_the_environment_as_for_turtlebot3_unless_it_is_given(monkeypatch, file):
+def test_model_comes_from_the_environment_as_for_turtlebot3_unless_it_is_given(monkeypatch, tmp_path, file):
     monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle_pi")
-    assert Launch(file=file).given(SIM)["model"] == "waffle_pi"
-    assert Launch("model:=burger", file=file).given(SIM)["model"] == "burger"
+    config = tmp_path / "config.yaml"
+    config.write_text("model: waffle\n")
+
+    def chosen(*arguments):
+        launch = Launch(*arguments, file=file)
+        (description,) = launch.named("robot_description").values()
+        return launch.given(SIM)["model"], ElementTree.fromstring(description).get("name")
+
+    assert chosen() == ("waffle_pi", "turtlebot3_waffle_pi")
+    assert chosen(f"config:={config}") == ("waffle", "turtlebot3_waffle")
+    assert chosen("model:=burger", f"config:={config}") == ("burger", "turtlebot3_burger")
+
+
+@pytest.fixture(autouse=True)
+def without_a_model_in_the_environment(monkeypatch):
+    monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
 
 
 def test_profile_overrides_the_default_and_arguments_override_both():

@@ -103,6 +103,7 @@ def launch(tmp_path):
         launched.process.wait()
 
 
+@pytest.mark.slow
 def test_launch_fails_when_the_simulator_refuses_its_parameters(launch):
     launched = launch("world:=no_such")
     assert launched.wait_for_exit() == 1
@@ -143,6 +144,7 @@ def test_launch_explains_an_impossible_argument_without_a_traceback(launch, argu
     assert "Traceback" not in launched.output.read_text()
 
 
+@pytest.mark.slow
 def test_launch_fails_when_the_simulator_is_killed(launch):
     launched = launch("world:=empty")
     os.kill(launched.simulator(), signal.SIGKILL)

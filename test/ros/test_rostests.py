@@ -14,9 +14,12 @@ DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorte
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 HERE = Path(__file__).resolve().parent
 LONG = ("lab", "simulator", "simulator_services", "two_robots")
-# Most of these is also tested without processes (parameters, real_time_factor), or with a fake robot and through the
-# bridge (preempt).
-SLOW = ("parameters", "preempt", "real_time_factor")
+# Most of these is also tested without processes, with two robots (many_robots), in a system of its own (goto_fails), or
+# with a fake robot and through the bridge (preempt).
+SLOW = (
+    *("camera", "documented_commands", "goto_fails", "localization_truth", "many_robots", "parameters", "preempt"),
+    *("real_robot", "real_time_factor", "teleop"),
+)
 
 
 def run_rostest(test_file, directory):

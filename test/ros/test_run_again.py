@@ -48,6 +48,7 @@ def run(environment, output, until):
     return process
 
 
+@pytest.mark.slow
 def test_it_runs_again_where_the_master_still_lists_a_simulator_that_has_ended(environment, tmp_path):
     end = time.monotonic() + DEADLINE
     while simulator_at(environment) is None:

@@ -183,6 +183,7 @@ def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     assert "scan_profile" in system.output and processes_with(system.setting) == []
 
 
+@pytest.mark.slow
 def test_a_package_that_does_not_build_is_reported_with_the_log_of_the_build(hosted, tmp_path):
     package = copy_of("timer_driven", tmp_path)
     (package / "action" / "GoToPosition.action").write_text("geometry_msgs/Pint position\n---\n---\n")

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 from reference_beams import cut_of
 
-from aro_robocop_goto_as.raycast import library
+from aro_robocop_goto_as.raycast import caster_library
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.raycast.scene import Plane, Scene
@@ -36,8 +36,8 @@ def scans(random: np.random.Generator, fan: Fan) -> None:
     cuts[1].tiles = Tiles(cuts[1].segments)
     planes = [Plane(cut, random.uniform(0.0, 0.5, (owned, 3)), owners) for cut in cuts]
     scene = Scene(planes, random.integers(0, 2, robots).tolist(), random.normal(0.0, 0.1, (robots, 3)))
-    scene.bases[:] = random.choice(PLACES, (robots, 3))
-    scene.bases[0] = random.uniform(-4.0, 4.0, 3)
+    scene.footprints[:] = random.choice(PLACES, (robots, 3))
+    scene.footprints[0] = random.uniform(-4.0, 4.0, 3)
     for max_range in (0.0, 3.5, 1e300, math.inf):
         distances = fan.scan(scene, random.permutation(robots).tolist(), max_range)
         assert ((distances >= 0.0) & (distances <= max_range) | np.isinf(distances)).all()
@@ -46,7 +46,7 @@ def scans(random: np.random.Generator, fan: Fan) -> None:
 def main() -> None:
     """Option --beyond: read past the end of an array on purpose."""
     path = sys.argv[1]
-    library.find = lambda folders=None: path
+    caster_library.find = lambda folders=None: path
     if "--beyond" in sys.argv:
         plane = Plane(cut_of(np.ones((400, 2, 2)), np.zeros((0, 3))))
         plane.struct.n_segments += 1

@@ -5,12 +5,10 @@ import os
 from typing import Callable, Dict, Iterator, List, Sequence
 
 import numpy as np
-import pybullet
 import pytest
 
-from aro_robocop_goto_as.geometry import Pose2D, Vector3
+from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.params import SimParams
-from aro_robocop_goto_as.physics.bullet import WORLD_GROUP, BulletEngine
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.simulation.factory import make_simulator
@@ -98,11 +96,3 @@ def lean(sim: Simulator, robot: int = 0) -> float:
     """Angle [rad] between a robot's mast and the vertical."""
     x, y, _, _ = sim.engine.body(robot).world_from_base.orientation
     return 2.0 * math.asin(min(1.0, math.hypot(x, y)))
-
-
-def bullet_rays(engine: BulletEngine, start: Vector3, ends: np.ndarray) -> np.ndarray:
-    """Hit fractions (n,) of Bullet's rays from `start` [m] to `ends` (n, 3) [m]; 1.0 = no hit."""
-    hits = pybullet.rayTestBatch(
-        [start] * len(ends), ends.tolist(), collisionFilterMask=WORLD_GROUP, physicsClientId=engine.client
-    )
-    return np.array([hit[2] for hit in hits])

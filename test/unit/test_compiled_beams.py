@@ -16,7 +16,7 @@ from support import ROOT, model_named, world_named
 
 from aro_robocop_goto_as.errors import InstallationError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast import library
+from aro_robocop_goto_as.raycast import caster_library
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import Slice
 from aro_robocop_goto_as.raycast.fleet import Scanners, circles_at
@@ -88,15 +88,15 @@ def test_mark_counter_restarts_at_its_limit() -> None:
 
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
-    fan: Fan, bases: List[Pose], walls: List[Slice], data: st.DataObject
+    fan: Fan, footprints: List[Pose], walls: List[Slice], data: st.DataObject
 ) -> None:
-    robots = range(len(bases))
+    robots = range(len(footprints))
     bodies = np.array(data.draw(st.lists(st.tuples(lattice, lattice, st.floats(0.05, 0.5)), max_size=9)))
-    owners = np.array([i % len(bases) for i in range(len(bodies))], np.int64)
+    owners = np.array([i % len(footprints) for i in range(len(bodies))], np.int64)
     planes = [Plane(cut, bodies.reshape(-1, 3), owners) for cut in walls]
     plane_of = [data.draw(st.integers(0, len(planes) - 1)) for _ in robots]
     scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]))
-    scene.bases[:] = bases
+    scene.footprints[:] = footprints
     together = fan.scan(scene, robots, 5.0)
     order = data.draw(st.permutations(robots))
     assert fan.scan(scene, order, 5.0).tobytes() == together[order].tobytes()
@@ -107,7 +107,7 @@ def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
 def test_robots_see_each_others_bodies_but_not_their_own() -> None:
     bodies, owners = np.array([[0.5, 0.0, 0.1], [0.5, 0.0, 0.2]]), np.array([0, 1], np.int64)
     scene = Scene([Plane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))), bodies, owners)], [0, 0], np.zeros((2, 3)))
-    scene.bases[:] = (0.0, 0.0, 0.0), (3.0, 0.0, math.pi)
+    scene.footprints[:] = (0.0, 0.0, 0.0), (3.0, 0.0, math.pi)
     assert Fan(0.0, 1.0, 1).scan(scene, [0, 1]).tolist() == [[pytest.approx(2.3)], [pytest.approx(2.4)]]
 
 
@@ -149,11 +149,14 @@ def test_fan_with_negative_increment_or_non_finite_angles_is_refused(angles: "tu
 
 
 ARRAYS = {
-    "shape": (np.zeros((4, 2)), r"^bases: expected shape \('any', 3\), got \(4, 2\)"),
-    "dimensions": (np.zeros(3), r"^bases: expected shape \('any', 3\), got \(3,\)"),
-    "type": (np.zeros((4, 3), np.float32), "^bases: expected a C-contiguous array of float64, got float32"),
-    "order": (np.zeros((3, 4)).T, r"^bases: expected a C-contiguous array of float64, got float64, strides \(8, 32\)"),
-    "list": ([[0.0] * 3], "^bases: expected a C-contiguous array of float64, got list"),
+    "shape": (np.zeros((4, 2)), r"^footprints: expected shape \('any', 3\), got \(4, 2\)"),
+    "dimensions": (np.zeros(3), r"^footprints: expected shape \('any', 3\), got \(3,\)"),
+    "type": (np.zeros((4, 3), np.float32), "^footprints: expected a C-contiguous array of float64, got float32"),
+    "order": (
+        np.zeros((3, 4)).T,
+        r"^footprints: expected a C-contiguous array of float64, got float64, strides \(8, 32\)",
+    ),
+    "list": ([[0.0] * 3], "^footprints: expected a C-contiguous array of float64, got list"),
 }
 
 
@@ -161,7 +164,7 @@ ARRAYS = {
 def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> None:
     array, message = ARRAYS[case]
     with pytest.raises(ValueError, match=message):
-        library.address("bases", array, (None, 3))  # type: ignore[arg-type]
+        caster_library.address("footprints", array, (None, 3))  # type: ignore[arg-type]
 
 
 def test_invalid_scenes_and_scans_are_refused() -> None:
@@ -170,7 +173,7 @@ def test_invalid_scenes_and_scans_are_refused() -> None:
     for robot in (-1, 2, 2**40):
         with pytest.raises(ValueError, match="^robots: "):
             LAB.scan(scene, [0, robot])
-    scene.bases[1, 2] = np.nan
+    scene.footprints[1, 2] = np.nan
     with pytest.raises(ValueError, match="^poses: "):
         LAB.scan(scene, [0])
     with pytest.raises(ValueError, match="^plane_of: expected numbers from 0 to 0, got "):
@@ -179,23 +182,23 @@ def test_invalid_scenes_and_scans_are_refused() -> None:
         Scene([plane], [0, 0], np.zeros((1, 3)))
     with pytest.raises(ValueError, match="^owners: expected numbers from 0 to 0"):
         Scene([Plane(plane.walls, np.zeros((1, 3)), np.array([1], np.int64))], [0], np.zeros((1, 3)))
-    with pytest.raises(ValueError, match=r"^others: expected shape \(1, 'any', 3\), got \(2, 1, 3\)"):
-        LAB.cast(np.zeros((1, 3)), plane.walls, np.ones((2, 1, 3)))
 
 
 # The library itself
 
 
 def _compile(tmp_path: Path, text: str) -> str:
-    source, path = tmp_path / "other.c", tmp_path / library.NAME
+    source, path = tmp_path / "other.c", tmp_path / caster_library.NAME
     source.write_text(text)
     subprocess.run(["cc", "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     return str(path)
 
 
 def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path) -> None:
-    with pytest.raises(InstallationError, match=rf"^{library.NAME} is in none of {tmp_path}: build .*\./robocop setup"):
-        library.find([str(tmp_path)])
+    with pytest.raises(
+        InstallationError, match=rf"^{caster_library.NAME} is in none of {tmp_path}: build .*\./robocop setup"
+    ):
+        caster_library.find([str(tmp_path)])
 
 
 @pytest.mark.parametrize(
@@ -208,19 +211,19 @@ def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path
 def test_library_built_from_other_sources_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = _compile(tmp_path, text)
     with pytest.raises(InstallationError, match=message):
-        library.load(path)
+        caster_library.load(path)
 
 
 def test_file_that_is_not_a_library_is_refused(tmp_path: Path) -> None:
-    (tmp_path / library.NAME).write_text("no library")
+    (tmp_path / caster_library.NAME).write_text("no library")
     with pytest.raises(InstallationError, match="can't be used .*: build"):
-        library.load(library.find([str(tmp_path)]))
+        caster_library.load(caster_library.find([str(tmp_path)]))
 
 
 @pytest.fixture(scope="module")
 def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The library, built with the address and undefined-behaviour sanitizers."""
-    path = str(tmp_path_factory.mktemp("sanitized") / library.NAME)
+    path = str(tmp_path_factory.mktemp("sanitized") / caster_library.NAME)
     checks = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
     warnings = ["-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
     subprocess.run(

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from bullet_rays import bullet_rays
 from hypothesis import given
 from hypothesis import strategies as st
-from support import ORIGIN, bullet_rays, world_named
+from support import ORIGIN, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
 from aro_robocop_goto_as.physics.bullet import BulletEngine

@@ -58,6 +58,12 @@ ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-
 # Imported on request only: in compat/, in deb-packages/class.txt, in requirements-web.txt.
 OPTIONAL = {"gazebo_msgs", "distributed", "viser", "websockets"}
 PUBLIC_DESPITE_THEIR_NAMES = ("_exit", "_replace")  # of os and of named tuples: in Python's documentation
+# Undocumented attributes of rospy.Publisher, actionlib.ActionServer, ActionClient and SimpleActionServer.
+INTERNALS = {
+    *("impl", "action_server", "current_goal", "next_goal", "last_cancel", "last_status_msg", "internal_goal_callback"),
+    *("goal_sub", "cancel_sub", "status_pub", "feedback_pub", "result_pub"),
+    *("pub_goal", "pub_cancel", "status_sub", "feedback_sub", "result_sub"),
+}
 IMPORT_WITHOUT_ROS = """
 import importlib, sys
 
@@ -186,9 +192,9 @@ def test_modules_import_only_what_the_order_of_folders_allows():
 
 
 def private_attributes(path):
-    """Attributes with a leading underscore that a module uses of anything but its own objects, with line numbers."""
+    """Internals, by underscore or by INTERNALS, that a module uses of anything but its own objects."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if not isinstance(node, ast.Attribute) or not re.match("_[a-z]", node.attr):
+        if not isinstance(node, ast.Attribute) or not (re.match("_[a-z]", node.attr) or node.attr in INTERNALS):
             continue
         of = node.value.id if isinstance(node.value, ast.Name) else ""
         own = of in ("self", "cls") or (isinstance(node.value, ast.Call) and ast.unparse(node.value) == "super()")

@@ -117,11 +117,12 @@ def test_an_ideal_robot_without_obstacles_always_arrives(x: float, y: float, yaw
 
 
 def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
-    start = track_progress(None, Errors(1.0, 0.5), 0.0, P)
-    assert track_progress(start, Errors(0.995, 0.48), 4.0, P).since == 0.0
-    assert track_progress(start, Errors(0.98, 0.5), 4.0, P).since == 4.0
-    assert track_progress(start, Errors(1.0, 0.44), 4.0, P).since == 4.0
-    assert track_progress(start, Errors(1.2, 0.6), 4.0, P).since == 0.0
+    moved = P.stuck_distance, P.stuck_angle
+    start = track_progress(None, Errors(1.0, 0.5), 0.0, *moved)
+    assert track_progress(start, Errors(0.995, 0.48), 4.0, *moved).since == 0.0
+    assert track_progress(start, Errors(0.98, 0.5), 4.0, *moved).since == 4.0
+    assert track_progress(start, Errors(1.0, 0.44), 4.0, *moved).since == 4.0
+    assert track_progress(start, Errors(1.2, 0.6), 4.0, *moved).since == 0.0
 
 
 # -- clearance --

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import trimesh
-from support import bullet_rays, world_named
+from bullet_rays import bullet_rays
+from support import world_named
 
 from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, rotation_matrix

@@ -37,7 +37,7 @@ def test_arange_as_in_lab_code_gives_one_angle_per_beam() -> None:
 
 def test_beams_start_at_the_scanner_and_turn_counter_clockwise() -> None:
     post = World("post", (Obstacle("post", Pose3D((1.0, 4.0, 0.2)), Cylinder(0.5, 1.0)),), Pose2D(), (), "")
-    distances = Lidar(SPEC).distances(np.array([[1.0, 2.0, 0.0]]), Slice(post, 0.182))[0]
+    distances = Lidar(SPEC).fan.cast(np.array([[1.0, 2.0, 0.0]]), Slice(post, 0.182), SPEC.range_max)[0]
     assert np.nanargmin(distances) == 90
     assert distances.min() == pytest.approx(1.5, abs=1e-3)
     assert np.isinf(distances[270])

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.world.spawn import parse_spawn
 
 
 def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:
-    (robot,) = robots_from(SimParams(), world_named("stage_4"), lambda _: burger)
+    (robot,) = robots_from(SimParams().spawn_params(), world_named("stage_4"), lambda _: burger)
     assert (robot.name, robot.spawn) == ("", Pose2D(-0.7, 0.0, 0.0))
 
 
@@ -46,22 +46,25 @@ NO_SPAWN = World("pillars", PILLARS, Pose2D(), (), "", has_spawn=False)
 
 @pytest.mark.parametrize("model, least", [("burger", 0.3), ("waffle", 0.3)])
 def test_in_a_world_without_a_spawn_the_robot_starts_where_there_is_room(model: str, least: float) -> None:
-    (robot,) = robots_from(SimParams(model=model), NO_SPAWN, model_named)
+    (robot,) = robots_from(SimParams(model=model).spawn_params(), NO_SPAWN, model_named)
     gaps = [math.dist((robot.spawn.x, robot.spawn.y), o.pose.position[:2]) - 0.15 for o in PILLARS]
     assert min(gaps) >= least and math.hypot(robot.spawn.x, robot.spawn.y) < 0.6
 
 
 def test_several_robots_start_where_there_is_room_too(burger: RobotModel) -> None:
-    for robot in robots_from(SimParams(robots="6"), NO_SPAWN, lambda _: burger):
+    for robot in robots_from(SimParams(robots="6").spawn_params(), NO_SPAWN, lambda _: burger):
         gaps = [math.dist((robot.spawn.x, robot.spawn.y), o.pose.position[:2]) - 0.15 for o in PILLARS]
         assert min(gaps) >= 0.3 - 1e-9
 
 
 def test_a_spawn_that_is_given_or_that_has_room_is_kept(burger: RobotModel) -> None:
-    assert robots_from(SimParams(spawn="0 0.1"), NO_SPAWN, lambda _: burger)[0].spawn == Pose2D(0.0, 0.1)
-    assert robots_from(SimParams(), replace(NO_SPAWN, has_spawn=True), lambda _: burger)[0].spawn == Pose2D()
+    assert robots_from(SimParams(spawn="0 0.1").spawn_params(), NO_SPAWN, lambda _: burger)[0].spawn == Pose2D(0.0, 0.1)
+    assert (
+        robots_from(SimParams().spawn_params(), replace(NO_SPAWN, has_spawn=True), lambda _: burger)[0].spawn
+        == Pose2D()
+    )
     beside = replace(NO_SPAWN, obstacles=(replace(PILLARS[4], pose=Pose3D((0.3, 0.0, 0.25))),))
-    assert robots_from(SimParams(), beside, lambda _: burger)[0].spawn == Pose2D()  # 0.045 m to spare
+    assert robots_from(SimParams().spawn_params(), beside, lambda _: burger)[0].spawn == Pose2D()  # 0.045 m to spare
 
 
 def test_where_there_is_less_room_the_robot_starts_where_its_footprint_fits(burger: RobotModel) -> None:
@@ -82,17 +85,21 @@ def test_places_are_the_same_every_time() -> None:
 
 
 def test_more_robots_than_there_is_room_for_are_refused(burger: RobotModel) -> None:
-    with pytest.raises(ParameterError, match="world 'stage_1' has room for [0-9]+ around its spawn, 500 were asked"):
-        robots_from(SimParams(robots="500"), world_named("stage_1"), lambda _: burger)
+    with pytest.raises(
+        ParameterError, match="world 'stage_1' has room for [0-9]+ around its spawn, 500 were requested"
+    ):
+        robots_from(SimParams(robots="500").spawn_params(), world_named("stage_1"), lambda _: burger)
 
 
 def test_a_list_names_and_places_each_robot(burger: RobotModel) -> None:
-    robots = robots_from(SimParams(robots="red 0 0; blue 1 -1 3.14"), world_named("empty"), lambda _: burger)
+    robots = robots_from(
+        SimParams(robots="red 0 0; blue 1 -1 3.14").spawn_params(), world_named("empty"), lambda _: burger
+    )
     assert [(robot.name, robot.spawn) for robot in robots] == [("red", Pose2D()), ("blue", Pose2D(1.0, -1.0, 3.14))]
 
 
 def test_a_list_may_name_a_model_for_a_robot() -> None:
-    p = SimParams(robots="red 0 0; blue:waffle 1 -1", model="turtlebot2")
+    p = SimParams(robots="red 0 0; blue:waffle 1 -1", model="turtlebot2").spawn_params()
     robots = robots_from(p, world_named("empty"), model_named)
     assert [robot.model.name for robot in robots] == ["turtlebot2", "turtlebot3_waffle"]
 
@@ -114,7 +121,7 @@ def test_a_list_may_name_a_model_for_a_robot() -> None:
 )
 def test_malformed_list_is_refused_by_name(burger: RobotModel, text: str, expected: str) -> None:
     with pytest.raises(ParameterError) as refusal:
-        robots_from(SimParams(robots=text), world_named("empty"), lambda _: burger)
+        robots_from(SimParams(robots=text).spawn_params(), world_named("empty"), lambda _: burger)
     assert expected in str(refusal.value)
 
 

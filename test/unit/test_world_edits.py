@@ -85,7 +85,7 @@ def test_model_that_the_documentation_puts_in_exists_and_is_found_from_any_world
     assert len(load_world(os.path.join(ROOT, "worlds", "models", "crate", "model.sdf")).obstacles) == 1
 
 
-def test_file_to_put_in_that_is_not_found_is_told_with_the_places_looked_in(crate_folder):
+def test_missing_model_file_is_reported_with_the_searched_places(crate_folder):
     with pytest.raises(WorldError) as caught:
         requested("model://stool")
     assert str(caught.value).startswith("file of the request: 'model://stool' was not found; looked for: ")

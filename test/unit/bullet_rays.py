@@ -1,0 +1,15 @@
+"""Rays of Bullet itself, for comparison with ours."""
+
+import numpy as np
+
+from aro_robocop_goto_as.geometry import Vector3
+from aro_robocop_goto_as.physics.bullet import WORLD_GROUP, BulletEngine
+from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
+
+
+def bullet_rays(engine: BulletEngine, start: Vector3, ends: np.ndarray) -> np.ndarray:
+    """Hit fractions (n,) of Bullet's rays from `start` [m] to `ends` (n, 3) [m]; 1.0 = no hit."""
+    hits = pybullet.rayTestBatch(
+        [start] * len(ends), ends.tolist(), collisionFilterMask=WORLD_GROUP, physicsClientId=engine.client
+    )
+    return np.array([hit[2] for hit in hits])

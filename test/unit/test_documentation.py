@@ -1,0 +1,34 @@
+"""Every ./robocop command that the documentation prints exists, with its launch arguments."""
+
+import os
+import subprocess
+
+import pytest
+from documentation import ROOT, blocks, commands, inline_commands
+
+PROGRAM = "./robocop"
+EXCEPTIONS = {
+    "./robocop doctor": "its exit status reports what this machine lacks",
+    "./robocop grade my_lab --watch": "refused without a display",
+}
+COMMANDS = sorted({*commands(PROGRAM), *inline_commands(PROGRAM)} - set(EXCEPTIONS))
+
+
+def test_the_documentation_has_commands_of_both_kinds():
+    assert len(commands(PROGRAM)) > 10 and len(inline_commands(PROGRAM)) > 10
+    assert all(line.strip() for block in blocks() for line in block.lines[:1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", COMMANDS)
+def test_printed_command_is_accepted(command):
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=ROOT,
+        env={**os.environ, "ROBOCOP_DRY_RUN": "1", "DISPLAY": ""},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
