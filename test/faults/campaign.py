@@ -125,6 +125,7 @@ class Campaign:
             self.violations.append(f"{name}: {type(error).__name__}: {error}")
 
     def _play(self, episode, fault, row):
+        self.stage.begin_episode()
         words = fault.run(episode)
         self._settle()
         for client in self.clients:

@@ -17,7 +17,7 @@ import rospy
 from aro_robocop_goto_as.srv import DeleteModel, MoveModel, SpawnModel
 from dynamic_reconfigure.srv import Reconfigure
 from geometry_msgs.msg import Pose, PoseStamped, Twist
-from stage import TICK
+from stage import STRAY, TICK
 from system import BRIDGE, SIMULATOR, is_connected, publisher, wait_for
 
 ANY = None  # any ending
@@ -56,6 +56,17 @@ def drive(e):
     goal = e.client.send_near(e.rng, 0.6)
     e.stage.wait_for(lambda: e.client.feedback[goal] or e.client.results[goal], f"feedback of {goal}")
     return goal
+
+
+def place_apart(e):
+    """A pose at which an obstacle is in no robot's way: farther from all robots than a goal that drive() sends."""
+    robots = [e.stage.truth_of(client) for client in e.clients]
+    pose = Pose()
+    while True:
+        pose.position.x = robots[0].x + e.rng.uniform(-4.0, 4.0)
+        pose.position.y = robots[0].y + e.rng.uniform(-4.0, 4.0)
+        if all(math.hypot(pose.position.x - at.x, pose.position.y - at.y) > 1.5 for at in robots):
+            return pose
 
 
 # -- goals --
@@ -247,10 +258,13 @@ def _double(name, value):
 
 @fault("world", needs="simulator")
 def set_pose_during_goal(e):
-    """The robot is placed elsewhere during a goal, or where there is no room."""
+    """The robot is placed elsewhere during a goal, or where it or another robot is."""
     drive(e)
+    home_x, home_y = e.stage.homes[e.client]
     for _ in range(e.rng.randint(1, 3)):
-        e.stage.set_pose(e.client.namespace, e.rng.uniform(-2.0, 2.0), e.rng.uniform(-2.0, 2.0))
+        robot = e.stage.truth_of(e.rng.choice(e.clients))
+        near = (home_x + e.rng.uniform(-STRAY, STRAY), home_y + e.rng.uniform(-STRAY, STRAY))
+        e.stage.set_pose(e.client.namespace, *e.rng.choice((near, near, (robot.x, robot.y))))
     return ANY
 
 
@@ -262,11 +276,13 @@ def world_edited_during_goal(e):
         rospy.ServiceProxy(f"/{SIMULATOR}/{name}", kind)
         for name, kind in (("spawn_model", SpawnModel), ("move_model", MoveModel), ("delete_model", DeleteModel))
     )
-    pose = Pose()
-    pose.position.x, pose.position.y = 4.0 + e.rng.random(), e.rng.uniform(-1.0, 1.0)
+    pose = place_apart(e)
     spawn("block", BOX, "", pose)
     spawn("block", BOX, "", pose)
-    pose.position.x = e.rng.choice((math.nan, 1e300, 5.0))
+    if e.rng.random() < 0.5:
+        pose = place_apart(e)
+    else:
+        pose.position.x = e.rng.choice((math.nan, 1e300))
     move("block", pose)
     spawn("broken", "<sdf><model", "", Pose())
     delete("nothing")

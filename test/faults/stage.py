@@ -17,6 +17,7 @@ from aro_robocop_goto_as.ros.convert import to_quaternion
 
 REST = 1.0  # [s] simulated, within which a robot is at rest after its goal
 TICK = 0.1  # [s]
+STRAY = 1.5  # [m] from its home, the farthest that a robot may be when an episode begins: no robot meets another one
 BEAMS = 360
 ANSWER_PATIENCE = 2.0  # [s, wall] for the answer to a tick; a clock that was set back has ticks without one
 
@@ -27,6 +28,7 @@ class SimulatedStage:
     def __init__(self, system, clients):
         self.system, self.clients = system, clients
         self.now = 0.0  # [s]
+        self.homes = {}  # by client: x, y [m] in the world
         rospy.Subscriber("/clock", Clock, self._on_clock)
 
     def _on_clock(self, message):
@@ -38,6 +40,21 @@ class SimulatedStage:
             client.wait_for_simulator()
             client.wait_for_server()
         self.wait_for(lambda: all(client.odom for client in self.clients), "odometry")
+        self.homes = {client: (at.x, at.y) for client in self.clients for at in [self.truth_of(client)]}
+
+    def begin_episode(self):
+        """Put the robots back where they started, if one of them is far from there."""
+        if any(self._distance_from_home(client) > STRAY for client in self.clients):
+            self.reset()
+            self.wait_for(lambda: all(map(self._is_home, self.clients)), "all robots at their spawn poses")
+
+    def _is_home(self, client):
+        odom = client.odom.pose.pose.position
+        return self._distance_from_home(client) < STRAY and math.hypot(odom.x, odom.y) < STRAY
+
+    def _distance_from_home(self, client):
+        at, (x, y) = self.truth_of(client), self.homes[client]
+        return math.hypot(at.x - x, at.y - y)
 
     def wait_for(self, condition, what):
         """The first true value of a condition."""
@@ -137,6 +154,9 @@ class MessageStage:
         for _ in range(10):
             self.tick()
         wait_for(lambda: self.client.odom, "odometry")
+
+    def begin_episode(self):
+        """Nothing is in this robot's way, wherever it is."""
 
     def tick(self, length=TICK):
         """One control period, or a longer one [s].
