@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Images, calibration and points of a camera are of one step and match each other, TF and the world."""
 
+import io
 import unittest
 
 import numpy as np
@@ -8,7 +9,8 @@ import ros_numpy
 import rospy
 import tf2_ros
 from harness import Recorder, run, wait_for
-from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from PIL import Image as Picture
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 
 FRAME = "red/camera_rgb_optical_frame"
 WALL = 1.85  # [m] x of the inner face of stage_1's wall
@@ -22,6 +24,7 @@ class Camera(unittest.TestCase):
         wait_for(lambda: cls.buffer.can_transform("world", FRAME, rospy.Time()), f"{FRAME} in world on /tf")
         topics = {
             "rgb/image_raw": Image,
+            "rgb/image_raw/compressed": CompressedImage,
             "rgb/camera_info": CameraInfo,
             "depth/image_raw": Image,
             "depth/camera_info": CameraInfo,
@@ -46,6 +49,14 @@ class Camera(unittest.TestCase):
         red, blue = rgb[..., 0], rgb[..., 2]
         self.assertGreater((blue - red)[:40].mean(), 20)  # sky or wall, which are bluish
         self.assertLess((blue - red)[-10:].mean(), 5)  # floor
+
+    def test_compressed_image_is_the_same_image_as_jpeg(self):
+        compressed = self.of_one_step["rgb/image_raw/compressed"]
+        self.assertEqual(compressed.format, "rgb8; jpeg compressed bgr8")
+        picture = Picture.open(io.BytesIO(compressed.data))
+        self.assertEqual(picture.format, "JPEG")
+        image = ros_numpy.numpify(self.of_one_step["rgb/image_raw"]).astype(int)
+        self.assertLess(np.abs(np.asarray(picture.convert("RGB")).astype(int) - image).mean(), 5.0)
 
     def test_points_match_depth_colour_and_calibration(self):
         depth = ros_numpy.numpify(self.of_one_step["depth/image_raw"])

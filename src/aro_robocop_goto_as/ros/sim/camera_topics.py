@@ -1,19 +1,29 @@
 """The topics of one robot's camera: colour, depth and points; only messages with a subscriber are made."""
 
+import io
 from typing import Callable, Dict
 
 import numpy as np
 import ros_numpy
 import rospy
-from sensor_msgs.msg import CameraInfo, Image, PointCloud2
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from std_msgs.msg import Header
 
 from ...sensors.camera import CameraImage, CameraSpec, points_of
 from ..publishing import publisher
 
 COLOR, COLOR_INFO = "camera/rgb/image_raw", "camera/rgb/camera_info"
+COMPRESSED = f"{COLOR}/compressed"  # as image_transport names it
 DEPTH, DEPTH_INFO, POINTS = "camera/depth/image_raw", "camera/depth/camera_info", "camera/depth/points"
-KINDS = {COLOR: Image, COLOR_INFO: CameraInfo, DEPTH: Image, DEPTH_INFO: CameraInfo, POINTS: PointCloud2}
+KINDS = {
+    COLOR: Image,
+    COMPRESSED: CompressedImage,
+    COLOR_INFO: CameraInfo,
+    DEPTH: Image,
+    DEPTH_INFO: CameraInfo,
+    POINTS: PointCloud2,
+}
+JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default
 
 
 class CameraTopics:
@@ -40,6 +50,8 @@ class CameraTopics:
     def _message(self, name: str, image: CameraImage, header: Header) -> rospy.Message:
         if name == POINTS:
             return ros_numpy.msgify(PointCloud2, to_cloud(image, self._spec), header.stamp, header.frame_id)
+        if name == COMPRESSED:
+            return to_jpeg(image, header)
         if name in (COLOR_INFO, DEPTH_INFO):
             return to_camera_info(self._spec, header)
         message = (
@@ -49,6 +61,15 @@ class CameraTopics:
         )
         message.header = header
         return message
+
+
+def to_jpeg(image: CameraImage, header: Header) -> CompressedImage:
+    """The colours as a JPEG file, with the format text of compressed_image_transport."""
+    from PIL import Image as Picture  # here, because its import takes long and most simulations have no camera
+
+    file = io.BytesIO()
+    Picture.fromarray(np.ascontiguousarray(image.rgb)).save(file, "JPEG", quality=JPEG_QUALITY)
+    return CompressedImage(header, "rgb8; jpeg compressed bgr8", file.getvalue())
 
 
 def to_camera_info(spec: CameraSpec, header: Header) -> CameraInfo:
