@@ -10,6 +10,7 @@ From a velocity command to odometry, scan, tf and clock:
         sensors                   states, distances -> measurements
     simulation.observations       what the step yielded
     ros.sim.node                  -> robot_topics, transform_topics, moving obstacles, and the clock last
+        ros.outbox                all messages of the step in one call of sender.c
 
 From a goal to its result:
 

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 from reference_beams import cut_of
 
-from aro_robocop_goto_as.raycast import caster_library
+from aro_robocop_goto_as import compiled
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.raycast.scene import Plane, Scene
@@ -46,7 +46,7 @@ def scans(random: np.random.Generator, fan: Fan) -> None:
 def main() -> None:
     """Option --beyond: read past the end of an array on purpose."""
     path = sys.argv[1]
-    caster_library.find = lambda folders=None: path
+    compiled.find = lambda name, folders=None: path
     if "--beyond" in sys.argv:
         plane = Plane(cut_of(np.ones((400, 2, 2)), np.zeros((0, 3))))
         plane.struct.n_segments += 1

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from reference_beams import bounds, circles, cut_of, cuts, fans, lattice, poses, segments
 from support import ROOT, model_named, world_named
 
+from aro_robocop_goto_as import compiled
 from aro_robocop_goto_as.errors import InstallationError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast import caster_library
@@ -25,6 +26,7 @@ from aro_robocop_goto_as.raycast.scene import Plane, Scene
 from aro_robocop_goto_as.world.model import Box, Obstacle, World
 
 Pose = Tuple[float, float, float]
+NAME = compiled.file_name("caster")
 SOURCE = os.path.join(ROOT, "src", "aro_robocop_goto_as", "raycast", "caster.c")
 LAB = Fan(0.0, 6.28319 / 359, 360)
 
@@ -188,17 +190,15 @@ def test_invalid_scenes_and_scans_are_refused() -> None:
 
 
 def _compile(tmp_path: Path, text: str) -> str:
-    source, path = tmp_path / "other.c", tmp_path / caster_library.NAME
+    source, path = tmp_path / "other.c", tmp_path / NAME
     source.write_text(text)
     subprocess.run(["cc", "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
     return str(path)
 
 
 def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path) -> None:
-    with pytest.raises(
-        InstallationError, match=rf"^{caster_library.NAME} is in none of {tmp_path}: build .*\./robocop setup"
-    ):
-        caster_library.find([str(tmp_path)])
+    with pytest.raises(InstallationError, match=rf"^{NAME} is in none of {tmp_path}: build .*\./robocop setup"):
+        compiled.find("caster", [str(tmp_path)])
 
 
 @pytest.mark.parametrize(
@@ -211,19 +211,19 @@ def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path
 def test_library_built_from_other_sources_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = _compile(tmp_path, text)
     with pytest.raises(InstallationError, match=message):
-        caster_library.load(path)
+        compiled.load("caster", caster_library.VERSION, path)
 
 
 def test_file_that_is_not_a_library_is_refused(tmp_path: Path) -> None:
-    (tmp_path / caster_library.NAME).write_text("no library")
+    (tmp_path / NAME).write_text("no library")
     with pytest.raises(InstallationError, match="can't be used .*: build"):
-        caster_library.load(caster_library.find([str(tmp_path)]))
+        compiled.load("caster", caster_library.VERSION, compiled.find("caster", [str(tmp_path)]))
 
 
 @pytest.fixture(scope="module")
 def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The library, built with the address and undefined-behaviour sanitizers."""
-    path = str(tmp_path_factory.mktemp("sanitized") / caster_library.NAME)
+    path = str(tmp_path_factory.mktemp("sanitized") / NAME)
     checks = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
     warnings = ["-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
     subprocess.run(

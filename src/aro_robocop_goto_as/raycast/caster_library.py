@@ -1,18 +1,14 @@
-"""The compiled ray caster: how it is found, and the C structures it works on."""
+"""The compiled ray caster, and the C structures it works on."""
 
 import ctypes
 import functools
-import os
-from typing import List, Optional, Sequence, Tuple
+from typing import List, Optional, Tuple
 
 import numpy as np
 
-from .. import __path__ as package_folders
-from ..errors import InstallationError
+from .. import compiled
 
-NAME = "libaro_robocop_goto_as_caster.so"
 VERSION = 1  # of the structures below, as in caster.c
-BUILD = "build the catkin workspace (./robocop setup, or catkin_make) and source its setup.bash"
 
 
 class FanStruct(ctypes.Structure):
@@ -77,31 +73,13 @@ class FleetStruct(ctypes.Structure):
     ]
 
 
-def find(folders: Optional[Sequence[str]] = None) -> str:
-    """The library's path: CMake puts it into the Python package, in devel space and in install space.
-
-    In devel space that folder and the sources are both in the package's __path__. InstallationError when it is missing.
-    """
-    folders = list(package_folders if folders is None else folders)
-    for folder in folders:
-        path = os.path.join(folder, NAME)
-        if os.path.isfile(path):
-            return path
-    raise InstallationError(f"{NAME} is in none of {', '.join(folders)}: {BUILD}")
-
-
 @functools.lru_cache(maxsize=None)
-def load(path: Optional[str] = None) -> ctypes.PyDLL:
-    """The library; InstallationError when it is missing, can't be loaded, or was built from other sources."""
-    path = path or find()
-    try:
-        # PyDLL holds the GIL during a call, so two threads cannot use a grid's marks at once.
-        library = ctypes.PyDLL(path)
-        version = library.aro_caster_version()
-    except (OSError, AttributeError) as error:
-        raise InstallationError(f"{path} can't be used ({error}): {BUILD}") from error
-    if version != VERSION:
-        raise InstallationError(f"{path} has version {version}, these sources need version {VERSION}: {BUILD}")
+def load() -> ctypes.PyDLL:
+    """The library. It holds the GIL during a call, so two threads cannot use a grid's marks at once.
+
+    InstallationError when it is missing, can't be loaded, or was built from other sources.
+    """
+    library = compiled.load("caster", VERSION)
     library.aro_cast.restype = ctypes.c_int
     library.aro_cast.argtypes = [
         ctypes.POINTER(FanStruct),

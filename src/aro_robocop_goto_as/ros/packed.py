@@ -1,9 +1,10 @@
-"""Messages of every step, serialized once and then updated in place, for `publishing.send`.
+"""Messages of every step, serialized once and then updated in place, for `outbox` and `publishing.send`.
 
 Building and serializing a message anew for each step was a quarter of the cost of a simulated second: genpy makes a
 Python object of every number. Here NumPy and struct write the numbers into the bytes that go to the sockets.
 """
 
+import ctypes
 import math
 import struct
 from io import BytesIO
@@ -55,6 +56,9 @@ class PackedMessage:
         template.serialize(serialized)
         body = serialized.getvalue()
         self.data = bytearray(_LENGTH.pack(len(body)) + body)
+        self.size = len(self.data)
+        self._start = ctypes.c_char.from_buffer(self.data)  # while it exists, the bytes stay where they are
+        self.address = ctypes.addressof(self._start)
 
 
 class _Stamped(PackedMessage):

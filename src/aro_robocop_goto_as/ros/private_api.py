@@ -38,10 +38,15 @@ def is_topic_connected_to(topic: str, node: str) -> bool:
     return implementation is not None and bool(implementation.has_connection(node))
 
 
-def sockets_of(publisher: rospy.Publisher) -> List[socket.socket]:
-    """The sockets to a publisher's subscribers; rospy offers no socket options but the subscriber's TCP_NODELAY."""
-    sockets = [getattr(connection, "socket", None) for connection in publisher.impl.connections]
-    return [connected for connected in sockets if connected is not None]
+def connections_of(publisher: rospy.Publisher) -> List[Tuple[Any, socket.socket]]:
+    """A publisher's connections that are open, with their sockets.
+
+    rospy offers no socket options but the subscriber's TCP_NODELAY, and no way to send to several topics at once.
+    """
+    topic = publisher.impl
+    connections = [] if topic is None else topic.connections
+    open_ones = [(connection, getattr(connection, "socket", None)) for connection in connections]
+    return [(connection, connected) for connection, connected in open_ones if connected is not None]
 
 
 def live_connections(publisher: rospy.Publisher) -> List[Any]:
@@ -90,6 +95,20 @@ def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> 
     for connection in failed:
         with contextlib.suppress(Exception):
             connection.close()
+
+
+def count_message(publisher: rospy.Publisher, size: int) -> None:
+    """Count a message of `size` bytes that was sent to a publisher's subscribers; rospy's statistics show it."""
+    topic = publisher.impl
+    if topic is not None:
+        topic.seq += 1
+        topic.message_data_sent += size
+
+
+def count_sent(connection: Any, size: int) -> None:
+    """Count a message of `size` bytes that was sent to one subscriber, as rospy's write_data does."""
+    connection.stat_bytes += size
+    connection.stat_num_msg += 1
 
 
 def set_latched(publisher: rospy.Publisher, message: Any) -> None:

@@ -2,59 +2,93 @@
 
 import socket
 import struct
+import threading
 import warnings
 from contextlib import suppress
-from typing import Any, Callable, Optional
+from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
 
 from .packed import PackedMessage
-from .private_api import sockets_of, write_message
+from .private_api import connections_of, write_message
 
 STALL_LIMIT = 2  # [s, wall] after which a subscriber that accepts no data is disconnected, so that it cannot block us
 
 
+class Outlet(NamedTuple):
+    """A subscriber's connection, and a duplicate of its socket: open, whoever closes the connection meanwhile."""
+
+    connection: Any
+    socket: socket.socket
+    descriptor: int
+
+
 class _ConnectionListener(rospy.SubscribeListener):
+    """rospy calls it for each subscriber that has connected or disconnected."""
+
+    def __init__(self, on_change: Callable[[], None]) -> None:
+        self.on_change = on_change
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """A subscriber has connected."""
+        self.on_change()
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """A subscriber has disconnected."""
+        self.on_change()
+
+
+class DirectPublisher(rospy.Publisher):
+    """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss."""
+
+    def __init__(self, topic: str, kind: Any, latch: bool, on_change: Callable[[], None]) -> None:
+        self.outlets: Tuple[Outlet, ...] = ()
+        self._outlets_lock = threading.Lock()
+
+        def changed() -> None:
+            self._update_outlets()
+            on_change()
+
+        listener = _ConnectionListener(changed)
+        super().__init__(topic, kind, subscriber_listener=listener, latch=latch, queue_size=None)
+        changed()  # for a subscriber that connected before the listener was there
+
+    def _update_outlets(self) -> None:
+        with self._outlets_lock:
+            known = {id(outlet.connection): outlet for outlet in self.outlets}
+            found: List[Optional[Outlet]] = [
+                known.get(id(connection)) or _outlet(connection, connected)
+                for connection, connected in connections_of(self)
+            ]
+            self.outlets = tuple(outlet for outlet in found if outlet is not None)
+
+
+def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
     """Limits how long a write to a new subscriber may block, and sends small messages at once.
 
     Without TCP_NODELAY, which few subscribers ask for, the kernel holds a small message back until the previous one is
     acknowledged, for up to 40 ms: at ten times real time the odometry of a plain node is then half a second old.
     """
-
-    def __init__(self, on_change: Callable[[], None]) -> None:
-        self.publisher: Optional[rospy.Publisher] = None
-        self._on_change = on_change
-
-    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """rospy calls this for each new subscriber; a write over the limit fails, and rospy closes the connection."""
-        if self.publisher is not None:
-            for connected in sockets_of(self.publisher):
-                with suppress(OSError):  # it is being closed
-                    timeout = struct.pack("ll", STALL_LIMIT, 0)
-                    connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
-                    connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._on_change()
-
-    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """rospy calls this for each subscriber that has disconnected."""
-        self._on_change()
+    with suppress(OSError):  # it is being closed
+        connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", STALL_LIMIT, 0))
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        duplicate = connected.dup()
+        return Outlet(connection, duplicate, duplicate.fileno())
+    return None
 
 
 def publisher(
     topic: str, kind: Any, latch: bool = False, on_change: Callable[[], None] = lambda: None
-) -> rospy.Publisher:
-    """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss.
+) -> DirectPublisher:
+    """A DirectPublisher.
 
     `on_change` is called, from rospy's threads, when a subscriber connects or disconnects.
     """
-    listener = _ConnectionListener(on_change)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # rospy advises a queue_size, which would drop messages
-        made = rospy.Publisher(topic, kind, subscriber_listener=listener, latch=latch, queue_size=None)
-    listener.publisher = made
-    return made
+        return DirectPublisher(topic, kind, latch, on_change)
 
 
 def send(topic: rospy.Publisher, message: PackedMessage) -> None:
-    """Publish a packed message. It may be updated again when this returns."""
+    """Publish a packed message at once. It may be updated again when this returns."""
     write_message(topic, message.data)

@@ -18,6 +18,7 @@ from ...params import SimParams
 from ...robot.catalog import load_model
 from ...robot.model import RobotSpec
 from ...ros import convert
+from ...ros.outbox import Outbox
 from ...ros.publishing import publisher
 from ...ros.sim.factory import message_config
 from ...ros.sim.robot_topics import RobotTopics
@@ -70,6 +71,7 @@ class Stage(LoopInterface):
         self._table = SubscriptionTable()
         frames, messages = PARAMS.frames(), message_config(PARAMS)
         self.clock = publisher("/clock", Clock, latch=True)
+        self._outbox = Outbox()
         self._transforms = TransformTopics(frames, messages.topics, [""], self._table.changed)
         self.robot = RobotTopics(0, "", messages, camera=None, on_change=self._table.changed)
         self._table.set_topics([{k: topic for k, topic in self.robot.by_sensor.items() if k != JOINTS}])
@@ -180,8 +182,9 @@ class Stage(LoopInterface):
         shown = replace(observations, joints={})
         if self.odd_scan and 0 in shown.scans:
             shown = replace(shown, scans={0: _odd(shown.scans[0])})
-        self.robot.publish(shown)
-        self._transforms.publish(shown)
+        self.robot.publish(shown, self._outbox)
+        self._transforms.publish(shown, self._outbox)
+        self._outbox.flush()
         if self.watch is not None and 0 in shown.transforms:
             self.watch.publish_transforms(self._transforms.messages(0, shown.transforms[0], stamp))
         if self.bag is not None:

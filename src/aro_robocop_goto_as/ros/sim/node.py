@@ -17,6 +17,7 @@ from ...simulation.observations import TF, Observations, Subscriptions
 from ...simulation.simulator import Simulator
 from .. import convert, param_server
 from ..node_main import node
+from ..outbox import Outbox
 from ..packed import PackedClock, stamp_of
 from ..private_api import set_latched
 from ..publishing import publisher, send
@@ -52,6 +53,7 @@ class SimNode(LoopInterface):
         table = self._table = SubscriptionTable()
         self._clock = publisher("/clock", Clock, latch=True)
         self._clock_message = PackedClock()
+        self._outbox = Outbox()
         self._transforms = TransformTopics(messages.frames, messages.topics, names, table.changed)
         self._robots = [
             RobotTopics(index, robot.name, messages, simulator.camera_of(index), table.changed)
@@ -101,8 +103,9 @@ class SimNode(LoopInterface):
         """All of one step with its stamp; the clock last, so that the data of a tick is there when the clock ticks."""
         if observations.measured:
             for robot in self._robots:
-                robot.publish(observations)
-        self._transforms.publish(observations)
+                robot.publish(observations, self._outbox)
+        self._transforms.publish(observations, self._outbox)
+        self._outbox.flush()
         if observations.control and self.simulator.moving:
             self._world.publish_moving(self.simulator)
         if observations.clock:

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Optional
 
-import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
 from std_msgs.msg import Bool
@@ -15,8 +14,9 @@ from ...sensors.scan_profiles import LidarSpec
 from ...simulation import observations as sensor_names
 from ...simulation.observations import Observations
 from .. import convert
+from ..outbox import Outbox
 from ..packed import PackedImu, PackedJointState, PackedOdometry, PackedScan, stamp_of
-from ..publishing import publisher, send
+from ..publishing import DirectPublisher, publisher
 from .camera_topics import CameraTopics
 
 
@@ -66,7 +66,7 @@ class RobotTopics:
         )
         rates, topics = config.rates, config.topics
 
-        def topic(relative: str, kind: Any) -> rospy.Publisher:
+        def topic(relative: str, kind: Any) -> DirectPublisher:
             return publisher(prefixed(name, relative), kind, on_change=on_change)
 
         self.scan = topic("scan", LaserScan)
@@ -100,24 +100,24 @@ class RobotTopics:
         self._joints_message = PackedJointState()
         self._scan_messages: Dict[int, PackedScan] = {}  # by the number of beams, which varies with some scanners
 
-    def publish(self, observed: Observations) -> None:
-        """Send this robot's part of one step's observations."""
+    def publish(self, observed: Observations, outbox: Outbox) -> None:
+        """Send this robot's part of one step's observations, what is due often by way of the outbox."""
         robot, topics = self.index, self.by_sensor
         stamp = stamp_of(observed.stamp_ns)
         if robot in observed.ground_truth:
             state = observed.ground_truth[robot]
             message = self._truth_message.update(state.world_from_footprint, state.twist, stamp)
-            send(topics[sensor_names.GROUND_TRUTH], message)
+            outbox.put(topics[sensor_names.GROUND_TRUTH], message)
         if robot in observed.imus:
-            send(topics[sensor_names.IMU], self._imu_message.update(observed.imus[robot], stamp))
+            outbox.put(topics[sensor_names.IMU], self._imu_message.update(observed.imus[robot], stamp))
         if robot in observed.joints:
-            send(topics[sensor_names.JOINTS], self._joints_message.update(observed.joints[robot], stamp))
+            outbox.put(topics[sensor_names.JOINTS], self._joints_message.update(observed.joints[robot], stamp))
         if robot in observed.odometry:
             odometry = observed.odometry[robot]
-            send(self.odom, self._odom_message.update(odometry.odom_from_footprint, odometry.twist, stamp))
+            outbox.put(self.odom, self._odom_message.update(odometry.odom_from_footprint, odometry.twist, stamp))
         if robot in observed.scans:
             ranges = observed.scans[robot]
-            send(self.scan, self._scan_message(len(ranges)).update(ranges, stamp))
+            outbox.put(self.scan, self._scan_message(len(ranges)).update(ranges, stamp))
         if robot in observed.bumpers:
             topics[sensor_names.BUMPER].publish(observed.bumpers[robot])
         if robot in observed.magnetic_fields:

@@ -11,8 +11,9 @@ from ...geometry import Pose2D
 from ...simulation.observations import Observations, RobotTransforms
 from ...simulation.simulator import Simulator
 from .. import convert
+from ..outbox import Outbox
 from ..packed import PackedTransforms, stamp_of
-from ..publishing import publisher, send
+from ..publishing import publisher
 from .robot_topics import prefixed
 
 
@@ -42,8 +43,8 @@ class TransformTopics:
         self.tf_static.publish(transforms)
         return transforms
 
-    def publish(self, observed: Observations) -> None:
-        """The transforms of one step."""
+    def publish(self, observed: Observations, outbox: Outbox) -> None:
+        """Put the transforms of one step into the outbox."""
         if not observed.transforms:
             return
         robots = tuple(observed.transforms)
@@ -51,7 +52,7 @@ class TransformTopics:
             self._packed[robots] = PackedTransforms([pair for robot in robots for pair in self._pairs(robot)])
         poses = [pose for transforms in observed.transforms.values() for pose in self._poses(transforms)]
         if poses:
-            send(self.tf, self._packed[robots].update(poses, stamp_of(observed.stamp_ns)))
+            outbox.put(self.tf, self._packed[robots].update(poses, stamp_of(observed.stamp_ns)))
 
     def _pairs(self, robot: int) -> List[Tuple[str, str]]:
         """Parent and child of each transform of a robot: odom -> base; map -> odom if it follows ground truth."""
