@@ -13,9 +13,10 @@ settings.register_profile("selection", settings.get_profile("all"), max_examples
 
 
 def pytest_addoption(parser):
-    """./robocop test --all --faults N --episode NAME"""
+    """./robocop test --all --faults N --episode NAME --soak SECONDS"""
     parser.addoption("--all", action="store_true", help="also the tests marked slow, and more examples of properties")
     parser.addoption("--faults", type=int, metavar="N", help="goals of the fault campaign, in all its configurations")
+    parser.addoption("--soak", type=float, default=60.0, metavar="SECONDS", help="[s, wall] of the soak test")
     parser.addoption("--episode", metavar="NAME", help="only this episode of the fault campaign, named by a violation")
 
 

@@ -42,6 +42,7 @@ CONFIGURATIONS = {
 MESSAGES = "messages"  # the configuration without a simulator
 WARM_UP = 5  # episodes before usage is noted
 GROWTH = {"RSS [MiB]": 40.0, "threads": 6, "file descriptors": 12}  # that is no leak in a few hundred goals
+SOAK_ROWS = 12  # of the table of a soak test
 COSTLY_SHARE = 0.05  # of the episodes, after each fault had its turn
 
 
@@ -100,6 +101,21 @@ class Campaign:
         for fault in self.last if self.full else []:
             if not self.violations:
                 self.run_episode(number, fault)
+
+    def soak(self, seconds):
+        """Goals without faults for so long [s, wall]; usage is noted SOAK_ROWS times, and must stay level."""
+        self.stage.prepare()
+        (fault,) = (fault for fault in FAULTS if fault.name == "valid_goals")
+        begun, number, noted = time.monotonic(), 0, []
+        while len(noted) <= SOAK_ROWS and not self.violations:
+            self.run_episode(number, fault)
+            number += 1
+            elapsed = time.monotonic() - begun
+            if number >= WARM_UP and elapsed >= len(noted) * seconds / SOAK_ROWS:
+                noted.append((elapsed, self.goals_sent, self.system.usage()))
+                self.baseline = noted[0][2]
+                self._guard("usage", self.require_level_usage)
+        return noted
 
     @property
     def goals_sent(self):
@@ -181,6 +197,16 @@ def table_text(table):
     return "\n".join(lines)
 
 
+def usage_text(noted):
+    """What each process used during a soak test, as lines of a table."""
+    names = list(noted[0][2])
+    lines = [f"| minute | goals | {' | '.join(names)} |", "| --- |" + " --- |" * (len(names) + 1)]
+    for elapsed, goals, used in noted:
+        cells = (f"{rss:.1f} MiB, {threads} threads, {files} files" for _, rss, threads, files in map(used.get, names))
+        lines.append(f"| {elapsed / 60.0:.0f} | {goals} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 def main():
     """Run the campaign; exit status 1 if an invariant was violated."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -189,6 +215,7 @@ def main():
     parser.add_argument("--seed", default="1")
     parser.add_argument("--full", action="store_true", help="also the faults that take seconds, and whole bursts")
     parser.add_argument("--episode", type=int, help="only this episode")
+    parser.add_argument("--soak", type=float, help="instead of faults, goals for so many seconds")
     parser.add_argument("--mistake", help="start the server of broken_server.py with this mistake")
     parser.add_argument("--verbose", action="store_true", help="print each episode with its duration")
     parser.add_argument("--folder", type=Path, required=True, help="for logs")
@@ -197,7 +224,10 @@ def main():
     system = System(options.folder, options.mistake)
     try:
         campaign = Campaign(options.configuration, options.seed, options.full, options.verbose, system)
-        if options.episode is None:
+        if options.soak is not None:
+            noted = campaign.soak(options.soak)
+            print(usage_text(noted) if noted else "ended before the first look at the processes")
+        elif options.episode is None:
             campaign.run(options.goals)
         else:
             campaign.stage.prepare()

@@ -1,6 +1,7 @@
 """The fault campaign: goals, data, time, processes and surroundings go wrong, and every goal still ends exactly once.
 
 ./robocop test test/faults --all --faults 10000     so many goals, in all configurations, with the costly faults
+./robocop test test/faults --all --soak 3600 -k hours     an hour of goals at full speed, with a table of what is used
 ./robocop test test/faults --episode CONFIGURATION/SEED/NUMBER     one episode again, as a violation names it
 
 Each campaign is a process, because it needs a ROS master of its own, which it may kill.
@@ -75,6 +76,13 @@ def test_every_goal_ends_once_with_other_drives_robots_and_in_free_time(
 ):
     if not only_episode:
         run(tmp_path, capsys, configuration, goals_each(request, 60), "--full")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(0)
+def test_hours_of_goals_need_no_more_memory_threads_or_files(request, tmp_path, capsys):
+    seconds = request.config.getoption("--soak")
+    run(tmp_path, capsys, "lockstep-kinematic-one", int(seconds), "--soak", seconds)
 
 
 @pytest.mark.slow
