@@ -17,6 +17,7 @@ from ...params import GotoParams
 from .. import convert
 from ..ticker import wait_until
 
+FIRST_DATA = 1.0  # [s, wall] that the server waits for its first odometry and scan before it takes goals
 LATE_DATA = 0.2  # [s, wall] that a message may arrive after the clock tick it was published before
 LOCKSTEP_PATIENCE = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
 
@@ -73,6 +74,15 @@ class Inputs:
                 self.valid_scan = received
             self.scan = received
             self._arrived.notify_all()
+
+    def await_first(self) -> None:
+        """Wait for the first odometry and scan, or for FIRST_DATA if a topic is silent.
+
+        At full speed the sensor timeout may pass in the milliseconds that a subscription takes: a goal sent as soon as
+        the server was there would end with NO_ODOM although the simulator publishes odometry.
+        """
+        with self._arrived:
+            self._arrived.wait_for(lambda: self.odom is not None and self.scan is not None, FIRST_DATA)
 
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
