@@ -32,20 +32,23 @@ def sandbox() -> Sandbox:
     return opened
 
 
-def recorded(text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET) -> runner.Recorded:
+def recorded(
+    text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET, seed: int = 0
+) -> runner.Recorded:
     """A solution driven through the scenarios of its part, or some of them, in the sandbox."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
     opened = sandbox()
     submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
-    return runner.run(submission, submission.scripts[0], PLAN, folder / "out", STATE, opened, only, budget=budget)
+    script, plan = submission.scripts[0], load(PLAN, seed)
+    return runner.run(submission, script, plan, folder / "out", STATE, opened, only, budget=budget)
 
 
-def graded(name: str, text: str, folder: Path) -> Grade:
+def graded(name: str, text: str, folder: Path, seed: int = 0) -> Grade:
     """The grade of a solution."""
-    run = recorded(text, folder)
+    run = recorded(text, folder, seed=seed)
     part = "bridge" if "no_server" in run.records else "server"
-    return judge.judge(name, load(PLAN), {part: run.records}, {part: run.problem})
+    return judge.judge(name, load(PLAN, seed), {part: run.records}, {part: run.problem})
 
 
 def row(wrong: Wrong) -> str:

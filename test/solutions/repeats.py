@@ -9,6 +9,10 @@ package, built each time. The log holds a JSON object per grading; with an exist
 
 grades wrong solutions by all checks, too, beside four processes that keep a processor busy. Reports of one solution,
 also those that the log has from other loads, that differ in the outcome or the cause of a check are listed.
+
+    ... --drawn --times 200 base_server
+
+draws the scenarios of each repetition from the plan's ranges, with seeds from 1 on: a correct solution passes them all.
 """
 
 import argparse
@@ -42,22 +46,23 @@ NUMBER = re.compile(r"-?\d+(\.\d+)?")
 Entry = Dict[str, Any]
 
 
-Job = Tuple[str, int, int, bool]  # name, load, number, by all checks
+Job = Tuple[str, int, int, bool, int]  # name, load, number, by all checks, seed of the scenarios
 
 
 def once(job: Job) -> Entry:
     """Grade a solution once."""
-    name, load_beside, number, whole = job
+    name, load_beside, number, whole, seed = job
     started = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         if name in BY_NAME:
-            words, grade = _wrong(BY_NAME[name], Path(folder), whole)
+            words, grade = _wrong(BY_NAME[name], Path(folder), whole, seed)
         else:
-            words, grade = _right(name, Path(folder))
+            words, grade = _right(name, Path(folder), seed)
     return {
         "name": name,
         "load": load_beside,
         "number": number,
+        "seed": seed,
         "seconds": round(time.monotonic() - started, 1),
         "right": not words,
         "words": words,
@@ -65,26 +70,26 @@ def once(job: Job) -> Entry:
     }
 
 
-def _wrong(wrong: Wrong, folder: Path, whole: bool) -> Tuple[List[str], Grade]:
+def _wrong(wrong: Wrong, folder: Path, whole: bool, seed: int) -> Tuple[List[str], Grade]:
     """The explanation of the intended check, if it is not the expected one; the grade."""
-    plan = load(PLAN)
+    plan = load(PLAN, seed)
     check = next(check for check in plan.checks if check.name == wrong.check)
     only = [] if whole else [name for name in check.scenarios if name != "start"] or ["no other"]
-    run = recorded(wrong.text(), folder, only)
+    run = recorded(wrong.text(), folder, only, seed=seed)
     grade = judge.judge(wrong.name, plan, {check.part: run.records}, {check.part: run.problem})
     result = next(result for result in grade.checks if result.name == wrong.check)
     expected = result.outcome is Outcome.FAILED and wrong.words in result.explanation()
     return ([] if expected else [result.explanation()]), grade
 
 
-def _right(name: str, folder: Path) -> Tuple[List[str], Grade]:
+def _right(name: str, folder: Path, seed: int) -> Tuple[List[str], Grade]:
     """The explanations of all checks that did not pass, including extra ones; the grade."""
     if name == REFERENCE:
         opened = sandbox()
         submission = prepare_submission(str(SHARE), SHARE, STATE, folder, opened)
-        grade = grade_submission(submission, load(PLAN), folder / "report", STATE, opened)
+        grade = grade_submission(submission, load(PLAN, seed), folder / "report", STATE, opened)
     else:
-        grade = graded(name, RIGHT[name].read_text(), folder)
+        grade = graded(name, RIGHT[name].read_text(), folder, seed)
     return [check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED], grade
 
 
@@ -125,13 +130,14 @@ def repeat() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--log", type=Path, required=True)
     parser.add_argument("--whole", action="store_true", help="grade wrong solutions by all checks")
+    parser.add_argument("--drawn", action="store_true", help="draw the scenarios with another seed each time")
     parser.add_argument("--load", type=int, default=0, help="processes that keep a processor busy meanwhile")
     args = parser.parse_args()
     names = args.names or list(BY_NAME)
     done = [json.loads(line) for line in args.log.read_text().splitlines()] if args.log.exists() else []
     known = {(entry["name"], entry["load"], entry["number"]) for entry in done}
     jobs = [
-        (name, args.load, number, args.whole)
+        (name, args.load, number, args.whole, number + 1 if args.drawn else 0)
         for number in range(args.times)
         for name in names
         if (name, args.load, number) not in known

@@ -47,6 +47,23 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
     assert wrong.words in check.explanation()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp_path):
+    grade = graded("base_server", RIGHT["base_server"].read_text(), tmp_path, seed)
+    assert {check.name: check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
+
+
+@pytest.mark.slow
+def test_server_that_knows_where_the_walls_are_passes_only_where_it_knows_them(tmp_path):
+    looks, knows = "self.min_dist_ahead < 0.3", "x > {2.2: 0.9, 2.0: 0.7}.get(goal.position.x, 9.0)"
+    text = RIGHT["base_server"].read_text()
+    assert looks in text
+    text = text.replace(looks, knows)
+    assert graded("middle", text, tmp_path / "middle").failed() == []
+    assert "stops_at_obstacle" in graded("drawn", text, tmp_path / "drawn", seed=1).failed()
+
+
 def command(*arguments):
     """`robocop grade` or `robocop new` in this workspace."""
     return subprocess.run(["rosrun", "aro_robocop_goto_as", *arguments], capture_output=True, text=True, timeout=250)

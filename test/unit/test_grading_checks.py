@@ -224,14 +224,29 @@ def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each
     [
         ("  feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
         ("points: 0.5, scenarios: [start]", "punkte: 0.5, scenarios: [start]", "unknown: punkte"),
-        ("goal: [0.7, 0.7]", "goal: [0.7]", "expected 2 numbers"),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.7]", "expected 2 numbers"),
         ("ends: ABORTED", "ends: FAILED", "expected SUCCEEDED, ABORTED or PREEMPTED"),
         ("limits:", "limits: [", "line"),
         ("limits:", "border:", "unknown: border"),
         ("  stall: 8.0", "  stall: .nan", "stall: expected a finite number"),
-        ("goal: [0.7, 0.7]", "goal: [.nan, 0.7]", "expected a number from -20 to 20, got nan"),
-        ("for: 3.0", "for: long", "for: expected a number from 0"),
-        ("points: 0.5, scenarios: [start]", "points: -1, scenarios: [start]", "points: expected a number from 0"),
+        (
+            "goal: [0.5..0.9, 0.5..0.9]",
+            "goal: [.nan, 0.7]",
+            "expected a number or a range LOW..HIGH from -20 to 20, got nan",
+        ),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.9..0.5, 0.7]", "left: goal: 0.9..0.5: expected LOW..HIGH"),
+        (
+            "goal: [0.5..0.9, 0.5..0.9]",
+            "goal: [0.5..90, 0.7]",
+            "expected a number or a range LOW..HIGH from -20 to 20, got",
+        ),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.5...9, 0.7]", "got '0.5...9'"),
+        ("for: 2.5..3.5", "for: long", "for: expected a number or a range LOW..HIGH from 0"),
+        (
+            "points: 0.5, scenarios: [start]",
+            "points: -1, scenarios: [start]",
+            "points: expected a number or a range LOW..HIGH from 0",
+        ),
         ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
         ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
         (
@@ -242,9 +257,13 @@ def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each
         ("  far_goal:", "  farr_goal:", "unknown: farr_goal"),
         ("name: right", "name: left", "left: expected a unique name"),
         ("name: right", "name: a/b", "expected letters, digits and _"),
-        ("- {goal: [0.7, 0.7], ends: SUCCEEDED}", "- {cancel: true}", "cancel: expected an earlier goal in the script"),
-        ("- {goal: [0.7, 0.7], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
-        ("box: [1.2, 0.0, 0.0, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
+        (
+            "- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}",
+            "- {cancel: true}",
+            "cancel: expected an earlier goal in the script",
+        ),
+        ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
+        ("box: [0.9..1.5, 0.0, 0.0, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
     ],
 )
 def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:

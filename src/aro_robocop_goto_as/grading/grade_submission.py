@@ -45,7 +45,7 @@ def grade_submission(
                 recorded = runner.run(
                     submission,
                     script,
-                    plan.path,
+                    plan,
                     out,
                     state,
                     sandbox,

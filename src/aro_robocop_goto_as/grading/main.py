@@ -11,6 +11,7 @@ from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive
 from ..process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from .display import require_rviz
+from .draw import MIDDLE
 from .grade_submission import grade_submission
 from .judge import Grade, Outcome, printable, printable_lines
 from .plan import load
@@ -19,6 +20,7 @@ from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
 from .submission import prepare_submission
 
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C
+SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 MOST_SHOWN = 1_000  # characters of an error
 LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
@@ -49,13 +51,14 @@ def main() -> None:
     parser.add_argument("path", help="a package, a server (robocop_goto_as.py) or a bridge (robocop_rviz_goto_ac.py)")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
     parser.add_argument("--watch", action="store_true", help="show the run in RViz in real time")
     args = parser.parse_args()
     interrupt_on_signal()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     try:
-        plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml")
+        plan = load(Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml", args.seed)
         given = make_report_folder(Path(args.report)) if args.report else None
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
@@ -78,5 +81,6 @@ def main() -> None:
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     print(as_text(grade))
+    print(f"scenarios: seed {plan.seed}")
     print(f"report: {folder / 'report.html'}")
     sys.exit(0 if grade.all_right else 1)

@@ -15,6 +15,7 @@ from ..hosting.files import read_bytes
 from ..param_loading import from_dict
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 from .checks import CHECKS
+from .draw import MIDDLE, Draw, checked_seed
 from .limits import Limits
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
@@ -69,6 +70,7 @@ class Plan:
     limits: Limits
     scenarios: Tuple[Scenario, ...]
     checks: Tuple[CheckPlan, ...]
+    seed: int = MIDDLE  # with which the scenarios' numbers were drawn
 
     @property
     def points(self) -> float:
@@ -76,8 +78,12 @@ class Plan:
         return round(sum(check.points for check in self.checks if not check.extra), 6)
 
 
-def load(path: Path) -> Plan:
-    """Read the plan; PlanError, or ParameterError for the limits, names the file and the mistake in it."""
+def load(path: Path, seed: int = MIDDLE) -> Plan:
+    """Read the plan and draw its scenarios; PlanError or ParameterError (limits) names the file and the mistake in it.
+
+    Seed 0 takes the middle of each range.
+    """
+    checked_seed(seed)
     try:
         raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
     except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
@@ -95,14 +101,14 @@ def load(path: Path) -> Plan:
     for name, value in dataclasses.asdict(limits).items():
         if not 0.0 <= value < math.inf:
             raise PlanError(f"{path}: limits: {name}: expected a finite number of 0 or more, got {value!r}")
-    scenarios = tuple(_scenario(entry, f"{path}: scenarios") for entry in raw["scenarios"])
+    scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in raw["scenarios"])
     names = [scenario.name for scenario in scenarios]
     for name in names:
         if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS):
             raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
     known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
     checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
-    return Plan(path, limits, scenarios, checks)
+    return Plan(path, limits, scenarios, checks, seed)
 
 
 def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[str] = frozenset()) -> None:
@@ -113,16 +119,17 @@ def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[s
             raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
 
 
-def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6) -> float:
+def _number(value: Any, where: str, draw: Draw, least: float = 0.0, most: float = 1e6) -> float:
+    value = draw.number(value, where)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-        raise PlanError(f"{where}: expected a number from {least:g} to {most:g}, got {value!r}")
+        raise PlanError(f"{where}: expected a number or a range LOW..HIGH from {least:g} to {most:g}, got {value!r}")
     return float(value)
 
 
-def _numbers(value: Any, count: int, where: str) -> Tuple[float, ...]:
+def _numbers(value: Any, count: int, where: str, draw: Draw) -> Tuple[float, ...]:
     if not isinstance(value, list) or len(value) != count:
         raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
-    return tuple(_number(number, where, -FARTHEST, FARTHEST) for number in value)
+    return tuple(_number(number, where, draw, -FARTHEST, FARTHEST) for number in value)
 
 
 def _list(value: Any, where: str, of: str) -> List[Any]:
@@ -131,27 +138,27 @@ def _list(value: Any, where: str, of: str) -> List[Any]:
     return value
 
 
-def _scenario(raw: Any, where: str) -> Scenario:
+def _scenario(raw: Any, where: str, seed: int) -> Scenario:
     _expect(raw, {"name", "about", "script", "obstacles", "odd_scan"}, where, {"name", "about", "script"})
     if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
         raise PlanError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
-    where = f"{where}: {raw['name']}"
+    where, draw = f"{where}: {raw['name']}", Draw(seed, raw["name"])
     obstacles = []
     for entry in _list(raw["obstacles"], f"{where}: obstacles", "boxes and cylinders") if "obstacles" in raw else []:
         _expect(entry, {"box", "cylinder"}, where)
         for kind, value in entry.items():
-            numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}")
+            numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}", draw)
             if min(numbers[{"box": 3, "cylinder": 2}[kind] :]) <= 0.0:
                 raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
             obstacles.append((kind, numbers))
-    steps = tuple(_step(step, where) for step in _list(raw["script"], f"{where}: script", "steps"))
+    steps = tuple(_step(step, where, draw) for step in _list(raw["script"], f"{where}: script", "steps"))
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
             raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
     return Scenario(raw["name"], str(raw["about"]), steps, tuple(obstacles), bool(raw.get("odd_scan", False)))
 
 
-def _step(raw: Any, where: str) -> Step:
+def _step(raw: Any, where: str, draw: Draw) -> Step:
     _expect(raw, STEP_KEYS, where)
     if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
         raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
@@ -160,12 +167,12 @@ def _step(raw: Any, where: str) -> Step:
     if raw.get("ends", "SUCCEEDED") not in ("SUCCEEDED", "ABORTED", "PREEMPTED"):
         raise PlanError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
     return Step(
-        goal=_numbers(raw["goal"], 2, f"{where}: goal") if "goal" in raw else (),
+        goal=_numbers(raw["goal"], 2, f"{where}: goal", draw) if "goal" in raw else (),
         of=raw.get("of", "odom"),
         ends=raw.get("ends", ""),
-        run=_number(raw.get("for", 0.0), f"{where}: for"),
+        run=_number(raw.get("for", 0.0), f"{where}: for", draw),
         cancel=bool(raw.get("cancel", False)),
-        place=_numbers(raw["place"], 3, f"{where}: place") if "place" in raw else (),
+        place=_numbers(raw["place"], 3, f"{where}: place", draw) if "place" in raw else (),
     )
 
 
@@ -182,7 +189,7 @@ def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: 
             raise PlanError(
                 f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: {', '.join(known[raw['part']])}"
             )
-    points = _number(raw["points"], f"{where}: points")
+    points = _number(raw["points"], f"{where}: points", Draw(MIDDLE, name))
     return CheckPlan(name, raw["part"], points, bool(raw.get("extra", False)), tuple(scenarios))
 
 

@@ -19,16 +19,17 @@ MOST_LINES = 60  # of a node's output in the report
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
     """Write all three files to an existing folder."""
-    (folder / "report.json").write_text(json.dumps(as_json(grade), indent=1))
-    ElementTree.ElementTree(_junit(grade)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
-    page = render("report.html", grade=grade, scenarios=list(_scenarios(grade, plan, records)))
+    (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
+    ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
+    page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records)))
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
 
-def as_json(grade: Grade) -> Dict[str, object]:
+def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
     """The grade as plain values."""
     return {
         "name": grade.name,
+        "seed": plan.seed,
         "points": grade.points,
         "of": grade.points_available,
         "problems": list(grade.problems),
@@ -41,11 +42,13 @@ def _check_as_json(check: CheckResult) -> Dict[str, object]:
     return {**values, "outcome": check.outcome.value}
 
 
-def _junit(grade: Grade) -> ElementTree.Element:
+def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
     skipped = sum(check.outcome is Outcome.NOT_REACHED for check in grade.checks)
     counts = {"tests": len(grade.checks), "failures": len(grade.failed()), "skipped": skipped, "errors": 0}
     attributes = {key: str(count) for key, count in counts.items()}
     suite = ElementTree.Element("testsuite", {"name": printable_lines(grade.name), **attributes})
+    properties = ElementTree.SubElement(suite, "properties")
+    ElementTree.SubElement(properties, "property", {"name": "seed", "value": str(plan.seed)})
     for check in grade.checks:
         case = ElementTree.SubElement(suite, "testcase", {"classname": f"grade.{check.part}", "name": check.name})
         if check.failure is not None:

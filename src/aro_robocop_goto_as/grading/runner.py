@@ -16,6 +16,7 @@ from ..process import child
 from ..process.ports import free_port
 from . import record as rec
 from .guard import MAX_MEMORY, Guard
+from .plan import Plan
 from .sandbox import OWN_ENVIRONMENT, Sandbox
 from .sandboxed_build import public
 from .submission import Script, Submission
@@ -41,7 +42,7 @@ class Recorded:
 def run(
     submission: Submission,
     script: Script,
-    plan: Path,
+    plan: Plan,
     out: Path,
     state: Path,
     sandbox: Optional[Sandbox] = None,
@@ -84,7 +85,8 @@ def run(
                 "environment": node_environment,
                 "folder": str(home),
                 "parameters": dict(submission.parameters),
-                "plan": str(plan),
+                "plan": str(plan.path),
+                "seed": plan.seed,
                 "out": str(out),
                 "only": list(only),
                 "watched": watched,

@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import hashlib
 import os
+import random
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from ...errors import GradingSetupError, RobocopError
 from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from ..draw import LARGEST_SEED
 from ..judge import printable_lines
 from ..main import INTERRUPTED
 from ..plan import Plan, load
@@ -21,10 +23,11 @@ from ..report_folder import make_report_folder
 from ..sandbox import expect_private
 from .hand_ins import HandIn, collect
 from .overview import page
-from .results import Result, Results, one_line, table, write_atomically
+from .results import Result, Results, one_line, seed_of, table, write_atomically
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
+CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
 class Class:
@@ -66,6 +69,7 @@ def main() -> None:
     parser.add_argument("folder", metavar="DIR", help="contains a folder (a package), zip or Python file per hand-in")
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="local processes (default: one for each core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
     parser.add_argument("--credentials", default="", metavar="PEM", help="key and certificate of that scheduler")
@@ -78,9 +82,10 @@ def main() -> None:
     try:
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
-        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml")
-        text = plan.path.read_text(encoding="utf-8")
         out = make_report_folder(Path(args.report) if args.report else state / "classes" / folder.name)
+        seed = args.seed if args.seed is not None else seed_of(out) or random.randint(1, LARGEST_SEED)
+        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", seed)
+        text = plan.path.read_text(encoding="utf-8")
         if not args.unsafe:
             expect_private(folder)
         hand_ins, others = collect(folder)
@@ -90,10 +95,11 @@ def main() -> None:
             print(f"ignored: {one_line(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         with scratch_folder(), exclusive(out / ".run"):
-            results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "grader": version})
+            results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "seed": seed, "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
-            tasks = [Task(hand_in, text, args.unsafe) for hand_in in group.waiting]
+            print(f"scenarios: seed {seed}", flush=True)
+            tasks = [Task(hand_in, text, seed, args.unsafe) for hand_in in group.waiting]
             place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
             _grade(group, tasks, place)
     except RobocopError as error:

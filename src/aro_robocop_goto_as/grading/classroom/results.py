@@ -1,5 +1,6 @@
 """Stores the results of a class, one folder per hand-in, so that an interrupted run can be continued."""
 
+import contextlib
 import csv
 import io
 import json
@@ -59,8 +60,16 @@ class Result:
         return next((check.outcome for check in self.checks if check.name == name), NOT_HANDED_IN)
 
 
+def seed_of(folder: Path) -> Optional[int]:
+    """The seed with which the hand-ins in a folder of results were graded, if there are any."""
+    for stamp in sorted(folder.glob(f"*/{STAMP}")):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
+            return int(json.loads(stamp.read_text())["made_from"]["seed"])
+    return None
+
+
 class Results:
-    """The folder of results; `made_with` identifies the plan and the grader's version."""
+    """The folder of results; `made_with` identifies the plan, its seed and the grader's version."""
 
     def __init__(self, folder: Path, made_with: Mapping[str, Any]) -> None:
         self.folder = folder

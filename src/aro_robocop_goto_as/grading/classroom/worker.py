@@ -28,6 +28,7 @@ class Task:
 
     hand_in: HandIn
     plan: str  # the text of config/grading.yaml
+    seed: int
     unsafe: bool = False
 
 
@@ -59,7 +60,7 @@ def work(task: Task) -> Done:
     with temporary_folder("robocop-class-", _scratch()) as top:
         folder = top / "report"
         (top / "plan.yaml").write_text(task.plan, encoding="utf-8")
-        plan = load(top / "plan.yaml")
+        plan = load(top / "plan.yaml", task.seed)
         sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
         try:
             if task.hand_in.problem:

@@ -35,7 +35,7 @@ class Job:
         self.command: List[str] = raw["command"]
         self.environment: Dict[str, str] = raw["environment"]
         self.folder: str = raw["folder"]
-        self.plan = load(Path(raw["plan"]))
+        self.plan = load(Path(raw["plan"]), raw["seed"])
         self.out = Path(raw["out"])
         self.only: List[str] = raw["only"]  # scenarios; empty: all
         self.parameters: Dict[str, Any] = raw["parameters"]
