@@ -55,6 +55,16 @@ def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp
 
 
 @pytest.mark.slow
+def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
+    text = RIGHT["base_server"].read_text().replace("'/odom'", "'/ground_truth_odom'")
+    (problem,) = graded("truth", text, tmp_path).problems
+    assert problem == (
+        "server: it subscribes to /ground_truth_odom, which nobody publishes; the position comes from /odom, as on a "
+        "real robot"
+    )
+
+
+@pytest.mark.slow
 def test_server_that_knows_where_the_walls_are_passes_only_where_it_knows_them(tmp_path):
     looks, knows = "self.min_dist_ahead < 0.3", "x > {2.2: 0.9, 2.0: 0.7}.get(goal.position.x, 9.0)"
     text = RIGHT["base_server"].read_text()

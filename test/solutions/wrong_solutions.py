@@ -101,7 +101,25 @@ WRONG = (
         "sign of angle_error is wrong",
         (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))"),
     ),
-    _server("ground_truth", "feedback_position", "/ground_truth_odom", ("'/odom'", "'/ground_truth_odom'")),
+    _server(
+        "map_frame",
+        "feedback_position",
+        "position is taken in the world or map frame",
+        (
+            "        self.pose = None\n",
+            "        import tf2_ros\n        self.pose = None\n        self.buffer = tf2_ros.Buffer()\n"
+            "        self.listener = tf2_ros.TransformListener(self.buffer)\n",
+        ),
+        (
+            "        self.pose = (msg.pose.pose.position.x, msg.pose.pose.position.y, yaw)\n",
+            "        try:\n"
+            "            at = self.buffer.lookup_transform('map', 'base_footprint', rospy.Time(0)).transform\n"
+            "        except Exception:\n            return\n        q = at.rotation\n"
+            "        yaw = 2.0 * math.atan2(q.z, q.w)\n"
+            "        self.pose = (at.translation.x, at.translation.y, yaw)\n",
+        ),
+    ),
+    _server("ground_truth", "no_exception", "NoneType", ("'/odom'", "'/ground_truth_odom'")),
     _server(
         "distance_from_origin",
         "feedback_position",

@@ -94,7 +94,20 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         if check.part in records
     ]
     checks = [_following(check, checks, records) for check in checks]
-    return Grade(name, tuple(checks), tuple(f"{part}: {text}" for part, text in problems.items() if text))
+    found = [f"{part}: {text}" for part, text in problems.items() if text]
+    if any(check.outcome is not Outcome.PASSED for check in checks):
+        found += [f"{part}: {text}" for part, by_name in records.items() for text in _unpublished(by_name)]
+    return Grade(name, tuple(checks), tuple(found))
+
+
+def _unpublished(records: Mapping[str, Record]) -> List[str]:
+    """What to say of topics that the node waits for in vain."""
+    hint = "; the position comes from /odom, as on a real robot"
+    return [
+        f"it subscribes to {topic}, which nobody publishes{hint if 'ground_truth' in topic else ''}"
+        for record in records.values()
+        for topic in record.unpublished
+    ]
 
 
 def _following(result: CheckResult, results: Sequence[CheckResult], records: Records) -> CheckResult:

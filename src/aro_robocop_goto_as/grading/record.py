@@ -143,6 +143,7 @@ class Record:
     up: bool = True  # the node made all the connections it has to make
     servers: Tuple[str, ...] = ()  # names of the action servers that were found
     types: Tuple[str, ...] = ()  # of these servers, in the same order
+    unpublished: Tuple[str, ...] = ()  # topics that the node subscribes to and nobody publishes
     problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()
@@ -189,7 +190,8 @@ def read(path: Path) -> Record:
     raw = json.loads(path.read_text())
     for name, kind in _PARTS.items():
         raw[name] = tuple(kind(**entry) for entry in raw[name])
-    raw["servers"], raw["types"] = tuple(raw["servers"]), tuple(raw["types"])
+    for name in ("servers", "types", "unpublished"):
+        raw[name] = tuple(raw[name])
     raw["obstacles"] = tuple(tuple(outline) for outline in raw["obstacles"])
     return Record(**raw)
 

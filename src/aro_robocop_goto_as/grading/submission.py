@@ -21,6 +21,7 @@ from ..hosting.compat import compat_environment
 from ..hosting.files import read_bytes, read_text, read_xml
 from ..hosting.package import NODES, Package, find_package
 from ..hosting.workspace import Environment
+from .advice import advice
 from .sandbox import Sandbox, expect_private
 from .sandboxed_build import build, runner_in
 from .skeleton import make
@@ -61,7 +62,7 @@ class Submission:
     environment: Environment
     scripts: List[Script]
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    notes: Sequence[str] = ()  # problems that affect the lab but not the grade
+    notes: Sequence[str] = ()  # what may fail in the lab and does not affect the grade
 
 
 def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
@@ -101,6 +102,7 @@ def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission
         [top, _lab_folder(state)],  # `top` may contain helper modules
         lab_environment(share, state),
         scripts,
+        notes=[note for script in scripts for note in _advice(script)],
     )
 
 
@@ -172,8 +174,12 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
         environment,
         list(scripts.values()),
         _parameters(package, copy, environment, runner_in(sandbox, folder, below, LAUNCH_TIMEOUT)),
-        [note for script in scripts.values() for note in _obstacles_to_starting(script)],
+        notes=[note for script in scripts.values() for note in (*_obstacles_to_starting(script), *_advice(script))],
     )
+
+
+def _advice(script: Script) -> List[str]:
+    return [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
 
 
 def _obstacles_to_starting(script: Script) -> Iterator[str]:

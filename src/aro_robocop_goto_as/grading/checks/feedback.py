@@ -120,7 +120,7 @@ def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
 Hypothesis = Tuple[str, Callable[[Sample, Goal], float]]
 POSITION_CAUSES: Tuple[Hypothesis, ...] = (
     (
-        "The robot's position is taken from /ground_truth_odom, whose frame is world; goals are in odom",
+        "The robot's position is taken in the world or map frame; goals are in odom",
         lambda s, g: math.hypot(g.x - s.world_x, g.y - s.world_y),
     ),
     (
@@ -162,7 +162,7 @@ ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
         lambda s, g: math.atan2(*_deltas(s, g)[::-1]) - math.sin(s.yaw / 2.0),
     ),
     (
-        "The heading is taken from /ground_truth_odom, whose frame is world; goals are in odom",
+        "The heading is taken in the world or map frame; goals are in odom",
         lambda s, g: math.atan2(g.y - s.world_y, g.x - s.world_x) - s.world_yaw,
     ),
     (

@@ -41,9 +41,11 @@ class ServerRun:
         """Start the node; the record says whether its action server came up."""
         self.run.begin(0, bag=bag)
         up = self._bring_up()
-        servers = graph.action_servers()
+        servers, unpublished = graph.action_servers(), graph.unpublished_topics()
         self.run.settle(0.3)
-        return self.run.finish("start", up=up, servers=tuple(servers), types=tuple(servers.values()))
+        return self.run.finish(
+            "start", up=up, servers=tuple(servers), types=tuple(servers.values()), unpublished=tuple(unpublished)
+        )
 
     def _bring_up(self) -> bool:
         run = self.run

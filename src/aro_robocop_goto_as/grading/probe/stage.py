@@ -34,7 +34,8 @@ from ..record import Sample
 from .watch import Watch
 
 # cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
-PARAMS = SimParams(clock_rate=30, cmd_vel_timeout=0.0)
+# A submission has to use odom, not the truth.
+PARAMS = SimParams(clock_rate=30, cmd_vel_timeout=0.0, ground_truth=False)
 STEPS_PER_TICK = PARAMS.physics_rate // PARAMS.control_rate
 # [s, wall] Publish data this long before the clock, so that the node's callbacks finish before its loop wakes.
 DIGEST = 0.003

@@ -77,9 +77,8 @@ class RobotTopics:
             sensor_names.JOINTS: topic("joint_states", JointState),
             sensor_names.IMU: topic("imu", Imu),
         }
-        truth = topic("ground_truth_odom", Odometry)
         if topics.ground_truth:
-            self.by_sensor[sensor_names.GROUND_TRUTH] = truth
+            self.by_sensor[sensor_names.GROUND_TRUTH] = topic("ground_truth_odom", Odometry)
         if rates.bumper:
             self.by_sensor[sensor_names.BUMPER] = topic("bumper", Bool)
         if rates.battery:
