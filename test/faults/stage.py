@@ -40,13 +40,18 @@ class SimulatedStage:
             client.wait_for_simulator()
             client.wait_for_server()
         self.wait_for(lambda: all(client.odom for client in self.clients), "odometry")
-        self.homes = {client: (at.x, at.y) for client in self.clients for at in [self.truth_of(client)]}
+        # Not again after the simulator was restarted: the newest position may be from before.
+        self.homes = self.homes or {client: (at.x, at.y) for client in self.clients for at in [self.truth_of(client)]}
 
     def begin_episode(self):
         """Put the robots back where they started, if one of them is far from there."""
         if any(self._distance_from_home(client) > STRAY for client in self.clients):
             self.reset()
-            self.wait_for(lambda: all(map(self._is_home, self.clients)), "all robots at their spawn poses")
+            self.wait_for(lambda: all(map(self._is_home, self.clients)), self._away_from_home)
+
+    def _away_from_home(self):
+        at = {client.namespace: (self.truth_of(client), client.odom.pose.pose.position) for client in self.clients}
+        return f"all robots at their spawn poses {list(self.homes.values())}; they are at (in world, odom) {at}"
 
     def _is_home(self, client):
         odom = client.odom.pose.pose.position

@@ -15,6 +15,8 @@ from ...params import GotoParams
 from ...simulation.clock import NANOSECONDS
 from .inputs import Inputs
 
+LONGEST_GAP = 2.0  # control periods between two steps; what is longer is time in which the server could not drive
+
 
 @dataclass(frozen=True)
 class Ending:
@@ -47,6 +49,8 @@ class GoalExecution:
         self.p = p
         self.inputs = inputs
         self.started: Optional[float] = None
+        self.last: Optional[float] = None  # time of the previous step
+        self.stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
         self.progress: Optional[Progress] = None
         self.twist = STANDSTILL
 
@@ -63,7 +67,10 @@ class GoalExecution:
         """Run one control period, at time `tick_ns`."""
         now = tick_ns / NANOSECONDS
         if self.started is None or now < self.started:  # first period, or the clock was set back
-            self.started, self.progress = now, None
+            self.started, self.progress, self.last = now, None, None
+        gap = 0.0 if self.last is None else now - self.last
+        self.stalled += max(0.0, gap - LONGEST_GAP / self.p.control_rate)
+        self.last = now
         missing = self.inputs.missing(now, self.started)
         if missing is not None:
             return Step(ending=Ending(*missing))
@@ -73,7 +80,7 @@ class GoalExecution:
         pose, clearance = inputs
         decision = goto.decide(pose, clearance, self.goal, self.p)
         self.progress = goto.track_progress(
-            self.progress, decision.errors, now, self.p.stuck_distance, self.p.stuck_angle
+            self.progress, decision.errors, now - self.stalled, self.p.stuck_distance, self.p.stuck_angle
         )
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / self.p.control_rate, self.p)
         feedback = GoToPositionFeedback(decision.errors.position, decision.errors.angle, describe(decision))
@@ -90,8 +97,9 @@ class GoalExecution:
         if isinstance(decision, End):
             limit = f"limit {self.p.obstacle_distance:g} m"
             return Ending(decision.outcome, f"something is {clearance:.3f} m ahead, {limit}; {where}")
-        if now - progress.since > self.p.stuck_timeout:
-            return Ending(Outcome.STUCK, f"no progress for {now - progress.since:.1f} s; {where}")
+        idle = now - self.stalled - progress.since
+        if idle > self.p.stuck_timeout:
+            return Ending(Outcome.STUCK, f"no progress for {idle:.1f} s; {where}")
         if 0.0 < self.p.goal_timeout < elapsed:
             return Ending(Outcome.TIMEOUT, f"limit {self.p.goal_timeout:g} s; {where}")
         return None
