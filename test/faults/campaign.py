@@ -26,6 +26,8 @@ from faults import FAULTS
 from stage import MessageStage, SimulatedStage
 from system import CLIENT, System, Violation
 
+from aro_robocop_goto_as.process.signals import interrupt_on_signal
+
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 10}
 BULLET = {"drive": "wheels", "physics_rate": 240}
 COARSE = {"clock_rate": 10, "odom_rate": 10, "joint_state_rate": 10, "ground_truth_rate": 10, "bumper_rate": 0}
@@ -220,6 +222,7 @@ def main():
     parser.add_argument("--verbose", action="store_true", help="print each episode with its duration")
     parser.add_argument("--folder", type=Path, required=True, help="for logs")
     options = parser.parse_args()
+    interrupt_on_signal()  # so that no process of the system is left over
     started = time.monotonic()
     system = System(options.folder, options.mistake)
     try:
