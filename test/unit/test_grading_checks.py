@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, List, Tuple
+from typing import Any, List, Tuple, cast
 
 import pytest
 from support import ROOT
@@ -15,6 +15,7 @@ from aro_robocop_goto_as.grading.judge import Outcome, judge
 from aro_robocop_goto_as.grading.limits import Limits
 from aro_robocop_goto_as.grading.plan import Plan, load, world_of
 from aro_robocop_goto_as.grading.record import Record
+from aro_robocop_goto_as.grading.report import as_gradescope
 
 PLAN = Path(ROOT, "config", "grading.yaml")
 LIMITS = Limits()
@@ -294,3 +295,21 @@ def test_only_submitted_parts_are_graded() -> None:
 def test_check_that_was_not_reached_states_the_reason() -> None:
     verdict = CHECKS["cancel"](RIGHT, LIMITS)
     assert verdict == NotReached("the goal ended before it could be cancelled")
+
+
+def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
+    plan = load(PLAN)
+    grade = _grade(plan, start=replace(RIGHT, name="start"), left=replace(RIGHT, name="left"))
+    report = as_gradescope(grade, plan)
+    tests = cast("list[dict[str, Any]]", report["tests"])
+    assert report["score"] == pytest.approx(sum(test["score"] for test in tests))
+    assert len(tests) == len(grade.checks)
+    assert {test["status"] for test in tests if test["score"]} == {"passed"}
+    assert sum(test["max_score"] for test in tests) == pytest.approx(grade.points_available)
+
+
+def test_topic_that_nobody_publishes_is_named_if_something_failed() -> None:
+    waits = replace(RIGHT, name="start", unpublished=("/ground_truth_odom", "/scn"))
+    problems = _grade(load(PLAN), start=waits).problems
+    assert any("subscribes to /scn, which nobody publishes" in problem for problem in problems)
+    assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in problems)

@@ -1,4 +1,4 @@
-"""Writes a grade with its records as report.json, junit.xml and report.html."""
+"""Writes a grade with its records as report.json, junit.xml, results.json for Gradescope, and report.html."""
 
 import dataclasses
 import json
@@ -18,9 +18,10 @@ MOST_LINES = 60  # of a node's output in the report
 
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
-    """Write all three files to an existing folder."""
+    """Write all files to an existing folder."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
+    (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records)))
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
@@ -35,6 +36,23 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
         "problems": list(grade.problems),
         "checks": [_check_as_json(check) for check in grade.checks],
     }
+
+
+def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
+    """The grade as Gradescope's autograders report it: gradescope-autograders.readthedocs.io, "Autograder output"."""
+    tests = [
+        {
+            "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
+            "number": f"{check.part}.{check.name}",
+            "score": check.points,
+            "max_score": 0.0 if check.extra else check.points_available,
+            "status": "passed" if check.outcome is Outcome.PASSED else "failed",
+            "output": printable_lines(check.explanation()),
+        }
+        for check in grade.checks
+    ]
+    output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
+    return {"score": grade.points, "output": "\n".join(output), "tests": tests}
 
 
 def _check_as_json(check: CheckResult) -> Dict[str, object]:
