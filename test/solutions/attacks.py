@@ -133,13 +133,66 @@ import time
 time.sleep(30.0)
 """
 MEMFD = """
-import os, time
-descriptors = []
-for _ in range(60):
-    descriptors.append(os.memfd_create('hidden'))
+import array, os, socket
+near, far = socket.socketpair()
+try:
     for _ in range(60):
-        os.write(descriptors[-1], bytes(2 ** 20))
-time.sleep(60.0)
+        file = os.memfd_create('hidden')
+        for _ in range(60):
+            os.write(file, bytes(2 ** 20))
+        near.sendmsg([b'x'], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array('i', [file]))])
+        os.close(file)
+    print('SUCCESS memfds in a socket')
+except OSError as error:
+    print('refused', error)
+"""
+SYSTEM_V = """
+import ctypes, os
+libc = ctypes.CDLL(None, use_errno=True)
+libc.shmat.restype = ctypes.c_void_p
+for _ in range(60):
+    segment = libc.shmget(0, 60 * 2 ** 20, 0o1600)
+    if segment < 0:
+        print('refused', os.strerror(ctypes.get_errno()))
+        break
+    address = libc.shmat(segment, None, 0)
+    ctypes.memset(address, 1, 60 * 2 ** 20)
+    libc.shmdt(ctypes.c_void_p(address))
+else:
+    print('SUCCESS System V shared memory')
+"""
+NAMESPACE = """
+import ctypes, os, subprocess
+libc = ctypes.CDLL(None, use_errno=True)
+NEW_USER, NEW_NS = 0x10000000, 0x20000
+if libc.unshare(NEW_USER | NEW_NS) == 0:
+    print('SUCCESS unshare')
+else:
+    print('refused', os.strerror(ctypes.get_errno()))
+child = libc.syscall(56, NEW_USER | NEW_NS | 17, 0, 0, 0, 0)  # clone on x86-64, with SIGCHLD
+if child == 0:
+    os._exit(0)
+print('refused' if child < 0 else 'SUCCESS clone', os.strerror(ctypes.get_errno()))
+done = subprocess.run(['unshare', '--user', '--map-root-user', '--mount', 'mount', '-t', 'tmpfs', 'none', '/tmp'])
+print('SUCCESS tmpfs' if done.returncode == 0 else 'refused', done.returncode)
+"""
+PARKED = """
+import socket
+pairs, parked = [], 0
+try:
+    while True:
+        pairs.append(socket.socketpair())
+        pairs[-1][0].setblocking(False)
+        try:
+            while True:
+                parked += pairs[-1][0].send(bytes(2 ** 16))
+        except BlockingIOError:
+            pass
+        if parked > 2 ** 28:
+            print('SUCCESS', parked, 'bytes in sockets')
+            break
+except OSError as error:
+    print('refused', parked, error)
 """
 FLOOD = """
 import threading

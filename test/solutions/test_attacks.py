@@ -56,7 +56,14 @@ def test_killing_the_ros_master_ends_the_run_with_a_reason(tmp_path):
     assert "was ended while the submission ran" in run.problem or "was shut down while" in run.problem
 
 
-@pytest.mark.parametrize("name", ["MEMORY", "MEMFD"])
+@pytest.mark.parametrize("name, times", [("SYSTEM_V", 1), ("NAMESPACE", 3), ("MEMFD", 1), ("PARKED", 1)])
+def test_memory_that_no_process_has_cannot_be_taken(name, times, tmp_path):
+    run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
+    assert sum("refused" in line for line in lines) >= times, lines
+    assert run.problem == ""
+
+
+@pytest.mark.parametrize("name", ["MEMORY"])
 def test_processes_that_together_exceed_the_memory_limit_are_killed_with_a_reason(name, tmp_path):
     run, _ = attacked(getattr(attacks, name), tmp_path / "mine")
     reasons = {death.reason for record in run.records.values() for death in record.deaths}

@@ -7,9 +7,11 @@ limits set here are the kernel's, per process or user; guard.py limits the memor
 runner.py the wall time.
 """
 
+import importlib.util
 import os
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
@@ -17,6 +19,7 @@ from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 from ..errors import GradingError
 
 ADDRESS_SPACE = 4 * 1024**3  # bytes of each process; numpy alone reserves more than one GB
+FILES = 256  # open ones of each process: what waits in its pipes and sockets is nobody's memory
 PROCESSES = 200  # including threads; a rospy node has some 30
 FILE_SIZE = 64 * 1024**2  # bytes of a file
 SPACE = 64 * 1024**2  # bytes of each writable place, all in memory
@@ -95,7 +98,8 @@ class Sandbox:
         ]
 
     def _isolation(self, visible: Sequence[Path]) -> List[str]:
-        wrap = ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
+        wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
+        wrap += ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
         if os.geteuid() == 0:
             wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
         wrap += ["--proc", "/proc", "--dev", "/dev"]
@@ -149,6 +153,7 @@ def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
         "prlimit",
         f"--as={ADDRESS_SPACE}",
         f"--nproc={PROCESSES}",
+        f"--nofile={FILES}",
         f"--fsize={FILE_SIZE}",
         f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}",
         "--core=0",
@@ -180,6 +185,8 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = CPU_T
     advice = "--unsafe runs the submission without it, with all your rights"
     if shutil.which("bwrap") is None:
         raise GradingError(f"bubblewrap is not installed; {advice}")
+    if importlib.util.find_spec("seccomp") is None:
+        raise GradingError(f"python3-seccomp is not installed; {advice}")
     empty = Sandbox(())
     trial = empty.probe_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
     done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)

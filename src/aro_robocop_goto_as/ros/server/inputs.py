@@ -17,7 +17,8 @@ from ...params import GotoParams
 from .. import convert
 from ..ticker import wait_until
 
-FIRST_DATA = 1.0  # [s, wall] that the server waits for its first odometry and scan before it takes goals
+CONNECTION_TIME = 10.0  # [s, wall] for the connections to nodes that publish already; a busy simulator takes a second
+FIRST_DATA = 0.5  # [s, wall] from then to the first odometry and scan
 LATE_DATA = 0.2  # [s, wall] that a message may arrive after the clock tick it was published before
 LOCKSTEP_PATIENCE = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
 
@@ -58,8 +59,10 @@ class Inputs:
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
         self._arrived = threading.Condition()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
-        rospy.Subscriber("odom", Odometry, self._on_odom)
-        rospy.Subscriber("scan", LaserScan, self._on_scan)
+        self._topics = (
+            rospy.Subscriber("odom", Odometry, self._on_odom),
+            rospy.Subscriber("scan", LaserScan, self._on_scan),
+        )
 
     def _on_odom(self, message: Odometry) -> None:
         with self._arrived:
@@ -76,13 +79,17 @@ class Inputs:
             self._arrived.notify_all()
 
     def await_first(self) -> None:
-        """Wait for the first odometry and scan, or for FIRST_DATA if a topic is silent.
+        """Wait for the first odometry and scan, as far as somebody publishes them.
 
-        At full speed the sensor timeout may pass in the milliseconds that a subscription takes: a goal sent as soon as
-        the server was there would end with NO_ODOM although the simulator publishes odometry.
+        At full speed the sensor timeout passes in the time that a subscription takes: a goal sent as soon as the server
+        was there would end with NO_ODOM although the simulator publishes odometry.
         """
-        with self._arrived:
-            self._arrived.wait_for(lambda: self.odom is not None and self.scan is not None, FIRST_DATA)
+        published = {name for name, _ in rospy.get_published_topics()}
+        expected = [topic for topic in self._topics if topic.resolved_name in published]
+        wait_until(lambda: all(topic.get_num_connections() > 0 for topic in expected), CONNECTION_TIME)
+        if expected:
+            with self._arrived:
+                self._arrived.wait_for(lambda: self.odom is not None and self.scan is not None, FIRST_DATA)
 
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
