@@ -1,4 +1,4 @@
-"""The parameters of the action server. Imports nothing that is not in Python, because cfg/Goto.cfg reads it at build time."""
+"""The parameters of the action server. cfg/Goto.cfg reads them at build time, so nothing but Python is needed here."""
 
 import math
 from dataclasses import asdict, dataclass, fields

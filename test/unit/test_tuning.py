@@ -5,8 +5,8 @@ from dataclasses import fields
 from typing import Any, Dict
 
 import pytest
-
 from aro_robocop_goto_as.cfg import GotoConfig
+
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.goto import Goal, decide
