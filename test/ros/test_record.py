@@ -79,3 +79,9 @@ def test_recording_never_overwrites_a_bag(robocop):
     (robocop.folder / "run.bag").write_text("precious")
     assert robocop.start("record", "run").wait(60.0) == 1
     assert (robocop.folder / "run.bag").read_text() == "precious"
+
+
+def test_recording_without_a_running_system_is_refused_with_what_to_do(robocop, capfd):
+    assert robocop.start("record", "run").wait(60.0) == 1
+    assert "no ROS system is running; start ./robocop run" in capfd.readouterr().err
+    assert list(robocop.folder.iterdir()) == []
