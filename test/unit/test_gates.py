@@ -14,11 +14,14 @@ from imports import PACKAGE, Imports, within
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / PACKAGE
 IMPORTS = Imports(SOURCE)
-PYTHON = ("src", "scripts", "test", "setup.py")
+PYTHON = ("src", "scripts", "test", "docs", "setup.py")
 # Correct words, and deliberate misspellings in tests.
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,sise"
-PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml", "robocop")
-SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "docs", "launch", "msg", "skeleton", "srv", "worlds")
+PROSE = (
+    *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
+    *("mkdocs.yml", "robocop"),
+)
+SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
 MAY_IMPORT_ROS = ("ros", "bench", "grading.probe")
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.

@@ -15,7 +15,7 @@ from aro_robocop_goto_as.process.ports import free_port
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
     *("run", "goto", "test", "bench", "shell"),
-    *("completion", "doctor", "version", "setup", "clean", "help"),
+    *("completion", "docs", "doctor", "version", "setup", "clean", "help"),
 )
 LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")

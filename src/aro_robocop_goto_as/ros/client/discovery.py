@@ -46,4 +46,5 @@ def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float)
     started = time.monotonic()
     if wait_until(lambda: is_up(client), timeout):
         return ""
-    return f"no answer from {action} for {time.monotonic() - started:.0f} s{_hint(action) or '; ' + advice()}"
+    hint = _hint(action) or "; the terminal in which the system was started shows why its server ended, if it did"
+    return f"no answer from {action} for {time.monotonic() - started:.0f} s{hint}"
