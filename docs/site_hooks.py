@@ -7,7 +7,7 @@ its content, under source/. Each part of the core has a page with its API, from 
 import posixpath
 import re
 from pathlib import Path
-from typing import Dict, Iterable, Iterator, List, Set
+from typing import Dict, Iterable, Iterator, Set
 
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
@@ -30,7 +30,7 @@ NOT_FOR_READERS = ("__pycache__", "__init__.py")
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Append the API's pages to the navigation."""
     assert isinstance(config.nav, list)
-    config.nav.append({"API of the core": ["api/index.md", *(f"api/{part}.md" for part in CORE)]})
+    config.nav.append({"API of the core": ["api/index.md", *({part: f"api/{part}.md"} for part in CORE)]})
     config.watch.append(str(PACKAGE))
     return config
 
@@ -109,10 +109,8 @@ def _markdown_of(text: str) -> str:
 def _api_pages() -> Dict[str, str]:
     pages = {"api/index.md": "# API of the core\n\n::: aro_robocop_goto_as\n    options: {members: []}\n"}
     for part in CORE:
-        folder = PACKAGE / part
-        modules: List[Path] = [PACKAGE / f"{part}.py"]
-        if folder.is_dir():
-            modules = sorted(path for path in folder.rglob("*.py") if path.name != "__init__.py")
+        module = f"::: {PACKAGE.name}.{part}\n    options: {{heading_level: 1}}\n"
+        modules = sorted(path for path in (PACKAGE / part).rglob("*.py") if path.name != "__init__.py")
         names = [".".join(path.relative_to(ROOT / "src").with_suffix("").parts) for path in modules]
-        pages[f"api/{part}.md"] = "\n".join([f"# {part}\n", *(f"::: {name}\n" for name in names)])
+        pages[f"api/{part}.md"] = "\n".join([module, *(f"::: {name}\n" for name in names)])
     return pages
