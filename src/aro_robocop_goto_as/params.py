@@ -1,6 +1,5 @@
 """The parameters of each node: frozen dataclasses that hold every default, and that param_loading fills."""
 
-import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, Dict, List, Optional
 
@@ -17,6 +16,7 @@ from .component_params import (
     TopicParams,
     WorldParams,
 )
+from .goto_params import GotoParams as GotoParams
 from .param_loading import frame_problems, parameter, positive
 from .sensors.camera import CameraSpec
 from .sensors.camera_profiles import PROFILES as CAMERA_PROFILES
@@ -261,41 +261,6 @@ class SimParams:
             )
             if high <= low
         ]
-
-
-@dataclass(frozen=True)
-class GotoParams:
-    """Parameters of robocop_goto_as; config/goto_as.yaml documents each one."""
-
-    control_rate: float = positive(10.0, high=1000.0)
-    position_tolerance: float = positive(0.1)
-    angle_tolerance: float = parameter(0.1, low=1e-3, high=math.pi)
-    obstacle_distance: float = parameter(0.3, low=0.0)
-    obstacle_half_angle: float = parameter(math.pi / 6.0, low=0.0, high=math.pi)
-
-    linear_gain: float = positive(0.5)
-    angular_gain: float = positive(5.0)
-    max_linear_velocity: float = positive(0.2)
-    min_linear_velocity: float = positive(0.03)
-    max_angular_velocity: float = positive(1.0)
-    min_angular_velocity: float = positive(0.3)
-    linear_acceleration: float = positive(0.5)
-    angular_acceleration: float = positive(3.0)
-
-    data_timeout: float = positive(1.0)
-    stuck_timeout: float = positive(5.0)
-    stuck_distance: float = positive(0.01)
-    stuck_angle: float = positive(0.05)
-    goal_timeout: float = parameter(0.0, low=0.0)
-
-    def conflicts(self) -> List[str]:
-        """Combinations of values that are impossible, in words; empty when there are none."""
-        problems = []
-        for kind in ("linear", "angular"):
-            low, high = getattr(self, f"min_{kind}_velocity"), getattr(self, f"max_{kind}_velocity")
-            if low > high:
-                problems.append(f"min_{kind}_velocity: expected at most max_{kind}_velocity {high:g}, got {low:g}")
-        return problems
 
 
 @dataclass(frozen=True)

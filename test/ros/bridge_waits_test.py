@@ -13,6 +13,7 @@ from clicks import Clicks
 from geometry_msgs.msg import Point, Transform, TransformStamped
 from harness import ACTION, BRIDGE, Recorder, run, wait_for, wait_for_subscriber
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Header
 
 MISSPELT = "robovop_goto_as"
@@ -35,11 +36,12 @@ class Server:
 
 class BridgeWaits(unittest.TestCase):
     def test_missing_server_is_reported_with_a_misspelt_one_and_gets_the_newest_goal_when_it_starts(self):
-        clicks = Clicks()
+        clicks, log = Clicks(), Recorder("/rosout", Log)
         clicks.wait_for_status(f"waiting for {ACTION}")
         self.assertEqual({m.data for m in clicks.status.messages}, {f"waiting for {ACTION}"})
         advice = clicks.wait_for_status("to start it again")
         self.assertTrue(advice.endswith(": ./robocop shell rosrun aro_robocop_goto_as robocop_goto_as.py"), advice)
+        log.wait_for(lambda m: m.name == BRIDGE and m.level == Log.WARN and m.msg == advice, "the advice as a warning")
 
         misspelt = Server(MISSPELT)
         status = clicks.wait_for_status(MISSPELT)

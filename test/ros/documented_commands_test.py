@@ -14,7 +14,7 @@ EXCEPTIONS = {
     "rosrun actionlib_tools axclient.py": "needs a display: test/gui/test_axclient.py",
     "3. A server": "serves until it is interrupted",
 }
-ONCE = ("rosmsg", "rosservice", "rostopic pub")
+ONCE = ("rosmsg", "rosrun dynamic_reconfigure", "rosservice", "rostopic list", "rostopic pub")
 ENDLESS = ("rostopic echo",)
 PROGRAMS = ("rosmsg", "rosservice", "rostopic", "rosrun")
 

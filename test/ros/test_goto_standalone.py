@@ -75,6 +75,12 @@ def test_goal_is_reached_in_a_system_started_for_it(goto):
     assert "SUCCEEDED: REACHED: " in command.output.read_text()
 
 
+def test_a_robots_name_is_refused_where_no_system_runs(goto):
+    command = goto("0.5", "0.2", "--robot", "red")
+    assert command.wait_for_exit() == 1
+    assert "--robot red: no ROS master answers" in command.output.read_text()
+
+
 ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
 
 

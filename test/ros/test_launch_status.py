@@ -127,6 +127,7 @@ def test_quiet_launch_shows_why_the_simulator_failed(launch):
     launched = launch("--quiet", "world:=no_such")
     assert launched.wait_for_exit() == 1
     assert "there is no world 'no_such'" in launched.output.read_text()
+    assert "Ctrl-C" not in launched.output.read_text()  # nothing about how to use what does not run
 
 
 @pytest.mark.parametrize(

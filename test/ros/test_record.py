@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,12 @@ from waiting import wait_for
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
+LISTENER = """
+import rospy
+from aro_robocop_goto_as.msg import GoToPositionActionResult
+rospy.init_node("listener")
+print(rospy.wait_for_message("/robocop_goto_as/result", GoToPositionActionResult).result.message)
+"""
 
 
 class Commands:
@@ -29,6 +36,16 @@ class Commands:
         process = subprocess.Popen([ROOT / "robocop", *command], cwd=self.folder, env=self.environment)
         self.running.append(process)
         return process
+
+    def run(self, *command):
+        """Another program on that master, with its output in a pipe."""
+        process = subprocess.Popen(command, env=self.environment, stdout=subprocess.PIPE, text=True)
+        self.running.append(process)
+        return process
+
+    def subscribes(self, topic, node):
+        """Whether a node subscribes to a topic."""
+        return node in dict(self.master.getSystemState()[1]).get(topic, [])
 
     def publishes(self, topic, node):
         """Whether a node publishes a topic."""
@@ -67,11 +84,12 @@ def test_a_recorded_goal_is_played_again(robocop):
         assert topics["/robocop_goto_as/result"].message_count == 1
 
     wait_for(lambda: not robocop.master.is_online(), "the end of the system")
+    robocop.run("rosmaster", "--core", "-p", robocop.uri.rpartition(":")[2])
+    wait_for(robocop.master.is_online, "a master")
+    listener = robocop.run(sys.executable, "-c", LISTENER)  # before the replay, or it could miss the result
+    wait_for(lambda: robocop.subscribes("/robocop_goto_as/result", "/listener"), "the listener")
     replay = robocop.start("replay", "run.bag", "rate:=5")
-    echo = ["rostopic", "echo", "-n", "1", "/robocop_goto_as/result"]
-    wait_for(lambda: robocop.publishes("/robocop_goto_as/result", "/replay"), "the replay")
-    done = subprocess.run(echo, env=robocop.environment, capture_output=True, text=True, timeout=120)
-    assert "REACHED" in done.stdout, done.stderr
+    assert "REACHED" in listener.communicate(timeout=120)[0]
     assert robocop.end(replay) == 0
 
 
@@ -79,3 +97,9 @@ def test_recording_never_overwrites_a_bag(robocop):
     (robocop.folder / "run.bag").write_text("precious")
     assert robocop.start("record", "run").wait(60.0) == 1
     assert (robocop.folder / "run.bag").read_text() == "precious"
+
+
+def test_recording_without_a_running_system_is_refused_with_what_to_do(robocop, capfd):
+    assert robocop.start("record", "run").wait(60.0) == 1
+    assert "no ROS system is running; start ./robocop run" in capfd.readouterr().err
+    assert list(robocop.folder.iterdir()) == []

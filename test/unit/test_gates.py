@@ -14,11 +14,14 @@ from imports import PACKAGE, Imports, within
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / PACKAGE
 IMPORTS = Imports(SOURCE)
-PYTHON = ("src", "scripts", "test", "setup.py")
+PYTHON = ("src", "scripts", "test", "docs", "setup.py")
 # Correct words, and deliberate misspellings in tests.
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,sise"
-PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml", "robocop")
-SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "docs", "launch", "msg", "skeleton", "srv", "worlds")
+PROSE = (
+    *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
+    *("mkdocs.yml", "robocop"),
+)
+SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
 MAY_IMPORT_ROS = ("ros", "bench", "grading.probe")
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
@@ -28,6 +31,7 @@ ORDER = {
     "component_params": "",
     "compiled": "errors",
     "param_loading": "errors",
+    "goto_params": "param_loading",
     "process": "errors",
     "bootstrap": "errors",
     "world": "errors geometry",
@@ -35,14 +39,14 @@ ORDER = {
     "raycast": "compiled errors geometry robot world",
     "physics": "errors geometry raycast robot world",
     "sensors": "component_params geometry physics raycast robot world",
-    "params": "component_params param_loading sensors",
+    "params": "component_params goto_params param_loading sensors",
     "goto": "geometry params robot",
     "web": "errors geometry world",
     "simulation": "component_params errors geometry params physics raycast robot sensors world",
     "hosting": "errors process",
     "ros": "compiled component_params errors geometry param_loading process robot sensors simulation world",
     "ros.sim": "component_params errors geometry params robot ros sensors simulation world",
-    "ros.server": "errors geometry goto params ros simulation",
+    "ros.server": "errors geometry goto goto_params params ros simulation",
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
     "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client",

@@ -15,7 +15,7 @@ from aro_robocop_goto_as.process.ports import free_port
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
     *("run", "goto", "test", "bench", "shell"),
-    *("completion", "doctor", "version", "setup", "clean", "help"),
+    *("completion", "docs", "doctor", "version", "setup", "clean", "help"),
 )
 LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
@@ -113,7 +113,7 @@ def test_web_starts_the_page_with_its_arguments():
 def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
     done = robocop("setup", "wbe")
     assert done.returncode == 1
-    assert "no part 'wbe'; there are: class grade " in done.stderr
+    assert "no part 'wbe'; there are: class docs grade " in done.stderr
 
 
 def test_unreachable_display_counts_as_none():
@@ -158,6 +158,13 @@ def test_paths_of_files_are_made_absolute_as_the_nodes_run_in_another_folder(com
     monkeypatch.chdir(tmp_path)
     assert f" world:={tmp_path}/my.sdf" in dry_run(command, "world:=my.sdf")[0]
     assert " world:=stage_1.5" in dry_run(command, "world:=stage_1.5")[0]
+
+
+@pytest.mark.parametrize("word", ["world=stage_1", "stage_1"])
+def test_a_word_that_is_no_launch_argument_is_refused_with_an_example(word):
+    done = robocop("run", word, ROBOCOP_DRY_RUN="1")
+    assert done.returncode == 1
+    assert f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'" in done.stderr
 
 
 @pytest.mark.parametrize("command", ["run", "sim"])

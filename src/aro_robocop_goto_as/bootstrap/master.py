@@ -92,9 +92,14 @@ def running_simulator(uri: str) -> Optional[str]:
 
 
 def main() -> None:
-    """Refuse a second simulator on the same master: nodes with the same name shut each other down."""
+    """Refuse a second simulator on the same master: nodes with the same name shut each other down.
+
+    With --answers: exit status 1 if no master answers.
+    """
     uri = master_uri()
     try:
+        if sys.argv[1:] == ["--answers"]:
+            sys.exit(0 if master_answers(uri) else 1)
         simulator = running_simulator(uri)
     except MasterError as error:
         print(error)

@@ -34,9 +34,10 @@ def main() -> None:
     folder = Path(parser.parse_args().name)
     try:
         make(Path(os.environ["ROBOCOP_SHARE"]), folder)
-    except (RobocopError, OSError) as error:
-        print(f"robocop new: {error}", file=sys.stderr)
-        sys.exit(1)
+    except RobocopError as error:
+        sys.exit(f"robocop new: {error}")
+    except OSError as error:
+        sys.exit(f"robocop new: {folder} can't be created: {error.strerror}")
     path = shlex.quote(str(folder))
     print(
         f"Created {folder}. Complete the TODOs in its scripts/ folder.\n"

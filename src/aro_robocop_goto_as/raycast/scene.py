@@ -38,7 +38,7 @@ class Scene:
     """Robots with a scanner each, and what each scanner sees."""
 
     def __init__(self, planes: Sequence[Plane], plane_of: Sequence[int], mounts: np.ndarray) -> None:
-        """Robot i's scanner is at mounts[i] [x m, y m, yaw rad] in the robot's frame and sees planes[plane_of[i]]."""
+        """Robot i's scanner is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`."""
         self.aro_cast = load().aro_cast
         self._plane_of = np.array(plane_of, dtype=np.int64)
         count = len(self._plane_of)

@@ -197,6 +197,11 @@ def _run(args: argparse.Namespace) -> int:
         if args.world:
             _complain("--world is ignored: a ROS system is already running")
         return _go_to(args, SERVER_PATIENCE)
+    if args.robot:
+        _complain(
+            f"--robot {args.robot}: no ROS master answers, and a simulator started for one goal has one robot only"
+        )
+        return NOT_REACHED
     print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
     arguments = ["rviz:=false"]
     if args.world:

@@ -9,9 +9,11 @@ import contextlib
 import os
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Iterator, List, Optional, TextIO
 
+import rosgraph
 import roslaunch
 import rospkg
 from roslaunch import rlutil
@@ -30,6 +32,9 @@ from .overview import overview
 
 PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # the simulator's, and the one that starts it for other packages
 FAILED = 1  # exit status
+SIMULATOR, READY_SERVICE = "robocop_sim", "pause"  # the node, and one of the services that it offers when it runs
+READY_PATIENCE = 30.0  # [s, wall] for a simulator with a large world on a slow machine
+POLL = 0.05  # [s, wall]
 STDOUT, STDERR = 1, 2  # file descriptors
 
 
@@ -81,7 +86,7 @@ def launch(arguments: List[str]) -> int:
             with buffered_stderr(deferred):
                 private_api.load_launch_files(parent)
             parent.start()
-        if screen is not None:
+        if screen is not None and _is_up(parent):
             print(overview(parent.config, Path(get_log_dir(), run_id)), file=screen, flush=True)
         parent.spin()
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
@@ -89,6 +94,24 @@ def launch(arguments: List[str]) -> int:
             printerrlog(_explained(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
         return FAILED
     return FAILED if required.failed else 0
+
+
+def _is_up(parent: ROSLaunchParent) -> bool:
+    """Wait until the simulator runs, if the launch file starts one; False if everything is being shut down instead.
+
+    So the reason why a simulator can't start is not preceded by what to do with it.
+    """
+    names = [rosgraph.names.ns_join(n.namespace, n.name) for n in parent.config.nodes if n.name == SIMULATOR]
+    master = rosgraph.Master("/robocop_launch", parent.config.master.uri)
+    deadline = time.monotonic() + READY_PATIENCE
+    while not parent.pm.is_shutdown and time.monotonic() < deadline:
+        with contextlib.suppress(rosgraph.MasterException, OSError):
+            for name in names:
+                master.lookupService(f"{name}/{READY_SERVICE}")
+            break
+        parent.spin_once()
+        time.sleep(POLL)
+    return not parent.pm.is_shutdown
 
 
 def _quiet(folder: Path) -> TextIO:

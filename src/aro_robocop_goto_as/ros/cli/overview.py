@@ -5,10 +5,11 @@ from typing import Any, Dict, List, Tuple
 
 from ...errors import RobocopError
 from ...param_loading import from_dict
-from ...params import SimParams
+from ...params import SimParams, WebParams
 
 SIMULATOR = "/robocop_sim/"
 SERVER = "aro_robocop_goto_as_node"
+WEB = "robocop_web"
 
 
 def overview(config: Any, logs: Path) -> str:
@@ -22,12 +23,21 @@ def overview(config: Any, logs: Path) -> str:
             rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
         robot = f" --robot {robots[0]}" if robots else ""
         rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: ./robocop goto 0.3 0{robot}"))
+    web = [node for node in config.nodes if node.name == WEB]
+    if web:
+        rows.append(("web page", _web_address(web[0].args)))
     rows += [
         ("look inside", "in a second terminal: ./robocop shell, then rostopic list, rosnode list, ..."),
         ("end", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
         ("all messages", f"{logs} (or start with --verbose); warnings and errors appear below"),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
+
+
+def _web_address(arguments: str) -> str:
+    """The page's address on this machine, from the node's arguments; an empty value is the default."""
+    given = dict(argument.split(":=", 1) for argument in arguments.split() if ":=" in argument)
+    return f"http://localhost:{given.get('web_port') or WebParams.web_port}"
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:

@@ -3,7 +3,7 @@
 import threading
 import time
 import traceback
-from typing import Optional
+from typing import Callable, Optional
 
 import actionlib
 import rospy
@@ -127,22 +127,23 @@ class Bridge:
 
     def _report(self) -> None:
         """Publish the status now."""
-        self._publish_status(self._describe())
+        if discovery.is_up(self.client):
+            self.last_seen = time.monotonic()
+            self._publish_status(self._describe())
+        elif time.monotonic() - self.last_seen > ADVICE_AFTER:
+            self._publish_status(f"{discovery.absence(ACTION)}; {discovery.advice()}", rospy.logwarn)
+        else:
+            self._publish_status(discovery.absence(ACTION))
 
-    def _publish_status(self, text: str) -> None:
+    def _publish_status(self, text: str, log: Callable[..., None] = rospy.loginfo) -> None:
         """Publish a status; log it if it is news."""
         if text != self.last_status:
-            rospy.loginfo("%s", text)
+            log("%s", text)
         self.last_status = text
         self.status.publish(String(text))
 
     def _describe(self) -> str:
-        """The state of the server and of the last goal, as this client knows it."""
-        if not discovery.is_up(self.client):
-            absence = discovery.absence(ACTION)
-            lasting = time.monotonic() - self.last_seen > ADVICE_AFTER
-            return f"{absence}; {discovery.advice()}" if lasting else absence
-        self.last_seen = time.monotonic()
+        """The state of a server that is up, and of the last goal, as this client knows it."""
         if self.sent is None:
             return f"{ACTION} is ready, no goal yet"
         if self.sent.done.is_set():

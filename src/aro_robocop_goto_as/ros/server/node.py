@@ -24,6 +24,7 @@ from . import markers
 from .goal_execution import Ending, GoalExecution
 from .goal_server import GoalServer
 from .inputs import Inputs
+from .tuning import Tuning
 
 MARKER_PERIOD = 0.1  # [s]
 SHUTDOWN_PATIENCE = 1.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
@@ -40,6 +41,7 @@ class GotoServer:
 
     def __init__(self, p: GotoParams) -> None:
         self.p = p
+        self.tuning = Tuning(p)
         self.inputs = Inputs(p)
         self.goal: Optional[GoalExecution] = None
         self.command: Optional[Twist2D] = None  # published since the last answer to a lockstep simulator
@@ -74,6 +76,7 @@ class GotoServer:
         ticked = ticker.wait()
         try:
             if ticked:
+                self._adopt_parameters()
                 self._advance(ticker.tick_ns)
             else:
                 self._serve_request()
@@ -82,6 +85,12 @@ class GotoServer:
         finally:
             if ticked:
                 self._answer_tick(ticker.tick_ns)
+
+    def _adopt_parameters(self) -> None:
+        """Use the newest parameters from this control period on, also for the current goal."""
+        self.p = self.tuning.params
+        if self.goal is not None:
+            self.goal.p = self.p
 
     def _has_request(self) -> bool:
         return (

@@ -1,0 +1,72 @@
+"""The parameters of the action server. cfg/Goto.cfg reads them at build time, so nothing but Python is needed here."""
+
+import math
+from dataclasses import asdict, dataclass, fields
+from typing import Any, List, Mapping
+
+from .param_loading import from_dict, parameter, positive
+
+FASTEST = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
+FASTEST_TURN = 100.0  # [rad/s], [rad/s^2] likewise
+LARGEST_GAIN = 100.0  # [1/s] with which all but the last millimetres are covered at maximum velocity
+FARTHEST_OBSTACLE = 1e3  # [m] beyond every scanner's range
+
+
+@dataclass(frozen=True)
+class GotoParams:
+    """Parameters of robocop_goto_as; config/goto_as.yaml documents each one."""
+
+    control_rate: float = positive(10.0, high=1000.0)
+    position_tolerance: float = positive(0.1, high=1e3)
+    angle_tolerance: float = parameter(0.1, low=1e-3, high=math.pi)
+    obstacle_distance: float = parameter(0.3, low=0.0, high=FARTHEST_OBSTACLE)
+    obstacle_half_angle: float = parameter(math.pi / 6.0, low=0.0, high=math.pi)
+
+    linear_gain: float = positive(0.5, high=LARGEST_GAIN)
+    angular_gain: float = positive(5.0, high=LARGEST_GAIN)
+    max_linear_velocity: float = positive(0.2, high=FASTEST)
+    min_linear_velocity: float = positive(0.03, high=FASTEST)
+    max_angular_velocity: float = positive(1.0, high=FASTEST_TURN)
+    min_angular_velocity: float = positive(0.3, high=FASTEST_TURN)
+    linear_acceleration: float = positive(0.5, high=FASTEST)
+    angular_acceleration: float = positive(3.0, high=FASTEST_TURN)
+
+    data_timeout: float = positive(1.0)
+    stuck_timeout: float = positive(5.0)
+    stuck_distance: float = positive(0.01)
+    stuck_angle: float = positive(0.05)
+    goal_timeout: float = parameter(0.0, low=0.0)
+
+    def conflicts(self) -> List[str]:
+        """Combinations of values that are impossible, in words; empty when there are none."""
+        problems = []
+        for kind in ("linear", "angular"):
+            low, high = getattr(self, f"min_{kind}_velocity"), getattr(self, f"max_{kind}_velocity")
+            if low > high:
+                problems.append(f"min_{kind}_velocity: expected at most max_{kind}_velocity {high:g}, got {low:g}")
+        return problems
+
+
+def tuned(p: GotoParams, changes: Mapping[str, Any]) -> GotoParams:
+    """The parameters with some values replaced; ParameterError if the result is impossible."""
+    return from_dict(GotoParams, {**asdict(p), **changes}, "changed parameters")
+
+
+def differences(old: GotoParams, new: GotoParams) -> List[str]:
+    """Each parameter that differs, with both values, in words."""
+    pairs = [(spec.name, getattr(old, spec.name), getattr(new, spec.name)) for spec in fields(GotoParams)]
+    return [f"{name} {after:g}, was {before:g}" for name, before, after in pairs if after != before]
+
+
+def clamped_values(changes: Mapping[str, Any]) -> List[str]:
+    """What dynamic_reconfigure sets each number beyond its parameter's bounds to, in words."""
+    notes = []
+    for spec in fields(GotoParams):
+        value, low, high = changes.get(spec.name), spec.metadata["low"], spec.metadata["high"]
+        if not isinstance(value, (int, float)):
+            continue
+        if high is not None and value > high:
+            notes.append(f"{spec.name}: expected at most {high:g}, got {value:g}; set to {high:g}")
+        elif low is not None and value < low:
+            notes.append(f"{spec.name}: expected at least {low:g}, got {value:g}; set to {low:g}")
+    return notes

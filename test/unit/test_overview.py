@@ -1,0 +1,37 @@
+"""The one screen that ./robocop run shows."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from aro_robocop_goto_as.ros.cli.overview import overview
+
+
+def shown(*nodes, arguments=""):
+    """The overview's rows for nodes of these names."""
+    nodes = [SimpleNamespace(name=name, namespace="/", args=arguments) for name in nodes]
+    text = overview(SimpleNamespace(nodes=nodes, params={}), Path("/logs"))
+    return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
+
+
+def test_the_logs_and_how_to_end_are_always_shown():
+    assert shown()["all messages"].startswith("/logs ")
+    assert "Ctrl-C" in shown()["end"]
+
+
+@pytest.mark.parametrize(
+    "arguments, address",
+    [
+        ("web_host:= web_port:=", "http://localhost:8080"),
+        ("web_host:=0.0.0.0 web_port:=8090", "http://localhost:8090"),
+    ],
+)
+def test_the_address_of_the_web_page_is_shown_if_it_is_started(arguments, address):
+    assert shown("robocop_web", arguments=arguments)["web page"] == address
+    assert "web page" not in shown("robocop_sim")
+
+
+def test_goals_are_offered_only_with_a_server():
+    assert "send a goal" in shown("aro_robocop_goto_as_node")
+    assert "send a goal" not in shown("robocop_sim")

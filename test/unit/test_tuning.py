@@ -1,0 +1,69 @@
+"""Changing the server's parameters while it runs: which sets are valid, and what the tools show as bounds."""
+
+import math
+from dataclasses import fields
+from typing import Any, Dict
+
+import pytest
+from aro_robocop_goto_as.cfg import GotoConfig
+
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.goto import Goal, decide
+from aro_robocop_goto_as.goto_params import GotoParams, clamped_values, differences, tuned
+
+P = GotoParams()
+
+
+def test_a_change_replaces_its_values_and_keeps_all_others() -> None:
+    new = tuned(P, {"max_linear_velocity": 0.1, "angular_gain": 2.0})
+    assert new == GotoParams(max_linear_velocity=0.1, angular_gain=2.0)
+    assert differences(P, new) == ["angular_gain 2, was 5", "max_linear_velocity 0.1, was 0.2"]
+    assert differences(P, tuned(P, {})) == []
+
+
+@pytest.mark.parametrize(
+    "changes, reason",
+    [
+        ({"min_linear_velocity": 0.5}, "min_linear_velocity: expected at most max_linear_velocity 0.2, got 0.5"),
+        ({"max_angular_velocity": 0.1}, "min_angular_velocity: expected at most max_angular_velocity 0.1, got 0.3"),
+        ({"angular_gain": math.nan}, "angular_gain: expected a finite number, got nan"),
+        ({"angular_gain": "high"}, "angular_gain: expected float, got str 'high'"),
+    ],
+)
+def test_an_impossible_set_is_refused_with_the_reason(changes: Dict[str, Any], reason: str) -> None:
+    with pytest.raises(ParameterError) as refusal:
+        tuned(P, changes)
+    assert str(refusal.value) == f"changed parameters: {reason}"
+
+
+def test_velocities_that_contradict_the_others_alone_are_valid_together() -> None:
+    assert tuned(P, {"min_linear_velocity": 0.5, "max_linear_velocity": 0.6}).min_linear_velocity == 0.5
+
+
+def test_values_beyond_their_bounds_are_named_with_the_bound() -> None:
+    changes = {"max_linear_velocity": 50.0, "angle_tolerance": -1, "linear_gain": 0.7, "groups": {}}
+    assert sorted(clamped_values(changes)) == [
+        "angle_tolerance: expected at least 0.001, got -1; set to 0.001",
+        "max_linear_velocity: expected at most 10, got 50; set to 10",
+    ]
+
+
+def test_the_tools_show_the_defaults_and_bounds_of_the_parameters() -> None:
+    specs = {spec.name: spec for spec in fields(GotoParams) if spec.name in GotoConfig.defaults}
+    assert len(specs) == len(GotoConfig.defaults) == 11
+    assert {name: spec.default for name, spec in specs.items()} == GotoConfig.defaults
+    assert {name: spec.metadata["low"] for name, spec in specs.items()} == GotoConfig.min
+    assert {name: spec.metadata["high"] for name, spec in specs.items()} == GotoConfig.max
+
+
+def test_every_value_within_the_bounds_gives_a_velocity() -> None:
+    for name in GotoConfig.defaults:
+        for value in (GotoConfig.min[name], GotoConfig.max[name]):
+            try:
+                p = tuned(P, {name: value})
+            except ParameterError:  # contradicts another velocity
+                continue
+            for goal in (Goal(1.0, 0.0), Goal(-1.0, 0.5)):
+                twist = decide(Pose2D(), math.inf, goal, p).twist
+                assert math.isfinite(twist.v) and math.isfinite(twist.w)
