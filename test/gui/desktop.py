@@ -37,6 +37,7 @@ class Desktop:
     def __init__(self, directory, screen="1280x860x24"):
         self.directory = directory
         self.screen = screen
+        self.size = tuple(map(int, screen.split("x")[:2]))  # width, height [pixel]
         self.frame_buffer = directory / "Xvfb_screen0"
 
     def __enter__(self):
