@@ -34,7 +34,10 @@ class Window:
 
 @dataclass(frozen=True)
 class Scene:
-    """What RViz is to show: the part of the world, and those displays that have something to show."""
+    """What RViz is to show: the part of the world, and those displays that have something to show.
+
+    A display of markers shows no error while nobody publishes them, so these may be included for later.
+    """
 
     fixed_frame: str = "map"
     camera_frame: str = FIXED  # of the extent

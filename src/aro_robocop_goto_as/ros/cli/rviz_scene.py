@@ -59,7 +59,7 @@ def _observed(fixed_frame: str, wait: float, server: bool, window: Window) -> Sc
         extent=extent,
         window=window,
         grid_map="/map" in topics and (placed or in_world),
-        world=markers is not None and (placed or in_world),
+        world=placed or in_world,
         model=not robot and (placed or not in_world) and rospy.search_param("robot_description") is not None,
         scan=placed or not in_world,
         trail=placed or in_world,
