@@ -9,7 +9,7 @@ from . import displays
 from .camera import PITCH, YAW, Extent, Orbit, fitting
 from .displays import Entry
 
-DOCK_WIDTH, BARS_HEIGHT = 360, 110  # [pixel] of the window, beside and above the view
+DOCK_WIDTH, BARS_HEIGHT = 380, 92  # [pixel] of the window that the view does not have, in RViz 1.14
 BACKGROUND = "38; 42; 50"  # red, green, blue
 FIXED = "<Fixed Frame>"
 WORLD_TOPIC, SERVER_TOPIC = "/robocop_sim/world", "aro_robocop_goto_as_node/markers"
