@@ -36,6 +36,11 @@ From the system to a browser and back, by viser:
     ros.web.topics                topics, tf -> ros.web.view -> web.scene, web.page
     web.page                      clicks, buttons, keys -> ros.web.node -> ros.web.commands -> topics, services
 
+From the running system to RViz:
+
+    ros.cli.rviz_scene            topics, tf_static, the world's markers -> rviz.config.Scene
+    rviz.config                   + rviz.camera, rviz.displays -> the configuration file that ros.cli.rviz opens
+
 Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of the
 simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them there
 and in `config/` before the code. `process` is about operating system processes, `bootstrap` needs nothing installed,

@@ -37,6 +37,7 @@ class Desktop:
     def __init__(self, directory, screen="1280x860x24"):
         self.directory = directory
         self.screen = screen
+        self.size = tuple(map(int, screen.split("x")[:2]))  # width, height [pixel]
         self.frame_buffer = directory / "Xvfb_screen0"
 
     def __enter__(self):
@@ -69,6 +70,11 @@ class Desktop:
     def input(self, *actions):
         """Mouse and keyboard actions, as xdotool's arguments. The X server keeps their order: no pauses are needed."""
         subprocess.run(["xdotool", *map(str, actions)], env=self.environment, check=True, timeout=DEADLINE)
+
+    def quit_by_menu(self, window):
+        """Choose the last entry of a window's first menu."""
+        x, y, _, _ = self.geometry(window)
+        self.input("mousemove", x + 20, y + 10, "click", 1, "key", "Up", "key", "Return")
 
     def window(self, title):
         """Id of a visible window by its title, a regular expression; None if there is none."""
@@ -131,9 +137,7 @@ class Ros:
         self.master = rosgraph.Master(CALLER, uri)
 
     def __enter__(self):
-        launch = self.start(
-            "roslaunch", "roslaunch", "-p", self.port, "aro_robocop_goto_as", "robocop_goto_as.launch", *self.arguments
-        )
+        launch = self.start("roslaunch", *self.command())
         try:
             wait_for(lambda: launch.poll() is not None or self.master.is_online(), "a ROS master")
             assert launch.poll() is None, f"roslaunch ended: {(self.directory / 'roslaunch.err').read_text()}"
@@ -141,6 +145,10 @@ class Ros:
             self._end()
             raise
         return self
+
+    def command(self):
+        """What starts the master."""
+        return ["roslaunch", "-p", self.port, "aro_robocop_goto_as", "robocop_goto_as.launch", *self.arguments]
 
     def __exit__(self, failure, *_):
         try:
@@ -190,6 +198,19 @@ class Ros:
         _, subscribers, _ = self.master.getSystemState()
         nodes = dict(subscribers).get(topic, [])
         return next((node for node in nodes if node.startswith(prefix)), None)
+
+
+class Master(Ros):
+    """Only a ROS master, on simulated time: `with Master(directory, desktop) as ros`."""
+
+    def command(self):
+        """What starts the master."""
+        return ["roscore", "-p", self.port]
+
+    def __enter__(self):
+        super().__enter__()
+        rosgraph.Master(CALLER, self.environment["ROS_MASTER_URI"]).setParam("/use_sim_time", True)
+        return self
 
 
 class Recorder:

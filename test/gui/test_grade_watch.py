@@ -133,10 +133,7 @@ def test_watched_run_is_shown_in_real_time_and_gets_full_marks(tmp_path):
 def test_grading_continues_when_rviz_is_closed(tmp_path):
     with Desktop(tmp_path) as desktop, Watched(tmp_path, desktop, ahead=5.0) as grading:
         grading.wait_for_picture({"goal"}, "the goal drawn in RViz")
-        x, y, _, _ = desktop.geometry(desktop.window(TITLE))
-        desktop.input(
-            "mousemove", x + 20, y + 10, "click", 1, "key", "Up", "key", "Return"
-        )  # the last entry of the menu File
+        desktop.quit_by_menu(desktop.window(TITLE))
         wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")
         assert grading.process.poll() is None, "it was the grading's end that closed RViz"
         grading.wait_for_full_marks()

@@ -50,7 +50,7 @@ def test_single_robot_has_no_namespace_or_prefix():
     assert launch.named("tf_prefix") == {}
     assert from_dict(BridgeParams, launch.given(BRIDGE), BRIDGE).goal_frame == "odom"
     assert from_dict(SimParams, launch.given(SIM), SIM).robots == ""
-    assert "robocop.rviz -f map" in launch.nodes["/rviz"].args
+    assert launch.nodes["/rviz"].args == "--server --wait 60 --frame 'map' --config ''"
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,12 @@ def test_simulator_bridges_and_rviz_can_be_left_out():
 def test_rviz_of_many_robots_runs_in_the_namespace_of_the_displayed_robot(arguments, node):
     rviz = {name: it.args for name, it in Launch(*arguments).nodes.items() if name.endswith("rviz")}
     assert set(rviz) == {node}
-    assert "many_robots.rviz -f map" in rviz[node]
+    assert "--frame 'map'" in rviz[node]
+
+
+def test_rviz_waits_only_for_a_simulator_that_is_started_and_takes_a_frame_and_a_file_of_its_users():
+    rviz = Launch("sim:=false", "rviz_frame:=odom", "rviz_config:=/home/me/my view.rviz").nodes["/rviz"]
+    assert rviz.args == "--server --wait 0 --frame 'odom' --config '/home/me/my view.rviz'"
 
 
 def arguments_of(file):

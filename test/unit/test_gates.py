@@ -42,6 +42,7 @@ ORDER = {
     "params": "component_params goto_params param_loading sensors",
     "goto": "geometry params robot",
     "web": "errors geometry world",
+    "rviz": "",
     "simulation": "component_params errors geometry params physics raycast robot sensors world",
     "hosting": "errors process",
     "ros": "compiled component_params errors geometry param_loading process robot sensors simulation world",
@@ -49,10 +50,10 @@ ORDER = {
     "ros.server": "errors geometry goto goto_params params ros simulation",
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
-    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client",
+    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client rviz",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
-    "grading.probe": "errors geometry goto grading params process robot ros ros.sim simulation world",
+    "grading.probe": "errors geometry goto grading params process robot ros ros.sim rviz simulation world",
     "bench": "errors geometry param_loading params process raycast robot ros sensors simulation world",
 }
 # Modules whose rosdep key differs from their name.

@@ -18,7 +18,7 @@ def shown(goal):
 
 
 def test_there_is_no_goal_before_the_first_one():
-    assert set(shown(None)) == {"safety_cone", "state"}
+    assert set(shown(None)) == {"safety_cone", "robot_ring", "state"}
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Replaces itself by the simulator's roslaunch. Arguments: those of the launch file, `--`, Gazebo's spawn_model ones.
+"""Replaces itself by a program of the simulator's package: its roslaunch, or its RViz.
+
+Arguments: `robocop_launch.py`, arguments of the simulator's launch file, `--`, arguments of Gazebo's spawn_model;
+or `robocop_rviz.py` and its arguments.
 
 A package in this workspace may have the same name as the simulator's package. If ROBOCOP_WS names the workspace in
-which the simulator was built, the simulator runs in that workspace's environment, otherwise in this one's.
+which the simulator was built, the program runs in that workspace's environment, otherwise in this one's.
 """
 
 import argparse
@@ -10,7 +13,11 @@ import os
 import shlex
 import sys
 
+LAUNCH = "robocop_launch.py"
 SHADOWING = ("PYTHONPATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")  # would resolve to this workspace first
+LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"]
+LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint, RViz
+aro_sim: can show the robot and its scan, but not the room, the odometry and the map. odom_tf:=true adds the transform."""
 
 
 def spawn_from(words):
@@ -22,22 +29,24 @@ def spawn_from(words):
     return [f"spawn:={pose.x} {pose.y} {pose.Y}"] if words else []
 
 
-def main():
-    """Never returns: the process becomes roslaunch, so that ending this node ends the simulator."""
-    words = [word for word in sys.argv[1:] if not word.startswith("__")]  # ROS's own remappings
+def simulator_from(words):
+    """Arguments of the lab's launch file -> those of robocop_launch.py, with the lab's behaviour."""
+    words = [word for word in words if not word.startswith("__")]  # ROS's own remappings
     args, spawn_args = words[: words.index("--")], words[words.index("--") + 1 :]
-    args += ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"] + spawn_from(spawn_args)
-    args += shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))
+    args += [*LAB, *spawn_from(spawn_args), *shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))]
+    if [arg for arg in args if arg.startswith("odom_tf:=")][-1] == "odom_tf:=false":
+        print(LACKING, flush=True)
+    return ["--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
+
+
+def main():
+    """Never returns: the process becomes the program, so that ending this node ends the program."""
+    program, *words = sys.argv[1:]
+    if program == LAUNCH:  # not plain roslaunch, whose exit status does not report how the simulator ended
+        words = simulator_from(words)
     workspace = os.environ.get("ROBOCOP_WS")
-    # Not plain roslaunch, whose exit status does not report how the simulator ended.
-    launch = (
-        [f"{workspace}/lib/aro_robocop_goto_as/robocop_launch.py"]
-        if workspace
-        else ["rosrun", "aro_robocop_goto_as", "robocop_launch.py"]
-    )
-    command = [*launch, "--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
     if not workspace:
-        os.execvp(command[0], command)
+        os.execvp("rosrun", ["rosrun", "aro_robocop_goto_as", program, *words])
     types = [path for path in os.environ.get("PYTHONPATH", "").split(":") if "/compat/" in path]  # gazebo_msgs
     for name in SHADOWING:
         os.environ.pop(name, None)
@@ -49,7 +58,8 @@ def main():
             '. "$0/setup.bash"; export PYTHONPATH=$PYTHONPATH:$1; shift; exec "$@"',
             workspace,
             ":".join(types),
-            *command,
+            f"{workspace}/lib/aro_robocop_goto_as/{program}",
+            *words,
         ],
     )
 

@@ -9,9 +9,11 @@ from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
 TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
-TEXT_SIZE, TEXT_HEIGHT = 0.13, 0.6  # [m] of a capital letter; above the floor
+TEXT_SIZE, TEXT_HEIGHT = 0.14, 0.9  # [m] of a capital letter; above the floor, so that it stands beside the robot
+ROBOT_COLOR = ColorRGBA(0.35, 0.78, 0.98, 1.0)
 GOAL_COLOR = ColorRGBA(0.9, 0.2, 0.7, 0.9)
 LINE_WIDTH = 0.02  # [m]
+RING_RADIUS, RING_WIDTH = 0.25, 0.03  # [m] around the largest of the robots, a waffle
 SEGMENTS = 24  # of an arc; enough to look round
 
 
@@ -39,6 +41,13 @@ def circle(namespace: str, radius: float, x: float, y: float, frame: str, color:
     return made
 
 
+def robot_ring(frame: str) -> Marker:
+    """A ring on the floor around a robot, whose base frame is given: a burger is small in a view of a whole room."""
+    ring = circle("robot_ring", RING_RADIUS, 0.0, 0.0, frame, ROBOT_COLOR)
+    ring.scale.x = RING_WIDTH
+    return ring
+
+
 def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GOAL_COLOR) -> Tuple[Marker, Marker]:
     """A circle of radius `tolerance` [m] around the goal, and a pin at the goal."""
     pin = marker("goal_pin", Marker.CYLINDER, frame, color)
@@ -49,11 +58,11 @@ def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GO
 
 
 def text(namespace: str, content: str, frame: str) -> Marker:
-    """Text above the origin of a frame, facing the viewer."""
+    """Text above the origin of a frame, facing the viewer. RViz centres its lines around its position."""
     made = marker(namespace, Marker.TEXT_VIEW_FACING, frame, TEXT_COLOR)
     made.text = content
     made.scale.z = TEXT_SIZE
-    made.pose.position.z = TEXT_HEIGHT
+    made.pose.position.z = TEXT_HEIGHT + TEXT_SIZE * content.count("\n")
     return made
 
 

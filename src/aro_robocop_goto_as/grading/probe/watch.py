@@ -27,19 +27,21 @@ from ...ros import convert, markers
 from ...ros.publishing import publisher
 from ...ros.sim.robot_topics import RobotTopics
 from ...ros.sim.world_markers import world_markers
+from ...rviz.config import WATCH, Window, grading_watch
 from ...simulation.observations import Observations
 from .. import record as rec
 from ..plan import Plan, world_of
 
 OPEN_TIMEOUT = 60.0  # [s, wall] for RViz to come up; with a software renderer on a busy machine it takes ten
 POLL = 0.05  # [s, wall]
-NAMESPACE = "/robocop_watch"
+NAMESPACE = WATCH
 TOPICS = ("tf", "tf_static")
 PATH_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.9)
 PATH_STEP = 0.01  # [m]
 CLICK_COLOR = ColorRGBA(1.0, 0.75, 0.1, 0.9)
 CLICK_RADIUS = 0.2  # [m] wider than the goal's circle, so that both are visible when they coincide
 TEXT_SIZE, TEXT_HEIGHT = 0.08, 1.5  # [m] of the letters, and above the floor, where it hides nothing
+WINDOW = Window(40, 10)
 TEMPORARY = ("path", "goal_circle", "goal_pin", "click")  # namespaces of markers
 TEXT_WIDTH = 44  # characters of a line
 LOG_LINES = 5
@@ -73,7 +75,9 @@ class Watch:
         rospy.set_param(f"{NAMESPACE}/robot_description", load_model(self._model, share).urdf)
         self._start("robot_state_publisher", "robot_state_publisher", "frames")
         again = f"{share}/launch/restart_after_crash"
-        self._rviz = self._start("rviz", "rviz", "rviz", "-d", f"{share}/rviz/grading_watch.rviz", prefix=[again])
+        config = self._log.with_suffix(".rviz")
+        config.write_text(grading_watch(WINDOW))
+        self._rviz = self._start("rviz", "rviz", "rviz", "-d", str(config), prefix=[again])
         started = time.monotonic()
         while not all(topic.get_num_connections() for topic in self._shown()):
             if self._rviz.poll() is not None:

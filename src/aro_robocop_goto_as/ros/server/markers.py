@@ -1,4 +1,4 @@
-"""Server state -> RViz markers: the newest goal with its tolerance, the obstacle sector, the state as text."""
+"""Server state -> RViz markers: the newest goal and its tolerance, the obstacle sector, the robot with its state."""
 
 import textwrap
 from typing import NamedTuple, Optional
@@ -15,7 +15,7 @@ from .. import markers
 FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
 REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
-TEXT_WIDTH = 36  # characters per line
+TEXT_WIDTH = 26  # characters per line
 NEAR_FACTOR = 2.0  # the sector turns yellow within this multiple of the obstacle distance
 
 
@@ -66,7 +66,8 @@ def server_markers(
     if scan_frame:
         made.append(_obstacle_sector(p, clearance, scan_frame))
     if odom is not None:
-        made.append(markers.text("state", textwrap.fill(state, TEXT_WIDTH), odom.child_frame_id))
+        made.append(markers.robot_ring(odom.child_frame_id))
+        made.append(markers.text("state", textwrap.fill(state.partition(";")[0], TEXT_WIDTH), odom.child_frame_id))
         if shown is not None:
             x, y = shown.goal.x, shown.goal.y
             made += markers.goal(p.position_tolerance, x, y, odom.header.frame_id, shown.color)

@@ -9,11 +9,22 @@ from visualization_msgs.msg import Marker
 from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # translucent: walls must not hide the scan and the robot behind them
-BODY = ColorRGBA(0.30, 0.32, 0.36, 1.0)
-NOSE = ColorRGBA(0.95, 0.60, 0.10, 1.0)
+BODIES = [  # of the robots in turn; red, pink and grey are the scan's, the goal's and the walls'
+    ColorRGBA(red, green, blue, 1.0)
+    for red, green, blue in (
+        (0.35, 0.78, 0.98),
+        (0.98, 0.80, 0.25),
+        (0.60, 0.86, 0.35),
+        (0.78, 0.60, 0.98),
+        (0.98, 0.62, 0.40),
+        (0.35, 0.90, 0.78),
+    )
+]
+NOSE = ColorRGBA(0.10, 0.11, 0.13, 1.0)
 NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 CLEAR = Marker(action=Marker.DELETEALL)  # deletes earlier markers: a changed world may have fewer obstacles
-BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.16, 0.3  # [m] above the floor
+NAME_SIZE = 0.14  # [m] of a capital letter
+BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.17, 0.6  # [m] above the floor
 
 
 def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
@@ -51,18 +62,18 @@ def world_markers(world: World, frame: str, time: float, moving: bool = False) -
 
 
 def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
-    """A body, an arrow ahead and a name for each robot, given as its name, base frame and radius [m].
+    """A coloured body, an arrow ahead and a name for each robot, given as its name, base frame and radius [m].
 
     RViz needs one RobotModel display per robot, so many robots are shown as markers instead.
     """
     found: List[Marker] = []
     for number, (name, frame, radius) in enumerate(robots):
-        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODY)
+        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODIES[number % len(BODIES)])
         body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
         nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)
         nose.scale, nose.pose.position.z = Vector3(1.3 * radius, 0.03, 0.03), NOSE_HEIGHT
         label = Marker(ns="names", id=number, type=Marker.TEXT_VIEW_FACING, color=NAME, text=name)
-        label.scale.z, label.pose.position.z = 0.12, NAME_HEIGHT
+        label.scale.z, label.pose.position.z = NAME_SIZE, NAME_HEIGHT
         for marker in (body, nose, label):
             marker.header.frame_id, marker.frame_locked = frame, True
             marker.pose.orientation.w = 1.0

@@ -1,0 +1,85 @@
+"""RViz shows the walls and all robots, and no display in red, whether it is opened before the simulator or after it."""
+
+import numpy as np
+import pytest
+from desktop import Desktop, Master, Ros
+from waiting import wait_for
+
+from aro_robocop_goto_as.rviz.config import Scene, Window, robocop
+
+pytestmark = pytest.mark.slow
+TIMES = 10
+TITLE = " - RViz$"
+DRAWN = 60.0  # [s, wall] for a picture to be complete on a busy machine
+ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel
+BODIES = ((0.35, 0.78, 0.98), (0.98, 0.80, 0.25), (0.60, 0.86, 0.35))  # of three robots, in any light
+CASES = pytest.mark.parametrize(
+    "arguments, namespace, parts",
+    [
+        (["moving:=true"], "", {"walls", "robot"}),
+        (["robots:=3"], "robot_1", {"walls", "robot_1", "robot_2", "robot_3"}),
+    ],
+    ids=["moving", "robots"],
+)
+
+
+def shown(view):
+    """The parts of the scene in the pixels of RViz's view, recognised by their colours."""
+    red, green, blue = view[..., 0], view[..., 1], view[..., 2]
+    walls = (red > 55) & (red < 120) & (blue > red + 8) & (blue < red + 30) & (green > red)
+    lidar = (blue > 90) & (2 * red < blue) & (1.5 * green < blue)
+    found = {"walls": walls.sum() > 60000, "robot": lidar.sum() > 40}
+    length = np.maximum(np.linalg.norm(view, axis=-1), 1.0)
+    for number, color in enumerate(BODIES, 1):
+        alike = view @ np.array(color) / length / np.linalg.norm(color) > 0.995
+        found[f"robot_{number}"] = (alike & (length > 120.0)).sum() > 200
+    return {part for part, is_shown in found.items() if is_shown}
+
+
+def problems(panel):
+    """How many pixels of the Displays panel say that a display has an error or a warning."""
+    return sum(int((panel == color).all(axis=-1).sum()) for color in (ERROR, WARNING))
+
+
+def complete(desktop, parts):
+    """Whether RViz shows these parts, and no display has a problem."""
+    window = desktop.window(TITLE)
+    canvas = window and desktop.canvas(window)
+    if not canvas:
+        return False
+    left = desktop.geometry(canvas)[0]
+    return shown(desktop.pixels(canvas)) >= parts and not problems(desktop.pixels(window)[:, :left])
+
+
+def environment_of(namespace):
+    return ["env", f"ROS_NAMESPACE=/{namespace}"]
+
+
+@CASES
+@pytest.mark.timeout(1200)
+def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, arguments, namespace, parts):
+    scene = Scene(model=not namespace, axes=("map", f"{namespace}/odom".lstrip("/")), window=Window(0, 0, 1280, 860))
+    config = tmp_path / "robocop.rviz"
+    config.write_text(robocop(scene))
+    with Desktop(tmp_path) as desktop:
+        for number in range(TIMES):
+            folder = tmp_path / f"early_{number}"
+            folder.mkdir()
+            with Master(folder, desktop) as ros:
+                ros.start("rviz", *environment_of(namespace), "rviz", "-d", config)
+                wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
+                ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", *arguments)
+                wait_for(lambda: complete(desktop, parts), f"start {number} of {TIMES}: {parts}", DRAWN)
+
+
+@CASES
+@pytest.mark.timeout(1200)
+def test_rviz_that_is_opened_late_shows_everything(tmp_path, arguments, namespace, parts):
+    with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", *arguments) as ros:
+        wait_for(lambda: ros.subscriber(f"/{namespace}/scan".replace("//", "/"), "/"), "the server")
+        for number in range(TIMES):
+            rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--server", "--wait", "60"]
+            ros.start(f"rviz_{number}", *environment_of(namespace), *rviz)
+            wait_for(lambda: complete(desktop, parts), f"opening {number} of {TIMES}: {parts}", DRAWN)
+            desktop.quit_by_menu(desktop.window(TITLE))
+            wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")
