@@ -17,8 +17,8 @@ IMPORTS = Imports(SOURCE)
 PYTHON = ("src", "scripts", "test", "setup.py")
 # Correct words, and deliberate misspellings in tests.
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,sise"
-PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml", "robocop")
-SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "docs", "launch", "msg", "skeleton", "srv", "worlds")
+PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "Dockerfile", "package.xml", "pyproject.toml")
+SPELT = (*PYTHON, *PROSE, "robocop", "action", "cfg", "compat", "config", "docs", "launch", "msg", "skeleton", "srv", "worlds")
 MAY_IMPORT_ROS = ("ros", "bench", "grading.probe")
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
@@ -44,7 +44,7 @@ ORDER = {
     "ros.server": "errors geometry goto params ros simulation",
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
-    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client",
+    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client web",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
     "grading.probe": "errors geometry goto grading params process robot ros ros.sim simulation world",
