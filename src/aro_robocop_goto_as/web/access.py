@@ -64,7 +64,7 @@ def default_host() -> str:
 
 
 def url(host: str, port: Union[int, str]) -> str:
-    """Where a browser on this machine finds a server that listens on this address, which may stand for all addresses."""
+    """Where a browser on this machine finds a server that listens on this address, or on all addresses."""
     return f"http://{'localhost' if is_loopback(host) or host in ANY_ADDRESS else host}:{port}"
 
 
