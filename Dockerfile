@@ -3,7 +3,7 @@
 # What is installed in addition to what `./robocop run` needs: names of lists in deb-packages/.
 ARG PARTS="hosting grade web"
 
-# Everything that needs root. .devcontainer/ uses this stage, with a checkout of its own.
+# The Debian packages. .devcontainer/ uses this stage, with a checkout of its own.
 FROM debian:12-slim AS packages
 ARG PARTS
 ENV LANG=C.UTF-8
@@ -17,18 +17,19 @@ RUN set -eu; \
     apt-get update; \
     DEBIAN_FRONTEND=noninteractive xargs -a /tmp/packages apt-get install -y --no-install-recommends tini; \
     rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/apt /var/log/dpkg.log /tmp/packages; \
-    useradd --create-home --uid 1000 --shell /bin/bash robocop; \
-    install -d -o robocop -g robocop /home/robocop/aro_robocop_goto_as; \
-    ln -s /home/robocop/aro_robocop_goto_as/robocop /usr/local/bin/robocop
-USER robocop
+    useradd --create-home --uid 1000 --shell /bin/bash robocop
 
 FROM packages
 ARG PARTS
+RUN install -d -o robocop -g robocop /home/robocop/aro_robocop_goto_as; \
+    ln -s /home/robocop/aro_robocop_goto_as/robocop /usr/local/bin/robocop
+USER robocop
 WORKDIR /home/robocop/aro_robocop_goto_as
 COPY --chown=robocop:robocop . .
 # Of pybullet only its module is used, without the examples' data and debugging symbols.
 RUN set -eu; \
     ./robocop setup $PARTS; \
+    .robocop/venv/bin/python -m compileall -q src; \
     cd .robocop; \
     rm -rf venv/lib/python3*/site-packages/pybullet_* venv/lib/python3*/site-packages/eglRenderer*; \
     find venv -name '*.so' -exec strip --strip-debug {} +; \
