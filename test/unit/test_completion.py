@@ -71,6 +71,8 @@ def shell(tmp_path_factory):
     [
         ("got", "goto"),
         ("grade-c", "grade-class"),
+        ("ima", "image"),
+        ("new my_lab --cl", "new my_lab --classroom"),
         ("run real", "run real_time_factor:="),
         ("run world:", "run world:="),
         ("run world:=maz", "run world:=maze_1"),

@@ -21,7 +21,8 @@ PROSE = (
     *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
     *("mkdocs.yml", "robocop"),
 )
-SPELT = (*PYTHON, *PROSE, "action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
+PROSE_FOLDERS = ("action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
+SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 MAY_IMPORT_ROS = ("ros", "bench", "grading.probe")
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
@@ -50,7 +51,7 @@ ORDER = {
     "ros.server": "errors geometry goto goto_params params ros simulation",
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
-    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client rviz",
+    "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client rviz web",
     "grading": "errors geometry hosting param_loading process world",
     "grading.classroom": "errors grading hosting process",
     "grading.probe": "errors geometry goto grading params process robot ros ros.sim rviz simulation world",

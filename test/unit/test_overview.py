@@ -28,8 +28,8 @@ def test_the_logs_and_how_to_end_are_always_shown():
     ],
 )
 def test_the_address_of_the_web_page_is_shown_if_it_is_started(arguments, address):
-    assert shown("robocop_web", arguments=arguments)["web page"] == address
-    assert "web page" not in shown("robocop_sim")
+    assert shown("robocop_web", arguments=arguments)["see it"] == f"in a browser: {address}"
+    assert "see it" not in shown("robocop_sim")
 
 
 def test_goals_are_offered_only_with_a_server():

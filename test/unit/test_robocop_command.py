@@ -15,7 +15,7 @@ from aro_robocop_goto_as.process.ports import free_port
 ROOT = Path(__file__).resolve().parents[2]
 COMMANDS = (
     *("run", "goto", "test", "bench", "shell"),
-    *("completion", "docs", "doctor", "version", "setup", "clean", "help"),
+    *("docs", "image", "completion", "doctor", "version", "setup", "clean", "help"),
 )
 LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
@@ -23,7 +23,7 @@ BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "m
 
 def environment(**settings):
     """This test's environment without the variables that the command depends on, plus `settings`."""
-    left_out = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "DISPLAY", "ROBOCOP_DRY_RUN")
+    left_out = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "DISPLAY", "ROBOCOP_DRY_RUN", "ROBOCOP_WEB_HOST")
     chosen = {name: value for name, value in os.environ.items() if name not in left_out}
     chosen.update(settings)
     return chosen
@@ -93,17 +93,28 @@ def test_ros_network_setting_is_respected(name, value):
     assert dry_run("run", **{name: value})[1] == [f"{name}={value}"]
 
 
-def test_without_a_display_rviz_is_left_out_with_a_message():
+def test_without_a_display_the_web_page_is_started_instead_of_rviz_with_a_message():
     command, _, messages = dry_run("run", "world:=empty")
-    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false world:=empty")
-    assert "display" in messages
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:=true world:=empty")
+    assert "no usable display; the web page is started instead of RViz" in messages
 
 
-def test_without_a_display_the_web_page_is_recommended_unless_it_is_started():
-    assert "web:=true shows the robot in a browser" in dry_run("run")[2]
-    command, _, messages = dry_run("run", "web:=true")
-    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:=true")
-    assert "web:=true" not in messages
+@pytest.mark.parametrize("chosen", ["true", "false"])
+def test_without_a_display_the_web_page_is_left_as_chosen(chosen):
+    command, _, messages = dry_run("run", f"web:={chosen}")
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:={chosen}")
+    assert "no usable display; RViz is not started\n" in messages
+
+
+@pytest.mark.slow
+def test_without_a_display_the_lab_starts_even_if_the_web_page_can_not_be_installed(checkout, index):
+    (checkout / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
+    shutil.copytree(ROOT / "launch", checkout / "launch")
+    (checkout / "scripts" / "robocop_launch.py").write_text("#!/usr/bin/env python3\nimport sys; print(sys.argv[1:])\n")
+    uri = f"http://localhost:{free_port()}"
+    done = in_copy(checkout, "run", "world:=empty", ROS_MASTER_URI=uri, **index)
+    assert (done.returncode, "'rviz:=false', 'world:=empty']" in done.stdout) == (0, True), done.stdout + done.stderr
+    assert "RViz is not started, and the web page could not be installed" in done.stderr
 
 
 def test_web_starts_the_page_with_its_arguments():
@@ -279,13 +290,13 @@ def test_supported_system_is_not_refused(on_system, contents):
     assert on_system(contents).returncode == 0
 
 
-def usr_bin_without(name, tmp_path):
+def usr_bin_without(names, tmp_path):
     """Options for bwrap: /usr/bin becomes a folder of links to the real one, which is mounted elsewhere."""
     real, links = tmp_path / "real", tmp_path / "links"
     for folder in (real, links):
         folder.mkdir()
     for entry in os.listdir("/usr/bin"):
-        if entry != name:
+        if entry not in names.split():
             (links / entry).symlink_to(real / entry)
     return ["--bind", "/usr/bin", str(real), "--bind", str(links), "/usr/bin"]
 
@@ -333,6 +344,47 @@ def test_doctor_says_why_a_system_is_not_supported(on_system):
     done = on_system(FEDORA, command="doctor")
     assert done.returncode == 1
     assert "this system is not supported\n      Fedora Linux 41 has no packages of ROS 1; " in done.stdout
+
+
+ENGINES = "docker podman buildah"
+
+
+def image(on_system, tmp_path, engines):
+    """Outcome of `./robocop image` in a dry run, where /usr/bin has these engines: name -> script."""
+    mounts = usr_bin_without(ENGINES, tmp_path)
+    for name, script in engines.items():
+        (tmp_path / "links" / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / "links" / name).chmod(0o755)
+    return on_system({}, *mounts, command="image", PATH="/usr/bin:/bin")
+
+
+ANSWERS, FAILS = "exit 0", "echo no daemon >&2; exit 1"
+
+
+@pytest.mark.parametrize(
+    "engines, chosen",
+    [
+        ({"docker": ANSWERS, "podman": ANSWERS}, "docker"),
+        ({"docker": FAILS, "podman": ANSWERS, "buildah": ANSWERS}, "podman"),
+        ({"buildah": ANSWERS}, "buildah"),
+    ],
+)
+def test_image_is_built_by_the_first_engine_that_answers(on_system, tmp_path, engines, chosen):
+    done = image(on_system, tmp_path, engines)
+    assert done.stdout.startswith(f"{chosen} build --tag robocop --label "), done.stderr
+    assert done.stdout.split()[-1] == str(ROOT)
+
+
+@pytest.mark.parametrize(
+    "engines, reason",
+    [
+        ({}, "image: this needs docker, podman or buildah; on Debian and Ubuntu: apt-get install podman"),
+        ({"docker": FAILS}, "image: docker is installed, but it does not answer: no daemon"),
+    ],
+)
+def test_image_without_an_engine_is_refused_with_what_to_do(on_system, tmp_path, engines, reason):
+    done = image(on_system, tmp_path, engines)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", f"robocop: {reason}\n")
 
 
 def test_doctor_works_without_python(on_system, tmp_path):

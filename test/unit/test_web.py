@@ -12,7 +12,7 @@ from support import ROOT
 from aro_robocop_goto_as.errors import RobotModelError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Twist2D, lifted
 from aro_robocop_goto_as.web import text
-from aro_robocop_goto_as.web.access import is_loopback, refusal
+from aro_robocop_goto_as.web.access import is_loopback, refusal, url
 from aro_robocop_goto_as.web.dead_man import DeadMan, Drive
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.pick import FARTHEST_CLICK, floor_point
@@ -81,6 +81,11 @@ def test_any_text_as_host_and_origin_gives_an_answer(host: str, origin: str) -> 
 def test_loopback_addresses_are_told_from_those_that_others_reach() -> None:
     assert [is_loopback(name) for name in ("127.0.0.1", "::1", "localhost", "127.9.9.9")] == [True] * 4
     assert [is_loopback(name) for name in ("0.0.0.0", "::", "192.168.1.5", "pc-7", "")] == [False] * 5
+
+
+def test_a_server_on_all_addresses_is_opened_at_localhost() -> None:
+    assert {url(host, 80) for host in ("127.0.0.1", "::1", "0.0.0.0", "::")} == {"http://localhost:80"}
+    assert url("192.168.1.5", "8090") == "http://192.168.1.5:8090"
 
 
 # -- the dead-man's switch --

@@ -11,6 +11,12 @@ def test_arguments_of_ros_and_empty_ones_are_left_out():
     assert load_params(["__name:=robocop_web", "__log:=/tmp/x", "web_host:=", "web_port:="]) == WebParams()
 
 
+def test_the_environment_chooses_the_address_unless_it_is_given(monkeypatch):
+    monkeypatch.setenv("ROBOCOP_WEB_HOST", "0.0.0.0")
+    assert load_params(["web_host:="]).web_host == "0.0.0.0"
+    assert load_params(["web_host:=127.0.0.1"]).web_host == "127.0.0.1"
+
+
 def test_values_are_taken_as_they_are_written():
     given = load_params(["web_host:=0.0.0.0", "web_port:=8090", "web_linear_velocity:=1", "web_frame:=odom"])
     assert given == WebParams(web_host="0.0.0.0", web_port=8090, web_linear_velocity=1.0, web_frame="odom")

@@ -8,7 +8,7 @@ Data flows in this order; only probe/ uses ROS:
     record            the recording of one scenario
     checks/           record -> verdict, one function for each contract of the handout
     judge             records + plan -> grade
-    report            grade -> report.json, junit.xml, report.html
+    report            grade -> report.html, report.json, junit.xml, and by `github` summary.md, classroom.json
     grade_submission  all of this for one submission
     main              robocop grade
     classroom/        robocop grade-class: many submissions on dask workers

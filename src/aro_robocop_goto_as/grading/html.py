@@ -8,7 +8,7 @@ from urllib.parse import quote
 import jinja2
 
 from .checks import description
-from .judge import printable_lines
+from .judge import printable, printable_lines
 
 
 def _points(points: Optional[float]) -> str:
@@ -38,7 +38,9 @@ _PAGES = jinja2.Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-_PAGES.filters.update(css=_css, description=description, points=_points, printable=printable_lines, quoted=_quoted)
+_PAGES.filters.update(
+    css=_css, description=description, one_line=printable, points=_points, printable=printable_lines, quoted=_quoted
+)
 
 
 def render(template: str, **values: Any) -> str:

@@ -1,4 +1,4 @@
-"""Writes a grade with its records as report.json, junit.xml, results.json for Gradescope, and report.html."""
+"""Writes a grade as report.html, report.json and junit.xml, and in the formats of GitHub Classroom and Gradescope."""
 
 import dataclasses
 import json
@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterator, Sequence
 from xml.etree import ElementTree
 
 from .checks import PLOTS as PLOT_OF
+from .github import as_classroom, as_summary
 from .html import render
 from .judge import CheckResult, Grade, Outcome, Records, printable_lines
 from .plan import BRIDGE_SCENARIOS, START, Plan
@@ -22,6 +23,8 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
+    (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
+    (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
     page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records)))
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 

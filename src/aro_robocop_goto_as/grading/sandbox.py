@@ -50,6 +50,9 @@ OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")
 TRIAL_TIME = 10.0  # [s, wall]
+# Files that docker and podman make in every container.
+CONTAINER_MARKS = ("/.dockerenv", "/run/.containerenv")
+CONTAINER_OPTIONS = " ".join(f"--security-opt {it}=unconfined" for it in ("seccomp", "apparmor", "systempaths"))
 
 
 @dataclass(frozen=True)
@@ -191,5 +194,7 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = CPU_T
     trial = empty.probe_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
     done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     if done.returncode != 0:
+        if any(map(os.path.exists, CONTAINER_MARKS)):
+            advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
         raise GradingError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
     return Sandbox(tuple(reads), cpu_time)

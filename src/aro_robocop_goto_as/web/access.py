@@ -1,10 +1,13 @@
-"""Which HTTP and WebSocket requests the page answers: those of a page that it served itself, and no others."""
+"""Where the page listens, and which HTTP and WebSocket requests it answers: those of a page that it served itself."""
 
 import ipaddress
-from typing import Optional, Sequence
+import os
+from typing import Optional, Sequence, Union
 from urllib.parse import urlsplit
 
 LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
+ANY_ADDRESS = ("0.0.0.0", "::")
+HOST_VARIABLE = "ROBOCOP_WEB_HOST"  # the address to listen on where none is given; set in the container image
 # Nothing from other servers, and not inside another site's frame. The page's one file holds its scripts and styles;
 # viser decodes messages in a WebAssembly module, in workers made from blobs, and compiles functions at run time.
 CONTENT_POLICY = (
@@ -53,6 +56,16 @@ def _host_name(host: str) -> Optional[str]:
         return urlsplit("//" + host).hostname
     except ValueError:
         return None
+
+
+def default_host() -> str:
+    """The address to listen on where none is given."""
+    return os.environ.get(HOST_VARIABLE) or "127.0.0.1"
+
+
+def url(host: str, port: Union[int, str]) -> str:
+    """Where a browser on this machine finds a server that listens on this address, or on all addresses."""
+    return f"http://{'localhost' if is_loopback(host) or host in ANY_ADDRESS else host}:{port}"
 
 
 def is_loopback(address: str) -> bool:

@@ -1,15 +1,18 @@
 """What ./robocop run shows when everything is started: the world, the robots, what to do next."""
 
+import os
+import re
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 from ...errors import RobocopError
 from ...param_loading import from_dict
 from ...params import SimParams, WebParams
+from ...web.access import default_host, url
 
 SIMULATOR = "/robocop_sim/"
 SERVER = "aro_robocop_goto_as_node"
-WEB = "robocop_web"
+COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
 
 
 def overview(config: Any, logs: Path) -> str:
@@ -18,26 +21,25 @@ def overview(config: Any, logs: Path) -> str:
     given = {name[len(SIMULATOR) :]: p.value for name, p in config.params.items() if name.startswith(SIMULATOR)}
     rows = [*_simulated(given)] if "robocop_sim" in nodes else []
     robots = sorted({node.namespace.strip("/") for node in config.nodes if node.name == SERVER} - {""})
+    command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
+    rows += [("see it", f"in a browser: {_page(node.args)}") for node in config.nodes if node.name == "robocop_web"]
     if SERVER in nodes:
         if "rviz" in nodes:
             rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
         robot = f" --robot {robots[0]}" if robots else ""
-        rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: ./robocop goto 0.3 0{robot}"))
-    web = [node for node in config.nodes if node.name == WEB]
-    if web:
-        rows.append(("web page", _web_address(web[0].args)))
+        rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto 0.3 0{robot}"))
     rows += [
-        ("look inside", "in a second terminal: ./robocop shell, then rostopic list, rosnode list, ..."),
+        ("look inside", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
         ("end", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
         ("all messages", f"{logs} (or start with --verbose); warnings and errors appear below"),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
 
 
-def _web_address(arguments: str) -> str:
-    """The page's address on this machine, from the node's arguments; an empty value is the default."""
-    given = dict(argument.split(":=", 1) for argument in arguments.split() if ":=" in argument)
-    return f"http://localhost:{given.get('web_port') or WebParams.web_port}"
+def _page(arguments: str) -> str:
+    """The web page's address on this machine, from the arguments of its node."""
+    given = dict(re.findall(r"\b(web_host|web_port):=(\S+)", arguments))
+    return url(given.get("web_host") or default_host(), given.get("web_port", WebParams.web_port))
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:

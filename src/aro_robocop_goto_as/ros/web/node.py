@@ -35,7 +35,7 @@ MASTER_PERIOD = 1.0  # [s, wall]
 
 def load_params(arguments: Sequence[str]) -> WebParams:
     """Arguments NAME:=VALUE -> parameters, without those of ROS, as __name:=x; ParameterError for what is wrong."""
-    raw: Dict[str, Any] = {}
+    raw: Dict[str, Any] = {"web_host": access.default_host()}
     for argument in arguments:
         name, given, value = argument.partition(":=")
         if not given:
@@ -184,8 +184,7 @@ def warn_of_strangers(p: WebParams) -> None:
     """A page that other machines can reach lets them drive the robot."""
     if not access.is_loopback(p.web_host):
         rospy.logwarn(
-            "the page can be opened from every machine that reaches %s:%d, without a password, so the robot can be "
-            "driven from there",
+            "the page listens on %s:%d without a password: every machine that reaches it can drive the robot",
             p.web_host,
             p.web_port,
         )
@@ -198,8 +197,7 @@ def main() -> None:
         server = start_server(p)
     except RobocopError as error:
         sys.exit(f"{NAME}: {error.code}: {error}")
-    host = "localhost" if access.is_loopback(p.web_host) else p.web_host
-    print(f"{NAME}: open http://{host}:{p.web_port} in a browser", flush=True)
+    print(f"{NAME}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
     web = WebNode(server, p)
     web.wait_for_master()
     replaced = False

@@ -1,0 +1,203 @@
+"""The container's files agree with each other and with ./robocop, checked without building the image."""
+
+import base64
+import fnmatch
+import json
+import os
+import re
+import shlex
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from documentation import PAGES
+
+from aro_robocop_goto_as.errors import GradingError, GradingSetupError
+from aro_robocop_goto_as.grading import sandbox, skeleton
+from aro_robocop_goto_as.grading.checks import Failed
+from aro_robocop_goto_as.grading.judge import CheckResult, Grade, Outcome
+from aro_robocop_goto_as.grading.plan import load
+from aro_robocop_goto_as.grading.report import write
+
+ROOT = Path(__file__).resolve().parents[2]
+IMAGE = "my-course/robocop:1"
+PASSED = CheckResult("reaches_goal", "server", "The goal is reached.", Outcome.PASSED, 2.0, 2.0, False)
+LATE = Failed("at most 1 s", "2 s", 3.5, "<b>late</b>\n\n# heading [link](http://x)")
+FAILED = CheckResult("one_ending", "server", "A goal ends once.", Outcome.FAILED, 0.0, 1.0, False, "far", LATE)
+GRADE = Grade("anna", (PASSED, FAILED))
+
+
+def instructions(name):
+    """The arguments of all instructions of this name in the Dockerfile."""
+    text = re.sub(r"\\\n", "", re.sub(r"(?m)^#.*\n", "", (ROOT / "Dockerfile").read_text()))
+    return [line.partition(" ")[2] for line in text.splitlines() if line.startswith(f"{name} ")]
+
+
+def settings():
+    """The environment variables that the Dockerfile sets."""
+    return dict(word.split("=", 1) for line in instructions("ENV") for word in shlex.split(line))
+
+
+def is_sent(path):
+    """Whether a file of the checkout is sent to the build: neither it nor a folder above it is in .dockerignore."""
+    patterns = [line for line in (ROOT / ".dockerignore").read_text().splitlines() if line and line[0] != "#"]
+    parts = Path(path).parts
+    names = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
+    return not any(
+        fnmatch.fnmatch(name, pattern) or fnmatch.fnmatch(f"/{name}", pattern.replace("**", "*"))
+        for name in names
+        for pattern in patterns
+    )
+
+
+def dry_run(*arguments, **environment):
+    """A command of ./robocop that starts nothing."""
+    values = {**os.environ, "ROBOCOP_DRY_RUN": "1", "DISPLAY": "", **environment}
+    return subprocess.run([ROOT / "robocop", *arguments], env=values, capture_output=True, text=True, timeout=60.0)
+
+
+def test_dockerfile_copies_what_exists_and_installs_lists_that_exist():
+    assert instructions("FROM") == ["debian:12-slim AS packages", "packages"]
+    sources = [word for line in instructions("COPY") for word in line.split()[:-1] if not word.startswith("--")]
+    assert sources == ["deb-packages", "."]
+    (parts,) = [line for line in instructions("ARG") if "=" in line]
+    for part in parts.partition("=")[2].strip('"').split():
+        assert (ROOT / "deb-packages" / f"{part}.txt").is_file(), part
+
+
+def test_build_gets_everything_that_the_setup_links_and_neither_history_nor_caches():
+    linked = re.search(r"^package_folders=\((.*)\)", (ROOT / "robocop").read_text(), re.MULTILINE)[1].split()
+    for name in (*linked, "robocop", "deb-packages", "requirements-web.txt", "setup.py", "src/x/y.py", "README.md"):
+        assert is_sent(name), name
+    for name in (".git", ".git/config", ".robocop/venv/bin/python", "src/x/__pycache__", "test/y/z.pyc"):
+        assert not is_sent(name), name
+
+
+def test_container_runs_robocop_as_an_ordinary_user():
+    assert instructions("USER") == ["robocop"]
+    assert json.loads(instructions("ENTRYPOINT")[0]) == ["tini", "--", "robocop"]
+
+
+def test_container_starts_the_lab_with_a_page_that_can_be_published():
+    done = dry_run(*json.loads(instructions("CMD")[0]), **settings())
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split()[-2:] == ["rviz:=false", "web:=true"]
+    assert settings()["ROBOCOP_WEB_HOST"] == "0.0.0.0" and instructions("EXPOSE") == ["8080"]
+
+
+def test_documentation_publishes_the_page_to_this_machine_only():
+    published = [port for page in PAGES for port in re.findall(r"docker run[^`\n]* -p (\S+)", page.read_text())]
+    assert len(published) > 2
+    assert set(published) == {"127.0.0.1:8080:8080"}
+
+
+def test_development_container_builds_the_first_stage_and_sets_up_its_parts():
+    content = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+    build = content["build"]
+    assert (ROOT / ".devcontainer" / build["dockerfile"]).resolve() == ROOT / "Dockerfile"
+    assert f"AS {build['target']}" in instructions("FROM")[0]
+    assert content["remoteUser"] in instructions("USER")
+    program, command, *parts = content["postCreateCommand"].split()
+    assert (program, parts) == ("./robocop", build["args"]["PARTS"].split())
+    assert dry_run(command, *parts).returncode == 0
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A new package for GitHub Classroom."""
+    skeleton.make(ROOT, tmp_path / "lab", IMAGE)
+    return tmp_path / "lab"
+
+
+def steps(package):
+    """The steps of the package's workflow."""
+    workflow = yaml.safe_load((package / ".github" / "workflows" / "classroom.yml").read_text())
+    return workflow["jobs"]["run-autograding-tests"]["steps"]
+
+
+def test_package_is_for_github_only_if_an_image_is_given(package, tmp_path):
+    skeleton.make(ROOT, tmp_path / "plain")
+    plain = {path.relative_to(tmp_path / "plain") for path in (tmp_path / "plain").rglob("*")}
+    added = {path.relative_to(package) for path in package.rglob("*")} - plain
+    assert {str(path) for path in added if path.suffix} - {".github", ".devcontainer"} == {
+        ".github/workflows/classroom.yml",
+        ".devcontainer/devcontainer.json",
+    }
+    assert json.loads((package / ".devcontainer" / "devcontainer.json").read_text())["image"] == IMAGE
+
+
+@pytest.mark.parametrize("image", ["", "a b", 'x"; rm -rf ~', "-v", "$(id)"])
+def test_image_name_that_could_be_something_else_is_refused(image, tmp_path):
+    with pytest.raises(GradingSetupError, match="is not the name of a container image"):
+        skeleton.make(ROOT, tmp_path / "lab", image)
+    assert not (tmp_path / "lab").exists()
+
+
+def run_step(step, folder, docker):
+    """Run a step of the workflow with a program in place of docker; its outcome, and GitHub's three files by name."""
+    (folder / "bin").mkdir(exist_ok=True)
+    (folder / "bin" / "docker").write_text(f"#!/bin/sh\n{docker}\n")
+    (folder / "bin" / "docker").chmod(0o755)
+    (folder / "repository").mkdir(exist_ok=True)
+    files = {name: folder / name for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
+    environment = {**os.environ, **{name: str(path) for name, path in files.items()}, "RUNNER_TEMP": str(folder)}
+    environment["PATH"] = f"{folder / 'bin'}:{environment['PATH']}"
+    command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]  # as GitHub's `shell: bash`
+    done = subprocess.run(command, cwd=folder / "repository", env=environment, capture_output=True, text=True)
+    return done, {name: path.read_text() if path.exists() else "" for name, path in files.items()}
+
+
+def test_workflow_grades_the_repository_in_the_image_and_fails_with_it(package, tmp_path):
+    grade = next(step for step in steps(package) if step.get("name") == "Grade")
+    done, _ = run_step(grade, tmp_path, f'printf "%s\\n" "$@" >{tmp_path}/arguments; echo 3 of 8 points; exit 1')
+    assert (done.returncode, done.stdout) == (1, "3 of 8 points\n")
+    arguments = (tmp_path / "arguments").read_text().splitlines()
+    assert f"{tmp_path}/repository:/submissions/repository:ro" in arguments
+    command, path, *options = arguments[arguments.index(IMAGE) + 1 :]
+    assert (command, path) == ("grade", "/submissions/repository")
+    shown = dry_run("help").stdout
+    assert all(option in shown for option in options if option.startswith("--"))
+
+
+def test_workflow_shows_the_result_and_passes_the_points_on(package, tmp_path):
+    (tmp_path / "made").mkdir()
+    write(GRADE, load(ROOT / "config" / "grading.yaml"), {}, tmp_path / "made")
+    show = next(step for step in steps(package) if step.get("name") == "Show the result")
+    done, files = run_step(show, tmp_path, f'cp -r {tmp_path}/made "$3"')
+    assert done.returncode == 0, done.stderr
+    assert files["GITHUB_STEP_SUMMARY"].startswith("<h2>anna: 2 of 3 points</h2>\n")
+    points = json.loads(base64.b64decode(files["GITHUB_OUTPUT"].partition("points=")[2]))
+    assert (points["status"], points["max_score"]) == ("fail", 3.0)
+    assert [(test["status"], test["score"]) for test in points["tests"]] == [("pass", 2.0), ("fail", 0.0)]
+
+
+def test_workflow_shows_why_nothing_could_be_graded(package, tmp_path):
+    (tmp_path / "grade.txt").write_text("robocop grade: catkin_make failed\n")
+    show = next(step for step in steps(package) if step.get("name") == "Show the result")
+    done, files = run_step(show, tmp_path, "exit 1")
+    assert done.returncode == 1
+    assert "Nothing could be graded:\n    robocop grade: catkin_make failed\n" in files["GITHUB_STEP_SUMMARY"]
+
+
+def test_texts_of_a_submission_are_not_markup_in_the_summary(tmp_path):
+    name = replace(GRADE, name="a\n\n# b <img src=x>")
+    write(name, load(ROOT / "config" / "grading.yaml"), {}, tmp_path)
+    summary = (tmp_path / "summary.md").read_text()
+    assert "\n\n" not in summary, "an empty line ends the HTML block"
+    assert "<b>late" not in summary and "<img" not in summary
+    assert summary.index("A goal ends once.") < summary.index("The goal is reached."), "failures come first"
+
+
+def test_sandbox_that_can_not_start_in_a_container_names_the_options_of_docker(tmp_path, monkeypatch):
+    (tmp_path / "bwrap").write_text("#!/bin/sh\necho 'No permissions to create new namespace' >&2; exit 1\n")
+    (tmp_path / "bwrap").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    monkeypatch.setattr(sandbox, "CONTAINER_MARKS", (str(tmp_path),))
+    reason = "No permissions to create new namespace; `docker run --security-opt seccomp=unconfined .*; --unsafe runs"
+    with pytest.raises(GradingError, match=reason):
+        sandbox.open_sandbox(False)
+    monkeypatch.setattr(sandbox, "CONTAINER_MARKS", (str(tmp_path / "nothing"),))
+    with pytest.raises(GradingError, match="No permissions to create new namespace; --unsafe runs"):
+        sandbox.open_sandbox(False)
