@@ -138,7 +138,8 @@ def clearance_ahead(
     "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that there is nothing to return the
     beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a scanner that sends only zeros
     can't be told from one in an open space.
-    None when no beam points ahead. NaN when no beam ahead is valid: all are NaN (REP-117), or a range limit is.
+    None when no beam points ahead. NaN when no beam ahead is valid: all are NaN (REP-117), or the range limits are, or
+    they are not in order, so that no return could count.
     """
     distances = np.asarray(ranges, dtype=float)
     with np.errstate(invalid="ignore", over="ignore"):  # angles that are not numbers do not point ahead
@@ -147,7 +148,7 @@ def clearance_ahead(
     if not ahead.any():
         return None
     distances = distances[ahead]
-    if np.isnan(distances).all() or math.isnan(range_min) or math.isnan(range_max):
+    if np.isnan(distances).all() or not range_min < range_max:  # true where a limit is NaN, too
         return math.nan
     if np.isneginf(distances).any():
         return 0.0

@@ -5,11 +5,15 @@ import math
 
 import rospy
 from clicks import Clicks
-from harness import SystemTest, distance, run, wait_for
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped
+from harness import BRIDGE, SystemTest, distance, run, wait_for, wait_for_subscriber
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
 SPAWN = Pose2D(-0.7, 0.0)  # of the default world
+LAST_STAMP = rospy.Time(2**32 - 1, 0)
 NEAR = 0.12  # [m] the handout's tolerance of 0.1 m, and the drift of odometry
 
 
@@ -79,6 +83,16 @@ class BridgeFrames(SystemTest):
         self.clicks.click(0.1, 0.0, "base_footprint", rospy.Time.now() + rospy.Duration(3600.0))
         self.assertAlmostEqual(self.sent()[0].x, 0.1, delta=0.001)
         self.goals.log.wait_for(lambda m: "the latest one is used" in m.msg, "a warning")
+        self.goals.of_others()[0].result("REACHED")
+
+    def test_impossible_stamps_of_goals_and_transforms_do_not_end_the_bridge(self):
+        tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        wait_for_subscriber(tf, BRIDGE)
+        header = Header(0, LAST_STAMP, "odom")
+        tf.publish([TransformStamped(header, "base_footprint", Transform(rotation=Quaternion(w=1.0)))])
+        self.goals.log.wait_for(lambda m: "'odom' -> 'base_footprint'" in m.msg and "ignored" in m.msg, "a warning")
+        self.clicks.click(0.1, 0.0, "base_footprint", LAST_STAMP)
+        self.assertAlmostEqual(self.sent()[0].x, 0.1, delta=0.001)
         self.goals.of_others()[0].result("REACHED")
 
     def test_goal_in_an_unknown_frame_is_refused_with_the_names_of_both_frames(self):

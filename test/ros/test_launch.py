@@ -53,6 +53,14 @@ def test_single_robot_has_no_namespace_or_prefix():
     assert launch.nodes["/rviz"].args == "--server --wait 60 --frame 'map' --config ''"
 
 
+@pytest.mark.parametrize("file", ["robocop_goto_as.launch", "robocop_sim.launch"])
+def test_the_state_publisher_can_be_left_out(file):
+    for robots in ("", "2"):
+        left_out = Launch("state_publisher:=false", f"robots:={robots}", file=file).nodes
+        started = {name for name in Launch(f"robots:={robots}", file=file).nodes if "state_publisher" not in name}
+        assert set(left_out) == started
+
+
 @pytest.mark.parametrize(
     "robots, names",
     [

@@ -171,8 +171,8 @@ def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid: floa
     assert _ahead(ranges) == 0.7
 
 
-@pytest.mark.parametrize("limits", [(math.nan, 10.0), (0.12, math.nan)])
-def test_a_scan_whose_range_limits_are_nan_is_invalid(limits: "tuple[float, float]") -> None:
+@pytest.mark.parametrize("limits", [(math.nan, 10.0), (0.12, math.nan), (0.0, 0.0), (10.0, 0.12), (0.0, -math.inf)])
+def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits: "tuple[float, float]") -> None:
     assert math.isnan(clearance_ahead([0.5] * 360, *LAYOUTS[0][:2], *limits, math.pi / 6) or 0.0)
 
 

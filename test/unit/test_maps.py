@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
+from support import model_named
 
-from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.errors import ParameterError, WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, inverse
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.physics.bullet import BulletEngine
@@ -19,6 +20,7 @@ from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import Slice
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.robots import robots_from
 from aro_robocop_goto_as.world.grid_map.image import read_image
 from aro_robocop_goto_as.world.grid_map.walls import outline
 from aro_robocop_goto_as.world.load import find_world, load_world
@@ -199,6 +201,34 @@ def test_robot_spawns_at_zero_in_map_or_at_the_nearest_free_place(tmp_path):
     assert (moved.x, moved.y) == (pytest.approx(1.375), pytest.approx(0.0, abs=0.03))
     narrow = load_world(write_map(tmp_path, room(9, 9))).spawn
     assert (narrow.x, narrow.y) == (pytest.approx(0.225), pytest.approx(0.225))
+
+
+def test_robot_starts_in_a_known_cell_with_room_for_its_model_or_not_at_all(tmp_path):
+    pixels = np.zeros((80, 80))
+    pixels[36:44] = 254  # a corridor 0.4 m wide along x, which leads out of the map
+    pixels[20:60, 60:78] = 254  # and a room at its end, from x 1 to x 1.9
+    world = load_world(write_map(tmp_path, pixels, origin="[-2, -2, 0]"))
+    assert robots_from(SimParams().spawn_params(), world, model_named)[0].spawn.x < 2.0
+    wide = [robot.spawn for robot in robots_from(SimParams(model="waffle").spawn_params(), world, model_named)]
+    assert all(1.22 <= spawn.x <= 1.68 and abs(spawn.y) <= 0.78 for spawn in wide)
+    pixels[20:60, 60:78] = 0
+    pixels[36:44] = 254
+    with pytest.raises(ParameterError, match="no room for a robot"):
+        robots_from(
+            SimParams(model="waffle").spawn_params(),
+            load_world(write_map(tmp_path, pixels, origin="[-2, -2, 0]")),
+            model_named,
+        )
+
+
+def test_several_robots_start_in_known_cells_only(tmp_path):
+    pixels = np.full((60, 60), 205)
+    pixels[20:40, 20:40] = 254  # a square of 1 m in the middle
+    world = load_world(write_map(tmp_path, pixels, origin="[-1.5, -1.5, 0]"))
+    robots = robots_from(SimParams(robots="3").spawn_params(), world, model_named)
+    assert all(max(abs(robot.spawn.x), abs(robot.spawn.y)) <= 0.5 for robot in robots)
+    with pytest.raises(ParameterError, match="room for . around its spawn"):
+        robots_from(SimParams(robots="10").spawn_params(), world, model_named)
 
 
 def test_unused_yaml_keys_are_listed(tmp_path):

@@ -205,12 +205,13 @@ def test_ignored_elements_of_an_included_file_are_listed_with_that_file(tmp_path
 def test_saved_state_moves_models_and_links_as_in_gazebo(tmp_path):
     still = "<model name='{}'><static>1</static>" + BOX + "</model>"
     state = """<state world_name="w"><sim_time>1 2</sim_time><iterations>3</iterations>
-      <model name="a"><static>1</static><pose frame="">1 2 3 0 0 0</pose><scale>1 1 1</scale></model>
+      <insertions/><deletions></deletions>
+      <model name="a"><static>1</static><pose frame="">1 2 3 0 0 0</pose><scale>1 1 1</scale><joint name="j"/></model>
       <model name="b"><pose>9 9 9 0 0 0</pose><link name="l"><pose>4 5 6 0 0 0</pose><wrench>0 0 0 0 0 0</wrench></link>
       </model><model name="gone"><pose>0 0 0 0 0 0</pose></model><light name="sun"/></state>"""
     world = load_world(world_file(tmp_path, still.format("a") + still.format("b") + state))
     assert [o.pose.position for o in world.obstacles] == [(1, 2, 3), (4, 5, 6)]
-    assert world.ignored == ("state of 'gone', which is not in <world name='w'> (line 6)",)
+    assert world.ignored == ("state of 'gone', which is not in <world name='w'> (line 7)",)
 
 
 # Meshes

@@ -1,8 +1,11 @@
-"""The server's view of its inputs changes in one piece: whoever sees a new scan also sees what it means."""
+"""The server's view of its inputs: it changes in one piece, and what is missing is said in the right words."""
 
+import pytest
 import rospy
+from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
+from aro_robocop_goto_as.goto import Outcome
 from aro_robocop_goto_as.params import GotoParams
 from aro_robocop_goto_as.ros.server.inputs import Inputs
 
@@ -11,10 +14,22 @@ def scan_with(ahead: float) -> LaserScan:
     return LaserScan(angle_increment=0.1, range_max=5.0, ranges=[ahead])
 
 
-def test_new_scan_is_visible_only_once_it_is_known_whether_it_is_valid(monkeypatch):
+@pytest.fixture
+def inputs(monkeypatch):
     monkeypatch.setattr(rospy, "Subscriber", lambda *arguments: None)
-    monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs._now", lambda: 1.0)
-    inputs = Inputs(GotoParams())
+    monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs._now", lambda: 1.5)
+    return Inputs(GotoParams())
+
+
+def test_scan_of_nan_is_called_invalid_even_if_it_arrives_after_the_control_period_began(inputs):
+    inputs._on_odom(Odometry())
+    inputs._on_scan(scan_with(float("nan")))
+    outcome, text = inputs.missing(now=1.45, started=0.0)
+    assert outcome is Outcome.NO_SCAN
+    assert "no valid beam ahead" in text
+
+
+def test_new_scan_is_visible_only_once_it_is_known_whether_it_is_valid(inputs, monkeypatch):
     looked = []
     real = inputs._clearance_in
 

@@ -79,6 +79,13 @@ def test_where_there_is_less_room_the_robot_starts_where_its_footprint_fits(burg
         )
 
 
+def test_several_robots_start_in_a_corridor_that_is_just_wide_enough_for_them(burger: RobotModel) -> None:
+    walls = tuple(Obstacle(f"w/{y}/c", Pose3D((0.0, y, 0.25)), Box((20.0, 0.1, 0.5))) for y in (-0.2, 0.2))
+    corridor = World("corridor", walls, Pose2D(), (), "", has_spawn=False)
+    robots = robots_from(SimParams(robots="5").spawn_params(), corridor, lambda _: burger)
+    assert sorted((robot.spawn.x, robot.spawn.y) for robot in robots) == [(x / 2, 0.0) for x in range(-2, 3)]
+
+
 def test_places_are_the_same_every_time() -> None:
     world, burger = world_named("stage_4"), model_named("burger")
     assert free_places(world, world.spawn, 8, burger) == free_places(world, world.spawn, 8, burger)

@@ -291,6 +291,29 @@ def test_poses_relative_to_what_is_beside_compose(tmp_path):
     np.testing.assert_allclose(rotation_matrix(found["m/c/c"].orientation), np.eye(3), atol=1e-12)
 
 
+def test_poses_relative_to_joints_compose_as_in_a_urdf_that_gz_converted(tmp_path):
+    # `gz sdf -p ROBOT.urdf` places each joint in its parent link, and the child link at the joint, by an empty <pose>.
+    quarter = "0 0 1.5707963267948966"
+    joints = (
+        f'<joint name="j" type="fixed"><pose relative_to="a">1 0 0 {quarter}</pose><child>b</child></joint>'
+        '<joint name="k" type="fixed"><pose>0 0 3 0 0 0</pose><child>b</child></joint>'
+    )
+    links = "".join(
+        f'<link name="{name}"><pose relative_to="{to}"{pose}{collision(SPHERE)}</link>'
+        for name, to, pose in (("b", "j", "/>"), ("c", "b", " degrees='false'>2 0 0 0 0 0</pose>"), ("d", "k", "/>"))
+    )
+    body = f'<model name="m"><static>1</static><link name="a"><pose>0 1 0 0 0 0</pose></link>{joints}{links}</model>'
+    found = {o.name: o.pose for o in load_world(write(tmp_path, body, "1.8")).obstacles}
+    for name, position in {"m/b/c": (1, 1, 0), "m/c/c": (1, 3, 0), "m/d/c": (1, 1, 3)}.items():
+        np.testing.assert_allclose(found[name].position, position, atol=1e-12)
+
+
+def test_collision_may_be_placed_in_the_world(tmp_path):
+    in_world = collision(SPHERE, pose="<pose relative_to='world'>1 2 3 0 0 0</pose>")
+    (obstacle,) = load_world(write(tmp_path, model(in_world, pose="<pose>5 5 5 1 1 1</pose>"), "1.8")).obstacles
+    assert obstacle.pose == Pose3D((1.0, 2.0, 3.0))
+
+
 def test_last_of_several_static_counts(tmp_path):
     body = model(collision(SPHERE)).replace("</static>", "</static><static>0</static>")
     assert "motion of model 'm'" in load_world(write(tmp_path, body)).ignored[0]
@@ -335,7 +358,7 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         ["m/in", "'in'", "taken"],
     ),
     "misspelt element": (model('<colision name="wall"/>'), 4, ["<colision>", "wall", "collision"]),
-    "state that adds a model": ('<state world_name="w">\n<insertions/></state>', 4, ["<insertions>", "model"]),
+    "state that adds a model": ('<state world_name="w">\n<insertions><model/></insertions></state>', 4, ["<insertions>", "model"]),
     "state that scales": (
         '<state><model name="m"><pose>0 0 0 0 0 0</pose>\n<scale>1 2 1</scale></model></state>',
         4,
@@ -389,6 +412,26 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         "<include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun</uri></include>",
         3,
         ["models/Sun'", "Gazebo Fuel", "nothing is downloaded"],
+    ),
+    "web page of a model on Gazebo Fuel": (
+        "<include><uri>HTTPS://app.gazebosim.org/OpenRobotics/fuel/models/Sun</uri></include>",
+        3,
+        ["models/Sun'", "Gazebo Fuel", "nothing is downloaded"],
+    ),
+    "model whose name only sounds like Gazebo Fuel": (
+        "<include><uri>model://fuel.can</uri></include>",
+        3,
+        ["model://fuel.can", "not found"],
+    ),
+    "pose relative to a joint of an unknown link": (
+        '<model name="m"><joint name="j"><child>\nb</child></joint><link name="l"><pose relative_to="j"/></link></model>',
+        3,
+        ["<child>b</child>", "<joint>", "beside it"],
+    ),
+    "link at its own joint": (
+        '<model name="m"><joint name="j"><child>l</child></joint><link name="l"><pose relative_to="j"/></link></model>',
+        3,
+        ["m/l", "relative to itself"],
     ),
     "pose in a frame of SDF 1.4": (model('\n<pose frame="hall">0 0 0 0 0 0</pose>'), 5, ["frame='hall'"]),
     "pose of a link in the world of SDF 1.4": (

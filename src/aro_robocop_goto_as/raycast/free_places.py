@@ -23,27 +23,47 @@ SEARCHES = ((0.1, 3.0), (0.5, 30.0))  # spacing and reach [m] of the grids on wh
 Cell = Tuple[int, int]  # of the grid; (0, 0) is the pose in the centre
 
 
+class _Room:
+    """Where in a world there is room for robots of a model, by the distance to the nearest obstacle.
+
+    In the world of a grid map, there is none in cells that are unknown, nor outside the map.
+    """
+
+    def __init__(self, world: World, model: RobotModel) -> None:
+        self.least = model.figures.footprint_radius + LEAST_MARGIN
+        self._surroundings = Surroundings(world, body_heights(model))
+        self._occupancy = world.occupancy
+
+    def at(self, x: float, y: float) -> float:
+        """The distance [m] from a point to the nearest obstacle; -inf where a robot may not start."""
+        if self._occupancy is not None and not self._occupancy.is_known(x, y):
+            return -math.inf
+        return self._surroundings.nearest(x, y).distance
+
+
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
     """The pose itself if a robot's footprint has room there, else the nearest one of a grid that has, with its yaw.
 
     ParameterError if there is none.
     """
-    surroundings = Surroundings(world, body_heights(model))
-    least = model.figures.footprint_radius + LEAST_MARGIN
-    if surroundings.nearest(around.x, around.y).distance >= least:
+    return _place(_Room(world, model), world.name, around)
+
+
+def _place(room: _Room, name: str, around: Pose2D) -> Pose2D:
+    if room.at(around.x, around.y) >= room.least:
         return around
     narrow: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
     for spacing, reach in SEARCHES:
         for x, y in _outwards(around, spacing, reach):
-            distance = surroundings.nearest(x, y).distance
+            distance = room.at(x, y)
             if distance >= CLEARANCE:
                 return Pose2D(x, y, around.yaw)
-            if narrow is None and distance >= least:
+            if narrow is None and distance >= room.least:
                 narrow = Pose2D(x, y, around.yaw)
     if narrow is not None:
         return narrow
     raise ParameterError(
-        f"spawn: world {world.name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
+        f"spawn: world {name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
         f"y {around.y:g}; give a spawn elsewhere"
     )
 
@@ -59,11 +79,23 @@ def _outwards(around: Pose2D, spacing: float, reach: float) -> Iterator[Tuple[fl
 def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> List[Pose2D]:
     """Poses on a grid, nearest to its centre first, clear of obstacles and connected to it by free grid edges.
 
-    The centre is free_place of the given pose. They depend on the arguments only. ParameterError if there are fewer
-    than `count`.
+    The centre is free_place of the given pose. If there are too few places with CLEARANCE, those where the footprint
+    has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
     """
-    walls, surroundings = Slice(world, HEIGHT), Surroundings(world, body_heights(model))
-    centre = free_place(world, around, model)
+    walls, room = Slice(world, HEIGHT), _Room(world, model)
+    centre = _place(room, world.name, around)
+    places: List[Pose2D] = []
+    for clearance in (CLEARANCE, room.least):
+        places = _connected_places(walls, room, centre, count, clearance)
+        if len(places) >= count:
+            return places
+    raise ParameterError(
+        f"robots: world {world.name!r} has room for {len(places)} around its spawn, {count} were requested"
+    )
+
+
+def _connected_places(walls: Slice, room: _Room, centre: Pose2D, count: int, clearance: float) -> List[Pose2D]:
+    """At most `count` places that are at least `clearance` [m] from all obstacles, the centre among them."""
     waiting: List[Tuple[int, Cell]] = [(0, (0, 0))]
     seen: Set[Cell] = {(0, 0)}
     places: List[Pose2D] = []
@@ -74,14 +106,10 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
         for di, dj in ((1, 0), (0, 1), (-1, 0), (0, -1)):
             neighbour = (cell[0] + di, cell[1] + dj)
             pose = _pose(centre, neighbour)
-            is_clear = neighbour not in seen and surroundings.nearest(pose.x, pose.y).distance >= CLEARANCE
+            is_clear = neighbour not in seen and room.at(pose.x, pose.y) >= clearance
             if is_clear and _is_visible(pose, place, walls):
                 seen.add(neighbour)
                 heapq.heappush(waiting, (neighbour[0] ** 2 + neighbour[1] ** 2, neighbour))
-    if len(places) < count:
-        raise ParameterError(
-            f"robots: world {world.name!r} has room for {len(places)} around its spawn, {count} were requested"
-        )
     return places
 
 

@@ -36,7 +36,7 @@ class Surroundings:
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float = 0.0) -> None:
         self._names: List[str] = []  # of the outlines: one for each obstacle and height
-        self._solid: List[bool] = []
+        solid: List[bool] = []
         segments, circles, owners, circle_owners = [np.zeros((0, 2, 2))], [np.zeros((0, 3))], [], []
         for obstacle in world.obstacles:
             for height in heights:
@@ -46,7 +46,8 @@ class Surroundings:
                 segments.append(outline.segments)
                 circles.append(outline.circles)
                 self._names.append(obstacle.name)
-                self._solid.append(not isinstance(obstacle.geometry, (Mesh, Plane)))
+                solid.append(not isinstance(obstacle.geometry, (Mesh, Plane)))
+        self._is_solid = np.array(solid, dtype=bool)
         self._start, end = np.moveaxis(np.concatenate(segments), 1, 0)
         self._along = end - self._start
         self._squares = np.maximum((self._along**2).sum(axis=1), 1e-18)
@@ -62,12 +63,12 @@ class Surroundings:
         gaps = np.hypot(*(from_start - share[:, None] * self._along).T)
         rounds = np.hypot(self._circles[:, 0] - x, self._circles[:, 1] - y) - self._circles[:, 2]
         distances = np.maximum(np.concatenate([gaps, rounds]), 0.0)
-        distances[np.isin(self._owners, self._around(from_start))] = 0.0
+        distances[self._around(from_start)[self._owners]] = 0.0
         best = int(distances.argmin())
         return Nearest(float(distances[best]), self._names[self._owners[best]])
 
     def _around(self, from_start: np.ndarray) -> np.ndarray:
-        """The solid outlines around a point: a ray from it along x crosses their segments an odd number of times.
+        """Which outlines are solid and around a point: a ray from it along x crosses them an odd number of times.
 
         from_start: (m, 2) [m] from the start of each segment to the point
         """
@@ -77,4 +78,4 @@ class Surroundings:
         with np.errstate(divide="ignore", invalid="ignore"):
             crosses &= dx < self._along[:, 0] * (dy / upwards)
         counts = np.bincount(self._owners[: len(dx)], weights=crosses, minlength=len(self._names))
-        return np.flatnonzero((counts % 2 == 1) & np.array(self._solid))
+        return (counts % 2 == 1) & self._is_solid

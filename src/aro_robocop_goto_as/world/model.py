@@ -1,11 +1,12 @@
 """The model of a world: obstacles, each a geometry at a pose."""
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
-from ..geometry import Pose2D, Pose3D, Vector3, lifted
+from ..geometry import Pose2D, Pose3D, Vector3, compose, inverse, lifted
 from .motion import Motion
 
 
@@ -74,6 +75,13 @@ class Occupancy:
     resolution: float
     origin: Pose2D
 
+    def is_known(self, x: float, y: float) -> bool:
+        """Whether a point [m] in the map is in a cell that is not unknown."""
+        point = compose(inverse(self.origin), Pose2D(x, y))
+        column, row = math.floor(point.x / self.resolution), math.floor(point.y / self.resolution)
+        rows, columns = self.cells.shape
+        return 0 <= column < columns and 0 <= row < rows and bool(self.cells[row, column] >= 0)
+
 
 @dataclass(frozen=True)
 class Obstacle:
@@ -108,7 +116,8 @@ class World:
 
     obstacles: in the file's order, the ground included
     spawn: world_from_footprint of a robot at the start [m, rad]
-    has_spawn: whether the file says so; otherwise `spawn` is the origin, where something may stand
+    has_spawn: whether the file says so; otherwise `spawn` is the origin or, in a map, a free place near it, where there
+        may not be room for a robot
     ignored: each element that was left out although it would have had an effect, such as "light 'sun' (line 4)"
     path: the file, as it was given to load_world
     models: world_from_model of each model [m]; the names of its obstacles begin with the model's name

@@ -13,6 +13,7 @@ from nav_msgs.msg import Odometry
 from ...errors import FrameError
 from ...geometry import FARTHEST, Pose2D, compose
 from .. import convert
+from .tf_buffer import STAMP_LIMIT, TfBuffer, is_possible
 
 POLL = 0.01  # [s, wall]
 
@@ -27,7 +28,7 @@ class GoalTransformer:
         self.default_frame = default_frame
         self.timeout = timeout
         self.latest_odom = latest_odom
-        self.buffer = tf2_ros.Buffer()
+        self.buffer = TfBuffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
 
     def resolve(self, pose: PoseStamped) -> Point:
@@ -75,6 +76,8 @@ class GoalTransformer:
 
     def _transform_at(self, point: Point, frame: str, stamp: rospy.Time) -> Tuple[Optional[Point], str]:
         """The transformed point, or None with the reason; does not wait."""
+        if not is_possible(stamp):
+            return None, f"the stamp of {stamp.secs} s is beyond {STAMP_LIMIT} s"
         pose = PoseStamped()
         pose.header.frame_id, pose.header.stamp = frame, stamp
         pose.pose.position = point

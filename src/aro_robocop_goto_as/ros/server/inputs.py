@@ -106,17 +106,19 @@ class Inputs:
         """
         for received, outcome in ((self.odom, Outcome.NO_ODOM), (self.valid_scan, Outcome.NO_SCAN)):
             last = started
-            if received is not None and received.at <= now:  # not so for a message from before the clock was set back
+            # A message later than the present is from before the clock was set back; one later than `now` need not be.
+            if received is not None and received.at <= _now():
                 last = max(started, received.at)
             if now - last > self.p.data_timeout and not wait_until(self._has_data, LATE_DATA):
                 since = "so far" if received is None else f"for {now - received.at:.1f} s"
-                return outcome, f"no {self._what_is_missing(outcome, now)} {since}, limit {self.p.data_timeout:g} s"
+                return outcome, f"no {self._what_is_missing(outcome)} {since}, limit {self.p.data_timeout:g} s"
         return None
 
-    def _what_is_missing(self, outcome: Outcome, now: float) -> str:
+    def _what_is_missing(self, outcome: Outcome) -> str:
         if outcome is Outcome.NO_ODOM:
             return f"message on {rospy.resolve_name('odom')}"
-        what = "valid beam ahead" if self._is_recent(self.scan, now) else "message"
+        # By the time of now, as scans have arrived since the control period began.
+        what = "valid beam ahead" if self._is_recent(self.scan, _now()) else "message"
         return f"{what} on {rospy.resolve_name('scan')}"
 
     def _is_recent(self, received: Optional[Received], now: float) -> bool:

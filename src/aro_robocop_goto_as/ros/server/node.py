@@ -157,12 +157,14 @@ class GotoServer:
         """Stop the robot and end the active goal, if there is one; call while handling the error."""
         expected = isinstance(error, RobocopError)
         ending = Ending(Outcome.ERROR, str(error) if expected else f"{type(error).__name__}: {error}")
-        if not rospy.is_shutdown():
-            rospy.logerr("goal failed: %s%s", ending.message, "" if expected else "\n" + traceback.format_exc())
+        if not expected and not rospy.is_shutdown():
+            rospy.logerr("goal failed: %s\n%s", ending.message, traceback.format_exc())
         if self.server.is_active():
             self._end(ending)
-        else:
-            self._publish_command(STANDSTILL)
+            return
+        if expected:  # _end, which logs it otherwise, is not called
+            rospy.logerr("%s", ending.message)
+        self._publish_command(STANDSTILL)
 
     def _end(self, ending: Ending) -> None:
         """Stop the robot and give the active goal its terminal state."""

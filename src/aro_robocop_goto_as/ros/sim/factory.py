@@ -14,7 +14,6 @@ from ...simulation.simulator import Simulator
 from ...world.load import find_world, load_world
 from ...world.model import World
 from ...world.random_maze import random_world
-from ...world.sdf.reader import SPAWN_FRAME
 from .robot_topics import MessageConfig
 
 PACKAGE = "aro_robocop_goto_as"
@@ -53,12 +52,12 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
         rospy.loginfo("world %s has moving obstacles, which are disabled; moving:=true enables them", world.name)
     rospy.loginfo("world %s from %s", world.name, world.path)
     first = simulator.robots[0].spawn
-    if not (world.has_spawn or p.spawn.strip()) and first != world.spawn and (p.robots.strip() or "1").isdigit():
+    is_elsewhere = not world.has_spawn and (first.x, first.y) != (0.0, 0.0)
+    if is_elsewhere and not p.spawn.strip() and (p.robots.strip() or "1").isdigit():
         rospy.logwarn(
-            "world %s has no %s frame, and something is in the way at x 0 y 0: x %.2f y %.2f is the nearest place with "
-            "room; spawn:='X Y' chooses another one",
+            "world %s does not say where robots start, and at x 0 y 0 there is no room: x %.2f y %.2f is the nearest "
+            "place that has; spawn:='X Y' chooses another one",
             world.name,
-            SPAWN_FRAME,
             first.x,
             first.y,
         )

@@ -12,7 +12,7 @@ from ..model import Obstacle, Occupancy, Plane, Walls, World
 from .map_file import MapSpec, read_cells, read_spec
 
 WALL_HEIGHT = 0.5  # [m], as in the worlds of this package
-SPAWN_CLEARANCES = (0.3, 0.12)  # [m] around the spawn: the preferred one, and the least for a Burger
+SPAWN_CLEARANCES = (0.3, 0.13)  # [m] around the spawn: the preferred one, and the least for a Burger
 
 
 def read_map(path: str) -> World:
@@ -32,7 +32,7 @@ def read_map(path: str) -> World:
     name = os.path.splitext(os.path.basename(path))[0]
     spawn = _spawn(occupancy, occupied | (occupancy.cells < 0), path)
     ignored = tuple(f"key '{key}' of the map" for key in spec.unknown)
-    return World(name, obstacles, spawn, ignored, path, occupancy=occupancy)
+    return World(name, obstacles, spawn, ignored, path, occupancy=occupancy, has_spawn=False)
 
 
 def _lowest_wall(spec: MapSpec) -> int:

@@ -6,7 +6,7 @@ from ...geometry import Pose3D, compose3, inverse3
 from . import xml
 
 _OWN_FRAME = {"sdf": "world", "world": "world", "model": "__model__"}  # SDF's name for an element's own frame
-_NAMED = ("frame", "include", "link", "model")  # children of a world or a model that a pose can be relative to
+_NAMED = ("frame", "include", "joint", "link", "model")  # children of a world or a model that a pose can be relative to
 
 Chain = Tuple[xml.Element, ...]  # elements whose poses are being resolved
 
@@ -16,10 +16,10 @@ def placed(element: xml.Element, world_from_parent: Pose3D) -> Pose3D:
 
     WorldError if that frame is unknown or defined by itself.
     """
-    if element.getparent() is not None and element.getparent().tag == "link":
-        return compose3(world_from_parent, _in_link(element))
     if element.find("pose") is not None and element.find("pose").get("relative_to") == "world":
         return xml.pose_of(element)
+    if element.getparent() is not None and element.getparent().tag == "link":
+        return compose3(world_from_parent, _in_link(element))
     return compose3(world_from_parent, _in_scope(element, ()))
 
 
@@ -48,11 +48,22 @@ def _in_scope(element: xml.Element, chain: Chain) -> Pose3D:
 
 def _frame_name(element: xml.Element) -> str:
     """The frame that an element's <pose> is given in; empty for its parent's."""
+    return _frame_reference(element)[1]
+
+
+def _frame_reference(element: xml.Element) -> Tuple[str, str]:
+    """How an element names the frame that its <pose> is given in, for messages, and that frame's name, or empty."""
     pose = xml.optional_child(element, "pose")
-    # Gazebo Classic 9 writes frame='', which means the parent's frame, as an absent attribute does.
-    name = "" if pose is None else pose.get("relative_to") or pose.get("frame", "")
-    attached = element.get("attached_to", "") if element.tag == "frame" else ""
-    return str(name or attached)
+    for key in () if pose is None else ("relative_to", "frame"):
+        # Gazebo Classic 9 writes frame='', which means the parent's frame, as an absent attribute does.
+        if pose.get(key):
+            return f"<pose {key}='{pose.get(key)}'>", str(pose.get(key))
+    if element.tag == "frame":
+        return f"<frame attached_to='{element.get('attached_to')}'>", str(element.get("attached_to", ""))
+    if element.tag == "joint":
+        child = xml.text_of(xml.required_child(element, "child"))
+        return f"<child>{child}</child>", child
+    return "", ""
 
 
 def _referred(element: xml.Element, name: str, scope: xml.Element, chain: Chain) -> Pose3D:
@@ -64,11 +75,10 @@ def _referred(element: xml.Element, name: str, scope: xml.Element, chain: Chain)
             if sibling.tag == "include" and xml.optional_child(sibling, "pose") is None:
                 raise xml.error(element, f"'{name}' is an <include> without <pose>; supported: one that has a <pose>")
             return _in_scope(sibling, chain)
-    attribute = "attached_to" if pose is None else "frame" if pose.get("frame") else "relative_to"
     raise xml.error(
         element if pose is None else pose,
-        f"<{'frame' if pose is None else 'pose'} {attribute}='{name}'> is not supported; supported: a pose in the "
-        "parent's frame, or relative_to a <link>, <model>, <include> or <frame> beside it, or to the world",
+        f"{_frame_reference(element)[0]} is not supported; supported: a pose in the parent's frame, or relative_to a "
+        "<link>, <model>, <joint>, <frame> or named <include> beside it, or to the world",
     )
 
 

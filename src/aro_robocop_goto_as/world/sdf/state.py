@@ -5,6 +5,9 @@ from typing import Dict, Iterator, Tuple
 from ...geometry import Pose3D
 from . import xml
 
+_SKIPPED = ("deletions", "insertions", "iterations", "light", "real_time", "sim_time", "wall_time")
+_SKIPPED_OF_MODELS = ("acceleration", "collision", "joint", "static", "velocity", "wrench")
+
 SavedPoses = Dict[str, Tuple[Pose3D, xml.Element]]  # model or link name: its pose in the world and its element
 
 
@@ -15,16 +18,16 @@ def state_poses(world: xml.Element) -> SavedPoses:
     """
     poses: SavedPoses = {}
     for state in world.iterchildren("state"):
-        xml.require_known_children(state, ("model",), ("iterations", "light", "real_time", "sim_time", "wall_time"))
+        for change in state.iterchildren("insertions", "deletions"):
+            xml.require_known_children(change, ())
+        xml.require_known_children(state, ("model",), _SKIPPED)
         poses.update(_poses(state, ""))
     return poses
 
 
 def _poses(parent: xml.Element, prefix: str) -> Iterator[Tuple[str, Tuple[Pose3D, xml.Element]]]:
     for element in parent.iterchildren("model", "link"):
-        xml.require_known_children(
-            element, ("link", "model", "pose", "scale"), ("acceleration", "collision", "static", "velocity", "wrench")
-        )
+        xml.require_known_children(element, ("link", "model", "pose", "scale"), _SKIPPED_OF_MODELS)
         scale = xml.optional_child(element, "scale")
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
             raise xml.error(scale, f"<scale> is '{xml.text_of(scale)}', supported: 1 1 1")

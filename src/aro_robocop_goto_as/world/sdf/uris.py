@@ -10,6 +10,7 @@ from . import xml
 
 Candidate = Tuple[str, str]  # a path that may exist, and the reason to look there, for messages
 
+_REMOTE = ("fuel", "ftp", "http", "https")  # schemes of files on other machines
 _CONFIG, _MODEL = "model.config", "model.sdf"
 _BESIDE = (".", "..", "models", os.path.join("..", "models"))  # relative to the directory of the file with the URI
 
@@ -42,10 +43,10 @@ def locate(uri: str, start: str, reason: str) -> str:
     scheme, separator, path = normalised(uri).partition("://")
     if not separator:
         scheme, path = "file", uri
-    if scheme == "fuel" or path.startswith("fuel."):  # fuel.gazebosim.org, formerly fuel.ignitionrobotics.org
-        raise WorldError(
-            f"'{uri}' is on Gazebo Fuel, and nothing is downloaded; expected model://NAME of a local model"
-        )
+    if scheme.lower() in _REMOTE:
+        # fuel.gazebosim.org, formerly fuel.ignitionrobotics.org; app.gazebosim.org/OWNER/fuel is its web page
+        where = "on Gazebo Fuel" if "fuel" in uri.lower() else "a web address"
+        raise WorldError(f"'{uri}' is {where}, and nothing is downloaded; expected model://NAME of a local model")
     if scheme not in _CANDIDATES or not path:
         raise WorldError(f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
     looked_for: List[str] = []

@@ -196,10 +196,11 @@ def pose_numbers(element: Element) -> Tuple[float, ...]:
 
 
 def _pose_numbers(pose: Element) -> Tuple[float, ...]:
+    """Zeros for a <pose> without text, as `gz sdf` writes it for a link that coincides with its joint."""
     for key, value in pose.attrib.items():
-        if key not in ("frame", "relative_to"):
+        if key not in ("frame", "relative_to") and (key, _BOOLEANS.get(value.lower())) != ("degrees", False):
             raise error(pose, f"<pose {key}='{value}'> is not supported; supported: metres and radians")
-    return numbers(pose, 6)
+    return numbers(pose, 6) if text_of(pose) else (0.0,) * 6
 
 
 def pose_of(element: Element) -> Pose3D:
