@@ -50,7 +50,6 @@ class Scene:
     trail: bool = True
     axes: Tuple[str, ...] = ("map", "odom")  # frames whose axes are shown
     server: bool = True  # the markers of the go-to server
-    hidden: Tuple[str, ...] = ()  # namespaces of these markers that have no place in the fixed frame
     image: str = ""  # topic of a camera's images
 
 
@@ -65,7 +64,7 @@ def robocop(scene: Scene) -> str:
         (scene.trail, displays.trail()),
         *((True, displays.axes(frame)) for frame in scene.axes),
         (True, displays.frames()),
-        (scene.server, displays.markers("Server", SERVER_TOPIC, 1, scene.hidden)),
+        (scene.server, displays.markers("Server", SERVER_TOPIC, 1)),
         (bool(scene.image), displays.image(scene.image)),
     ]
     tools: List[Entry] = [

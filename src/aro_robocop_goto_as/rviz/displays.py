@@ -43,15 +43,14 @@ def grid_map() -> Entry:
     }
 
 
-def markers(name: str, topic: str, waiting: int, hidden: Sequence[str] = ()) -> Entry:
-    """Markers, of which this many messages may wait for their transforms; hidden: namespaces that are not ticked."""
+def markers(name: str, topic: str, waiting: int) -> Entry:
+    """Markers, of which this many messages may wait for their transforms."""
     return {
         "Class": "rviz/MarkerArray",
         "Name": name,
         "Enabled": True,
         "Marker Topic": topic,
         "Queue Size": waiting,
-        "Namespaces": {namespace: False for namespace in hidden},
     }
 
 

@@ -20,7 +20,6 @@ MAP = "map"
 FIXED_IN_WORLD = ("world", MAP, "odom")  # frames that do not move with the robot
 LARGEST_SIDE = 12.0  # [m] of the part that is shown; in a larger one a robot would be a few pixels
 AROUND_ROBOT = Extent((-3.0, -3.0), (3.0, 3.0))
-GOAL_MARKERS = ("goal_circle", "goal_pin")  # in odom
 MARGIN = 1.0  # [m] around a robot, whose text is about two metres wide
 MESSAGE_TIMEOUT = 5.0  # [s, wall] for a latched message of a topic that is published
 STARTS_TIMEOUT = 1.0  # [s, wall] for map -> odom of the robots, which localization:=none does not publish
@@ -65,7 +64,6 @@ def _observed(fixed_frame: str, wait: float, server: bool, window: Window) -> Sc
         trail=placed or in_world,
         axes=(MAP, f"{robot}/odom".lstrip("/")) if placed or in_world else (fixed_frame,),
         server=server,
-        hidden=() if placed or in_world else GOAL_MARKERS,
         image=image_topic(topics, rospy.get_namespace()),
     )
 

@@ -9,17 +9,15 @@ from visualization_msgs.msg import Marker
 from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # translucent: walls must not hide the scan and the robot behind them
-BODIES = [  # of the robots in turn; red, pink and grey are the scan's, the goal's and the walls'
-    ColorRGBA(red, green, blue, 1.0)
-    for red, green, blue in (
-        (0.35, 0.78, 0.98),
-        (0.98, 0.80, 0.25),
-        (0.60, 0.86, 0.35),
-        (0.78, 0.60, 0.98),
-        (0.98, 0.62, 0.40),
-        (0.35, 0.90, 0.78),
-    )
-]
+BODIES = {  # of the robots in turn; pink and grey are the goal's and the walls'
+    "blue": (0.35, 0.78, 0.98),
+    "yellow": (0.98, 0.80, 0.25),
+    "green": (0.60, 0.86, 0.35),
+    "violet": (0.78, 0.60, 0.98),
+    "orange": (0.98, 0.62, 0.40),
+    "turquoise": (0.35, 0.90, 0.78),
+}
+RED = (0.92, 0.36, 0.30)  # the scan's: only of a robot called red
 NOSE = ColorRGBA(0.10, 0.11, 0.13, 1.0)
 NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 CLEAR = Marker(action=Marker.DELETEALL)  # deletes earlier markers: a changed world may have fewer obstacles
@@ -61,6 +59,12 @@ def world_markers(world: World, frame: str, time: float, moving: bool = False) -
     ]
 
 
+def body_color(name: str, number: int) -> ColorRGBA:
+    """The colour that a robot is named after, else one by its number."""
+    colors = list(BODIES.values())
+    return ColorRGBA(*{"red": RED, **BODIES}.get(name, colors[number % len(colors)]), 1.0)
+
+
 def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
     """A coloured body, an arrow ahead and a name for each robot, given as its name, base frame and radius [m].
 
@@ -68,7 +72,7 @@ def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
     """
     found: List[Marker] = []
     for number, (name, frame, radius) in enumerate(robots):
-        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=BODIES[number % len(BODIES)])
+        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=body_color(name, number))
         body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
         nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)
         nose.scale, nose.pose.position.z = Vector3(1.3 * radius, 0.03, 0.03), NOSE_HEIGHT

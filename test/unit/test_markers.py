@@ -1,4 +1,4 @@
-"""What RViz shows of the server: the newest goal stays, in a colour that says how it ended."""
+"""What RViz shows: the newest goal stays, in a colour that says how it ended; robots can be told apart."""
 
 import pytest
 from nav_msgs.msg import Odometry
@@ -7,6 +7,7 @@ from aro_robocop_goto_as.goto import Goal, Outcome
 from aro_robocop_goto_as.params import GotoParams
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.server.markers import NOT_REACHED, REACHED, ShownGoal, server_markers
+from aro_robocop_goto_as.ros.sim.world_markers import body_color, robot_markers
 
 ODOM = Odometry(child_frame_id="base_footprint")
 ODOM.header.frame_id = "odom"
@@ -31,3 +32,11 @@ def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
         assert made[name].header.frame_id == "odom"
         assert (made[name].pose.position.x, made[name].pose.position.y) == (1.0, -2.0)
         assert made[name].color == color
+
+
+def test_robots_have_different_colours_and_those_named_after_a_colour_have_that_one():
+    robots = [(f"robot_{number}", f"robot_{number}/base_footprint", 0.1) for number in range(1, 7)]
+    bodies = [marker.color for marker in robot_markers(robots) if marker.ns == "robots"]
+    assert len({(color.r, color.g, color.b) for color in bodies}) == 6
+    red, blue = (body_color(name, 1) for name in ("red", "blue"))
+    assert red.r > 2 * red.b and blue.b > 2 * blue.r
