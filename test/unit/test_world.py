@@ -358,7 +358,11 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         ["m/in", "'in'", "taken"],
     ),
     "misspelt element": (model('<colision name="wall"/>'), 4, ["<colision>", "wall", "collision"]),
-    "state that adds a model": ('<state world_name="w">\n<insertions><model/></insertions></state>', 4, ["<insertions>", "model"]),
+    "state that adds a model": (
+        '<state world_name="w">\n<insertions><model/></insertions></state>',
+        4,
+        ["<insertions>", "<model>"],
+    ),
     "state that scales": (
         '<state><model name="m"><pose>0 0 0 0 0 0</pose>\n<scale>1 2 1</scale></model></state>',
         4,
@@ -428,6 +432,13 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         3,
         ["<child>b</child>", "<joint>", "beside it"],
     ),
+    "too long a chain of frames": (
+        "".join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(3000))
+        + '<frame name="f3000"/><model name="m"><pose relative_to="f0"/></model>',
+        3,
+        ["more than 100 poses"],
+    ),
+    "saved state that deletes a model": ('<state world_name="w">\n<deletions>m</deletions></state>', 4, ["<deletions>"]),
     "link at its own joint": (
         '<model name="m"><joint name="j"><child>l</child></joint><link name="l"><pose relative_to="j"/></link></model>',
         3,

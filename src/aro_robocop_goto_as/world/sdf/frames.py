@@ -7,6 +7,7 @@ from . import xml
 
 _OWN_FRAME = {"sdf": "world", "world": "world", "model": "__model__"}  # SDF's name for an element's own frame
 _NAMED = ("frame", "include", "joint", "link", "model")  # children of a world or a model that a pose can be relative to
+MAX_CHAIN = 100  # of poses, each relative to the next
 
 Chain = Tuple[xml.Element, ...]  # elements whose poses are being resolved
 
@@ -40,6 +41,8 @@ def _in_scope(element: xml.Element, chain: Chain) -> Pose3D:
     """Pose of a child of a world or a model in that one's frame."""
     if element in chain:
         raise xml.error(element, f"the pose of <{element.tag} name='{_name(element)}'> is relative to itself")
+    if len(chain) >= MAX_CHAIN:
+        raise xml.error(element, f"more than {MAX_CHAIN} poses relative to one another; supported: {MAX_CHAIN}")
     name, pose, scope = _frame_name(element), xml.own_pose(element), element.getparent()
     if name in ("", "" if scope is None else _OWN_FRAME.get(str(scope.tag), "")):
         return pose

@@ -19,7 +19,8 @@ def state_poses(world: xml.Element) -> SavedPoses:
     poses: SavedPoses = {}
     for state in world.iterchildren("state"):
         for change in state.iterchildren("insertions", "deletions"):
-            xml.require_known_children(change, ())
+            if xml.text_of(change):
+                raise xml.error(change, f"<{change.tag}> in <state> is supported only if it is empty")
         xml.require_known_children(state, ("model",), _SKIPPED)
         poses.update(_poses(state, ""))
     return poses
