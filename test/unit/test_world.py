@@ -428,7 +428,7 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         ["model://fuel.can", "not found"],
     ),
     "pose relative to a joint of an unknown link": (
-        '<model name="m"><joint name="j"><child>\nb</child></joint><link name="l"><pose relative_to="j"/></link></model>',
+        '<model name="m"><joint name="j"><child>b</child></joint><link name="l"><pose relative_to="j"/></link></model>',
         3,
         ["<child>b</child>", "<joint>", "beside it"],
     ),
@@ -438,7 +438,11 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
         3,
         ["more than 100 poses"],
     ),
-    "saved state that deletes a model": ('<state world_name="w">\n<deletions>m</deletions></state>', 4, ["<deletions>"]),
+    "saved state that deletes a model": (
+        '<state world_name="w">\n<deletions>m</deletions></state>',
+        4,
+        ["<deletions>"],
+    ),
     "link at its own joint": (
         '<model name="m"><joint name="j"><child>l</child></joint><link name="l"><pose relative_to="j"/></link></model>',
         3,

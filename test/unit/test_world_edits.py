@@ -94,8 +94,10 @@ def test_missing_model_file_is_reported_with_the_searched_places(crate_folder):
         WorldError, match=r"'stool.sdf' was not found; looked for: /.*stool.sdf \(beside the world's file\)"
     ):
         requested("stool.sdf")
-    with pytest.raises(WorldError, match="'https://a.b/stool' is not supported; supported: model://, package://"):
+    with pytest.raises(WorldError, match="'https://a.b/stool' is a web address, and nothing is downloaded"):
         requested("https://a.b/stool")
+    with pytest.raises(WorldError, match="'shop://stool' is not supported; supported: model://, package://"):
+        requested("shop://stool")
     (crate_folder / "model.config").unlink()
     with pytest.raises(WorldError, match=f"but there is no file {crate_folder}/model.sdf"):
         requested("model://crate")

@@ -57,10 +57,11 @@ def _frame_name(element: xml.Element) -> str:
 def _frame_reference(element: xml.Element) -> Tuple[str, str]:
     """How an element names the frame that its <pose> is given in, for messages, and that frame's name, or empty."""
     pose = xml.optional_child(element, "pose")
-    for key in () if pose is None else ("relative_to", "frame"):
+    for key in ("relative_to", "frame"):
         # Gazebo Classic 9 writes frame='', which means the parent's frame, as an absent attribute does.
-        if pose.get(key):
-            return f"<pose {key}='{pose.get(key)}'>", str(pose.get(key))
+        name = "" if pose is None else str(pose.get(key, ""))
+        if name:
+            return f"<pose {key}='{name}'>", name
     if element.tag == "frame":
         return f"<frame attached_to='{element.get('attached_to')}'>", str(element.get("attached_to", ""))
     if element.tag == "joint":
