@@ -245,6 +245,14 @@ def test_model_comes_from_the_environment_as_for_turtlebot3_unless_it_is_given(m
     assert chosen("model:=burger", f"config:={config}") == ("burger", "turtlebot3_burger")
 
 
+def test_unknown_model_of_the_environment_is_refused_with_the_name_of_the_variable(monkeypatch, capfd):
+    monkeypatch.setenv("TURTLEBOT3_MODEL", "wafle")
+    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
+        Launch()
+    assert "TURTLEBOT3_MODEL" in capfd.readouterr().err
+    assert Launch("model:=burger").given(SIM)["model"] == "burger"
+
+
 @pytest.fixture(autouse=True)
 def without_a_model_in_the_environment(monkeypatch):
     monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional
 
 import yaml
 
-from ...errors import ParameterError, RobocopError
+from ...errors import ParameterError, RobocopError, RobotModelError
 from ...params import SimParams
 from ...robot.catalog import urdf_of
 
@@ -28,6 +28,17 @@ def merged(paths: List[str]) -> Dict[str, Any]:
     return values
 
 
+def _urdf(chosen: Any, package: str) -> str:
+    """Path of the chosen model's URDF, or else of the environment's; RobotModelError says if it is the latter's."""
+    of_environment = os.environ.get(MODEL_VARIABLE)
+    if chosen is not None or not of_environment:
+        return urdf_of(SimParams.model if chosen is None else str(chosen), package)
+    try:
+        return urdf_of(of_environment, package)
+    except RobotModelError as error:
+        raise RobotModelError(f"{error}; the environment variable {MODEL_VARIABLE} chose it") from error
+
+
 def main(arguments: Optional[List[str]] = None) -> None:
     """Print the URDF. Arguments: the package's folder, the launch argument `robots`, parameter files; '' for none."""
     package, robots, *paths = sys.argv[1:] if arguments is None else arguments
@@ -39,8 +50,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
                 "does not start their other nodes; pass it as the argument robots:=... instead",
                 file=sys.stderr,
             )
-        model = str(values.get("model", os.environ.get(MODEL_VARIABLE) or SimParams.model))
-        with open(urdf_of(model, package), encoding="utf-8") as urdf:
+        with open(_urdf(values.get("model"), package), encoding="utf-8") as urdf:
             print(urdf.read(), end="")
     except RobocopError as error:
         sys.exit(f"{error.code}: {error}")
