@@ -10,7 +10,7 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Trigger
-from system import SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
+from system import DEADLINE, SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, arc, wrap_angle
 from aro_robocop_goto_as.ros.convert import to_quaternion
@@ -68,7 +68,8 @@ class SimulatedStage:
     def pass_time(self, seconds):
         """Let simulated time pass [s]."""
         end = self.now + seconds
-        wait_for(lambda: self.now >= end, f"{seconds:g} s of simulated time from {self.now:.2f} s on")
+        what = f"{seconds:g} s of simulated time from {self.now:.2f} s on"
+        wait_for(lambda: self.now >= end, what, DEADLINE + seconds)  # not slower than real time
 
     def require_rest(self):
         """Violation unless all robots are at rest one second after the newest result."""
