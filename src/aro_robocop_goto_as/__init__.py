@@ -43,6 +43,7 @@ From the running system to RViz:
 
 Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of the
 simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them there
-and in `config/` before the code. `process` is about operating system processes, `bootstrap` needs nothing installed,
+and in `config/` before the code. `compiled` loads the libraries that CMake makes of
+caster.c and sender.c, `process` is about operating system processes, `bootstrap` needs nothing installed,
 `hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the simulator.
 """
