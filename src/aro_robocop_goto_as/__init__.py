@@ -41,9 +41,9 @@ From the running system to RViz:
     ros.cli.rviz_scene            topics, tf_static, the world's markers -> rviz.config.Scene
     rviz.config                   + rviz.camera, rviz.displays -> the configuration file that ros.cli.rviz opens
 
-Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of the
-simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them there
-and in `config/` before the code. `compiled` loads the libraries that CMake makes of
-caster.c and sender.c, `process` is about operating system processes, `bootstrap` needs nothing installed,
-`hosting` builds and runs other people's packages, `grading` judges them, `bench` measures the simulator.
+Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of
+the simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them
+there and in `config/` before the code. `compiled` loads the libraries that CMake makes of caster.c and sender.c,
+`process` is about operating system processes, `bootstrap` needs nothing installed, `hosting` builds and runs other
+people's packages, `grading` judges them, `bench` measures the simulator.
 """
