@@ -16,7 +16,7 @@ SOURCE = ROOT / "src" / PACKAGE
 IMPORTS = Imports(SOURCE)
 PYTHON = ("src", "scripts", "test", "docs", "setup.py")
 # Correct words, and deliberate misspellings in tests.
-SPELT_RIGHT = "colision,crate,fro,modle,orgin,sise"
+SPELT_RIGHT = "colision,crate,fro,modle,orgin,poin,sise,wrold"
 PROSE = (
     *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
     *("mkdocs.yml", "robocop"),

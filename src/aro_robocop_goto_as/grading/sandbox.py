@@ -104,7 +104,8 @@ class Sandbox:
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
         wrap += ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
         if os.geteuid() == 0:
-            wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]
+            # For setpriv, which gives all of them up: SETPCAP is needed to empty the bounding set (util-linux 2.41).
+            wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
         wrap += ["--proc", "/proc", "--dev", "/dev"]
         for place in ("/tmp", "/dev/shm"):
             wrap += _writable(place)
