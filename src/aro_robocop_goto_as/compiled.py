@@ -1,7 +1,6 @@
 """The package's compiled libraries: how they are found, loaded and checked."""
 
 import ctypes
-import functools
 import os
 from typing import Optional, Sequence
 
@@ -29,7 +28,6 @@ def find(name: str, folders: Optional[Sequence[str]] = None) -> str:
     raise InstallationError(f"{file_name(name)} is in none of {', '.join(folders)}: {BUILD}")
 
 
-@functools.lru_cache(maxsize=None)
 def load(name: str, version: int, path: Optional[str] = None) -> ctypes.PyDLL:
     """A library, which holds the GIL during its calls, so that one thread at a time runs in it.
 
