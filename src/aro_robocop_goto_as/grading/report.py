@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 from .checks import PLOTS as PLOT_OF
 from .github import as_classroom, as_summary
+from .gradescope import as_gradescope
 from .html import render
 from .judge import CheckResult, Grade, Outcome, Records, printable_lines
 from .plan import BRIDGE_SCENARIOS, START, Plan
@@ -39,23 +40,6 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
         "problems": list(grade.problems),
         "checks": [_check_as_json(check) for check in grade.checks],
     }
-
-
-def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
-    """The grade as Gradescope's autograders report it: gradescope-autograders.readthedocs.io, "Autograder output"."""
-    tests = [
-        {
-            "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
-            "number": f"{check.part}.{check.name}",
-            "score": check.points,
-            "max_score": 0.0 if check.extra else check.points_available,
-            "status": "passed" if check.outcome is Outcome.PASSED else "failed",
-            "output": printable_lines(check.explanation()),
-        }
-        for check in grade.checks
-    ]
-    output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
-    return {"score": grade.points, "output": "\n".join(output), "tests": tests}
 
 
 def _check_as_json(check: CheckResult) -> Dict[str, object]:
