@@ -17,8 +17,10 @@ from hypothesis import strategies as st
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading.classroom import overview, worker
 from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, unpack
+from aro_robocop_goto_as.grading.classroom.main import class_seed
 from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results, table
 from aro_robocop_goto_as.grading.classroom.worker import Done
+from aro_robocop_goto_as.grading.draw import LARGEST_SEED
 from aro_robocop_goto_as.grading.plan import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
@@ -150,6 +152,17 @@ def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
     assert not Results(tmp_path, {"plan": "2"}).has(hand_in)
     results.keep(report("anna", 0.1))
     assert results.read("anna").points == 0.1
+
+
+@pytest.mark.parametrize("used", [0, 7])
+def test_class_keeps_its_seed_unless_another_one_is_given(used, tmp_path):
+    Results(tmp_path, {"seed": used}).keep(report("anna", 0.2))
+    assert class_seed(None, tmp_path) == used
+    assert class_seed(3, tmp_path) == 3
+
+
+def test_new_class_gets_a_seed_that_draws(tmp_path):
+    assert 1 <= class_seed(None, tmp_path / "not there yet") <= LARGEST_SEED
 
 
 def test_incomplete_result_is_ignored_and_removed(tmp_path):

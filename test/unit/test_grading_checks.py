@@ -11,11 +11,11 @@ from support import ROOT
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from aro_robocop_goto_as.grading import record as rec
 from aro_robocop_goto_as.grading.checks import CHECKS, Failed, NotReached, Passed
+from aro_robocop_goto_as.grading.gradescope import as_gradescope
 from aro_robocop_goto_as.grading.judge import Outcome, judge
 from aro_robocop_goto_as.grading.limits import Limits
 from aro_robocop_goto_as.grading.plan import Plan, load, world_of
 from aro_robocop_goto_as.grading.record import Record
-from aro_robocop_goto_as.grading.report import as_gradescope
 
 PLAN = Path(ROOT, "config", "grading.yaml")
 LIMITS = Limits()
@@ -246,8 +246,9 @@ def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each
         (
             "points: 0.5, scenarios: [start]",
             "points: -1, scenarios: [start]",
-            "points: expected a number or a range LOW..HIGH from 0",
+            "points: expected a number from 0",
         ),
+        ("points: 0.5, scenarios: [start]", "points: 0.3..0.5, scenarios: [start]", "points: expected a number from 0"),
         ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
         ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
         (

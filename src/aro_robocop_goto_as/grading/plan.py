@@ -119,17 +119,21 @@ def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[s
             raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
 
 
-def _number(value: Any, where: str, draw: Draw, least: float = 0.0, most: float = 1e6) -> float:
-    value = draw.number(value, where)
+def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6, kind: str = "a number") -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-        raise PlanError(f"{where}: expected a number or a range LOW..HIGH from {least:g} to {most:g}, got {value!r}")
+        raise PlanError(f"{where}: expected {kind} from {least:g} to {most:g}, got {value!r}")
     return float(value)
+
+
+def _drawn(value: Any, where: str, draw: Draw, least: float = 0.0, most: float = 1e6) -> float:
+    """A number of a scenario, which may be given as a range."""
+    return _number(draw.number(value, where), where, least, most, "a number or a range LOW..HIGH")
 
 
 def _numbers(value: Any, count: int, where: str, draw: Draw) -> Tuple[float, ...]:
     if not isinstance(value, list) or len(value) != count:
         raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
-    return tuple(_number(number, where, draw, -FARTHEST, FARTHEST) for number in value)
+    return tuple(_drawn(number, where, draw, -FARTHEST, FARTHEST) for number in value)
 
 
 def _list(value: Any, where: str, of: str) -> List[Any]:
@@ -170,7 +174,7 @@ def _step(raw: Any, where: str, draw: Draw) -> Step:
         goal=_numbers(raw["goal"], 2, f"{where}: goal", draw) if "goal" in raw else (),
         of=raw.get("of", "odom"),
         ends=raw.get("ends", ""),
-        run=_number(raw.get("for", 0.0), f"{where}: for", draw),
+        run=_drawn(raw.get("for", 0.0), f"{where}: for", draw),
         cancel=bool(raw.get("cancel", False)),
         place=_numbers(raw["place"], 3, f"{where}: place", draw) if "place" in raw else (),
     )
@@ -189,7 +193,7 @@ def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: 
             raise PlanError(
                 f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: {', '.join(known[raw['part']])}"
             )
-    points = _number(raw["points"], f"{where}: points", Draw(MIDDLE, name))
+    points = _number(raw["points"], f"{where}: points")
     return CheckPlan(name, raw["part"], points, bool(raw.get("extra", False)), tuple(scenarios))
 
 

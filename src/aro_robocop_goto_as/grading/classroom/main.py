@@ -8,7 +8,7 @@ import random
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Union
+from typing import Dict, List, Optional, Union
 from xml.etree import ElementTree
 
 from ...errors import GradingSetupError, RobocopError
@@ -82,10 +82,11 @@ def main() -> None:
     try:
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
-        out = make_report_folder(Path(args.report) if args.report else state / "classes" / folder.name)
-        seed = args.seed if args.seed is not None else seed_of(out) or random.randint(1, LARGEST_SEED)
+        results_folder = Path(args.report) if args.report else state / "classes" / folder.name
+        seed = class_seed(args.seed, results_folder)
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", seed)
         text = plan.path.read_text(encoding="utf-8")
+        out = make_report_folder(results_folder)
         if not args.unsafe:
             expect_private(folder)
         hand_ins, others = collect(folder)
@@ -111,6 +112,12 @@ def main() -> None:
         ignore_all()
     print(f"table: {out / CSV}\noverview: {out / HTML}")
     sys.exit(1 if group.problems else 0)
+
+
+def class_seed(given: Optional[int], results: Path) -> int:
+    """The given seed, else the one of the results so far, else a random one; 0 is a seed, too."""
+    seeds = (given, seed_of(results), random.randint(1, LARGEST_SEED))
+    return next(seed for seed in seeds if seed is not None)
 
 
 def _grade(group: Class, tasks: List[Task], place: Place) -> None:
