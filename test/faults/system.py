@@ -9,14 +9,16 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 import xmlrpc.client
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
 import psutil
 import rosgraph
 import roslib.packages
 import rospy
+import waiting
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -37,14 +39,7 @@ class Violation(AssertionError):
 
 def wait_for(condition, what, deadline=DEADLINE):
     """The first true value of a condition; Violation with `what`, which may be callable, after the deadline."""
-    end = time.monotonic() + deadline
-    while True:
-        value = condition()
-        if value:
-            return value
-        if time.monotonic() > end:
-            raise Violation(f"not within {deadline:g} s: {what() if callable(what) else what}")
-        time.sleep(POLL)
+    return waiting.wait_for(condition, what, deadline, POLL, error=Violation)
 
 
 class System:

@@ -11,14 +11,17 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 import unittest
 import xmlrpc.client
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
 import rosgraph
 import roslib.packages
 import rospy
 import rostest
+import waiting
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from aro_robocop_goto_as.srv import Reset
@@ -44,14 +47,7 @@ STATES_OF = {"REACHED": (GoalStatus.SUCCEEDED,), "PREEMPTED": (GoalStatus.PREEMP
 
 def wait_for(condition, what, deadline=DEADLINE):
     """The first true value of `condition`; after the deadline AssertionError with `what`, which may be callable."""
-    end = time.monotonic() + deadline
-    while True:
-        value = condition()
-        if value:
-            return value
-        if time.monotonic() > end or rospy.is_shutdown():
-            raise AssertionError(f"not within {deadline:g} s: {what() if callable(what) else what}")
-        time.sleep(POLL)
+    return waiting.wait_for(condition, what, deadline, POLL, given_up=rospy.is_shutdown)
 
 
 def run(test_case):

@@ -1,58 +1,22 @@
 """`robocop goto` without a running ROS: it starts a system for that goal and leaves none of its processes behind."""
 
-import os
 import signal
 import socket
-import subprocess
-import time
 
 import pytest
-from processes import busy_processes, processes_with
+from processes import busy_processes
+from programs import Program
 
 from aro_robocop_goto_as.process.ports import free_port
 
-DEADLINE = 120.0  # [s, wall]
 
-
-class Goto:
-    """The command, with no master at its ROS_MASTER_URI; its output and the processes it starts."""
+class Goto(Program):
+    """The command, with no master at its ROS_MASTER_URI."""
 
     def __init__(self, folder, *arguments):
         self.port = free_port()
-        self.setting = b"ROS_HOME=" + os.fsencode(folder)
-        self.output = folder / "output"
-        environment = {
-            **os.environ,
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(folder),
-            "PYTHONUNBUFFERED": "1",
-            "ROS_LOG_DIR": str(folder / "log"),
-            "ROS_MASTER_URI": f"http://localhost:{self.port}",
-        }
-        environment.pop("ROS_IP", None)
-        with open(self.output, "wb") as stream:
-            self.process = subprocess.Popen(
-                ["rosrun", "aro_robocop_goto_as", "robocop_goto.py", *arguments],
-                env=environment,
-                stdout=stream,
-                stderr=subprocess.STDOUT,
-            )
-
-    def wait_until(self, condition, what):
-        end = time.monotonic() + DEADLINE
-        while not condition():
-            assert self.process.poll() is None and time.monotonic() < end, f"{what}: {self.output.read_text()}"
-            time.sleep(0.01)
-
-    def runs(self, program):
-        """Whether one of its processes has this word on its command line."""
-        return bool(processes_with(self.setting, program.encode()))
-
-    def wait_for_exit(self):
-        """Its exit status; by then none of its processes may be left."""
-        status = self.process.wait(DEADLINE)
-        assert processes_with(self.setting) == []
-        return status
+        master = f"http://localhost:{self.port}"
+        super().__init__(folder, "robocop_goto.py", *arguments, ROS_MASTER_URI=master)
 
 
 @pytest.fixture
@@ -65,20 +29,19 @@ def goto(tmp_path):
 
     yield start
     for command in started:
-        for process in processes_with(command.setting):
-            os.kill(process, signal.SIGKILL)
+        command.kill()
 
 
 def test_goal_is_reached_in_a_system_started_for_it(goto):
     command = goto("0.5", "0.2", "--world", "empty")
-    assert command.wait_for_exit() == 0, command.output.read_text()
-    assert "SUCCEEDED: REACHED: " in command.output.read_text()
+    assert command.wait_for_exit() == 0, command.output
+    assert "SUCCEEDED: REACHED: " in command.output
 
 
 def test_a_robots_name_is_refused_where_no_system_runs(goto):
     command = goto("0.5", "0.2", "--robot", "red")
     assert command.wait_for_exit() == 1
-    assert "--robot red: no ROS master answers" in command.output.read_text()
+    assert "--robot red: no ROS master answers" in command.output
 
 
 ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
@@ -102,40 +65,40 @@ ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
 )
 def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, signals):
     command = goto("5", "0", "--world", "empty")
-    command.wait_until(lambda: command.runs(word), f"{word} runs")
+    command.wait_for_process(word)
     with busy_processes():
         for number in signals:
             command.process.send_signal(number)
         assert command.wait_for_exit() == 1
-    assert "Traceback" not in command.output.read_text()
+    assert "Traceback" not in command.output
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto, number):
     command = goto("1", "0")
     with socket.create_server(("127.0.0.1", command.port)) as silent:
-        silent.settimeout(DEADLINE)
+        silent.settimeout(command.deadline)
         connection, _ = silent.accept()
         assert connection.recv(1)
         with busy_processes():
             command.process.send_signal(number)
             assert command.wait_for_exit() == 1
-    assert command.output.read_text() == "robocop goto: interrupted\n"
+    assert command.output == "robocop goto: interrupted\n"
 
 
 @pytest.mark.slow
 def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
     command = goto("5", "0", "--world", "empty")
-    command.wait_until(lambda: "driving" in command.output.read_text(), "driving")
+    command.wait_until(lambda: "driving" in command.output, "driving")
     with busy_processes():
         command.process.send_signal(signal.SIGTERM)
         assert command.wait_for_exit() == 1
-    assert "PREEMPTED: PREEMPTED: " in command.output.read_text()
+    assert "PREEMPTED: PREEMPTED: " in command.output
 
 
 @pytest.mark.slow
 def test_unknown_world_is_reported_with_the_log_to_read(goto):
     command = goto("1", "0", "--world", "no_such")
     assert command.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in command.output.read_text()
-    assert "robocop_goto.log" in command.output.read_text()
+    assert "there is no world 'no_such'" in command.output
+    assert "robocop_goto.log" in command.output

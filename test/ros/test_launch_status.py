@@ -3,67 +3,33 @@
 import contextlib
 import os
 import signal
-import subprocess
-import time
 from pathlib import Path
 
 import pytest
-from processes import busy_processes, processes_with
+from processes import busy_processes
+from programs import Program
 
 from aro_robocop_goto_as.process.ports import free_port
 
-DEADLINE = 120.0  # [s, wall]
 READY = "robot at x"  # in the output of a simulator that runs
 
 
-class Launch:
-    """The simulator alone on a master of its own; its output and the processes it starts."""
+class Launch(Program):
+    """The simulator alone on a master of its own."""
+
+    poll = 0.001  # [s, wall] because the tests interrupt it at certain moments of its start
 
     def __init__(self, folder, *arguments):
-        self.setting = b"ROS_HOME=" + os.fsencode(folder)
-        self.output = folder / "output"
-        environment = {
-            **os.environ,
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(folder),
-            "PYTHONUNBUFFERED": "1",
-            "ROS_LOG_DIR": str(folder / "log"),
-        }
-        environment.pop("ROS_IP", None)
         self.port = free_port()
-        command = [
-            "rosrun",
-            "aro_robocop_goto_as",
-            "robocop_launch.py",
-            "-p",
-            str(self.port),
-            *[argument for argument in arguments if argument.startswith("--")],
-            "aro_robocop_goto_as",
-            "robocop_sim.launch",
-            "drive:=kinematic",
-            *[argument for argument in arguments if not argument.startswith("--")],
-        ]
-        with open(self.output, "wb") as stream:
-            self.process = subprocess.Popen(command, env=environment, stdout=stream, stderr=subprocess.STDOUT)
+        options = [argument for argument in arguments if argument.startswith("--")]
+        rest = [argument for argument in arguments if argument not in options]
+        launch_file = ("aro_robocop_goto_as", "robocop_sim.launch", "drive:=kinematic")
+        super().__init__(folder, "robocop_launch.py", "-p", str(self.port), *options, *launch_file, *rest)
 
     def simulator(self):
         """Wait until the simulator runs; its process id."""
-        self.wait_until(lambda: READY in self.output.read_text())
-        return self.runs("robocop_sim.py")
-
-    def runs(self, program):
-        """Wait for a process of the launch with this word on its command line; its id."""
-        return self.wait_until(lambda: processes_with(self.setting, program.encode()))[0]
-
-    def wait_until(self, condition):
-        """The first true value of a condition, while the launch runs."""
-        end = time.monotonic() + DEADLINE
-        while True:
-            value = condition()
-            if value:
-                return value
-            assert self.process.poll() is None and time.monotonic() < end, self.output.read_text()
-            time.sleep(0.001)
+        self.wait_until(lambda: READY in self.output, "the simulator runs")
+        return self.wait_for_process("robocop_sim.py")
 
     def has_handlers(self, process):
         """Whether a process has installed a handler of SIGTERM."""
@@ -81,12 +47,6 @@ class Launch:
         mine = {row[1] for row in rows if row[2] == master and f"socket:[{row[9]}]" in sockets}
         return any(row[1] == master and row[2] in mine and int(row[4].split(":")[1], 16) for row in rows)
 
-    def wait_for_exit(self):
-        """Its exit status; by then none of its processes may be left."""
-        status = self.process.wait(DEADLINE)
-        assert processes_with(self.setting) == []
-        return status
-
 
 @pytest.fixture
 def launch(tmp_path):
@@ -98,27 +58,26 @@ def launch(tmp_path):
 
     yield start
     for launched in started:
-        for process in processes_with(launched.setting):
-            os.kill(process, signal.SIGKILL)
-        launched.process.wait()
+        launched.kill()
 
 
 @pytest.mark.slow
 def test_launch_fails_when_the_simulator_refuses_its_parameters(launch):
     launched = launch("world:=no_such")
     assert launched.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in launched.output.read_text()
+    assert "there is no world 'no_such'" in launched.output
 
 
 def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(launch):
     launched = launch("--quiet", "world:=empty", "model:=waffle")
-    launched.runs("robocop_sim.py")
-    launched.wait_until(lambda: "all messages" in launched.output.read_text())
-    shown = launched.output.read_text()
+    launched.wait_for_process("robocop_sim.py")
+    launched.wait_until(lambda: "all messages" in launched.output, "the overview is shown")
+    shown = launched.output
     assert "world         empty\nrobot         waffle\n" in shown and "Ctrl-C" in shown
     assert "PARAMETERS" not in shown and "process[" not in shown and len(shown.splitlines()) < 24
     (folder,) = [line.split()[2] for line in shown.splitlines() if line.startswith("all messages")]
-    launched.wait_until(lambda: "robot at x" in "".join(path.read_text() for path in Path(folder).glob("*.log")))
+    logs = Path(folder)
+    launched.wait_until(lambda: "robot at x" in "".join(log.read_text() for log in logs.glob("*.log")), "it is logged")
     launched.process.send_signal(signal.SIGINT)
     assert launched.wait_for_exit() == 0
 
@@ -126,8 +85,8 @@ def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(lau
 def test_quiet_launch_shows_why_the_simulator_failed(launch):
     launched = launch("--quiet", "world:=no_such")
     assert launched.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in launched.output.read_text()
-    assert "Ctrl-C" not in launched.output.read_text()  # nothing about how to use what does not run
+    assert "there is no world 'no_such'" in launched.output
+    assert "Ctrl-C" not in launched.output  # nothing about how to use what does not run
 
 
 @pytest.mark.parametrize(
@@ -141,8 +100,8 @@ def test_quiet_launch_shows_why_the_simulator_failed(launch):
 def test_launch_explains_an_impossible_argument_without_a_traceback(launch, argument, words):
     launched = launch(argument)
     assert launched.wait_for_exit() == 1
-    assert words in launched.output.read_text()
-    assert "Traceback" not in launched.output.read_text()
+    assert words in launched.output
+    assert "Traceback" not in launched.output
 
 
 @pytest.mark.slow
@@ -167,17 +126,17 @@ def test_interrupted_launch_ends_all_processes_and_is_no_failure(launch):
     with busy_processes():
         launched.process.send_signal(signal.SIGINT)
         assert launched.wait_for_exit() == 0
-    assert "Traceback" not in launched.output.read_text()
+    assert "Traceback" not in launched.output
 
 
 @pytest.mark.slow
 def test_simulator_interrupted_while_it_waits_for_the_master_ends_when_that_answers(launch):
     launched = launch("world:=empty")
-    simulator, (master,) = launched.runs("robocop_sim.py"), processes_with(launched.setting, b"/rosmaster")
-    launched.wait_until(lambda: launched.has_handlers(simulator))
+    simulator, (master,) = launched.wait_for_process("robocop_sim.py"), launched.processes("/rosmaster")
+    launched.wait_until(lambda: launched.has_handlers(simulator), "the simulator handles signals")
     os.kill(master, signal.SIGSTOP)
     try:
-        launched.wait_until(lambda: launched.waits_for_the_master(simulator))
+        launched.wait_until(lambda: launched.waits_for_the_master(simulator), "it waits for the master")
     except BaseException:
         os.kill(master, signal.SIGCONT)
         raise
@@ -195,7 +154,7 @@ ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
 @pytest.mark.parametrize("program", ["/rosmaster", "/rosout", "robocop_sim.py", "/robot_state_publisher"])
 def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch, program, signals):
     launched = launch("world:=empty")
-    launched.runs(program)
+    launched.wait_for_process(program)
     with busy_processes():
         for number in signals:
             launched.process.send_signal(number)

@@ -6,11 +6,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
-from processes import processes_with
+from programs import Program
 from students import contents, copy_of
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -20,39 +19,15 @@ DEADLINE = 150.0  # [s, wall] for a build and a start on a busy machine
 pytestmark = pytest.mark.xdist_group("hosting")  # the first test builds the workspace that all of them extend
 
 
-class Hosted:
+class Hosted(Program):
     """`robocop sim --with PACKAGE` on a master of its own."""
 
+    deadline = DEADLINE
+
     def __init__(self, package, folder, *arguments):
-        port = free_port()
-        self.environment = {
-            **os.environ,
-            "ROS_MASTER_URI": f"http://localhost:{port}",
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(folder),
-            "ROBOCOP_RVIZ": "false",
-        }
-        self.environment.pop("ROS_IP", None)
-        self.setting = b"ROS_HOME=" + os.fsencode(folder)
-        self.log = folder / "output"
-        with open(self.log, "wb") as output:
-            self.process = subprocess.Popen(
-                ["rosrun", "aro_robocop_goto_as", "robocop_sim_with.py", str(package), "world:=empty", *arguments],
-                env=self.environment,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                stdin=subprocess.DEVNULL,
-            )
-
-    @property
-    def output(self):
-        return self.log.read_text(errors="replace")
-
-    def wait_until(self, condition, what):
-        end = time.monotonic() + DEADLINE
-        while not condition():
-            assert self.process.poll() is None and time.monotonic() < end, f"{what}:\n{self.output}"
-            time.sleep(0.05)
+        master = f"http://localhost:{free_port()}"
+        arguments = (str(package), "world:=empty", *arguments)
+        super().__init__(folder, "robocop_sim_with.py", *arguments, ROS_MASTER_URI=master, ROBOCOP_RVIZ="false")
 
     def wait_for_node(self, name):
         self.wait_until(lambda: name in self.call("rosnode", "list").stdout.split(), f"{name} runs")
@@ -74,7 +49,7 @@ class Hosted:
         """Interrupt it as by Ctrl-C; the processes that are left."""
         self.process.send_signal(signal.SIGINT)
         self.process.wait(DEADLINE)
-        return processes_with(self.setting)
+        return self.processes()
 
 
 @pytest.fixture(scope="module")
@@ -97,8 +72,7 @@ def hosted(tmp_path, package):
     for system, path, before in started:
         if system.process.poll() is None:
             assert system.end() == []
-        for process in processes_with(system.setting):
-            os.kill(process, signal.SIGKILL)
+        system.kill()
         assert contents(path) == before, "its author's files were changed"
 
 
@@ -180,7 +154,7 @@ def test_a_launch_file_of_another_name_gets_its_argument_and_a_crash_on_the_seco
 def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     system = hosted("timer_driven", "scan_profile:=no_such")
     assert system.process.wait(DEADLINE) == 1, system.output
-    assert "scan_profile" in system.output and processes_with(system.setting) == []
+    assert "scan_profile" in system.output and system.processes() == []
 
 
 @pytest.mark.slow
