@@ -85,13 +85,13 @@ def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="robocop sim --with", description=__doc__)
     parser.add_argument("path", help="folder of a catkin package, or of a workspace with one in it")
     parser.add_argument("--launch", default="", help="which of its launch files (default robocop_goto_as.launch)")
+    parser.add_argument("--verbose", action="store_true", help="list all parameters and nodes at the start")
     parser.add_argument("arguments", nargs="*", metavar="NAME:=VALUE", help="for its launch file or the simulator's")
     return parser.parse_intermixed_args(words)
 
 
-def prepare() -> Tuple[Path, Environment]:
+def prepare(args: argparse.Namespace) -> Tuple[Path, Environment]:
     """Build the package that the arguments name: the launch file to run, and its environment. Exits with 1 or 130."""
-    args = parsed()
     state, share = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
     handlers = {number: signal.getsignal(number) for number in ending_signals()}
     interrupt_on_signal()

@@ -23,7 +23,7 @@ from roslaunch.pmon import ProcessListener
 from rospkg import get_log_dir
 
 from ...errors import RobotModelError
-from ...hosting.main import prepare
+from ...hosting.main import parsed, prepare
 from ...process import signals
 from ...robot.catalog import urdf_of
 from .. import private_api
@@ -60,14 +60,16 @@ def launch(arguments: List[str]) -> int:
     parser.add_argument("-p", "--port", type=int, help="of the ROS master, if one has to be started")
     parser.add_argument("--screen", action="store_true", help="show the output of all nodes")
     parser.add_argument("--no-summary", action="store_true", help="do not list parameters and nodes at the start")
-    parser.add_argument("--quiet", action="store_true", help="show only how to use the system, warnings and errors")
+    parser.add_argument("--overview", action="store_true", help="show how to use the system when it runs")
+    parser.add_argument("--quiet", action="store_true", help="show only that, warnings and errors")
     parser.add_argument("file", nargs="+", metavar="[PACKAGE] FILE [NAME:=VALUE...]")
     options = parser.parse_args(arguments)
     deferred = signals.Deferred()
     try:
         files = rlutil.resolve_launch_arguments(options.file)
         run_id = rlutil.get_or_generate_uuid(None, False)
-        screen = _quiet(Path(get_log_dir(), run_id)) if options.quiet else None
+        logs = Path(get_log_dir(), run_id)
+        screen = _quiet(logs) if options.quiet else sys.stdout
         roslaunch.configure_logging(run_id)
         rlutil.check_log_disk_usage()
         rlutil.change_terminal_name(files, False)
@@ -86,8 +88,8 @@ def launch(arguments: List[str]) -> int:
             with buffered_stderr(deferred):
                 private_api.load_launch_files(parent)
             parent.start()
-        if screen is not None and _is_up(parent):
-            print(overview(parent.config, Path(get_log_dir(), run_id)), file=screen, flush=True)
+        if (options.quiet or options.overview) and _is_up(parent):
+            print(overview(parent.config, logs, messages_shown=not options.quiet), file=screen, flush=True)
         parent.spin()
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
         if not deferred.interrupted:
@@ -167,8 +169,9 @@ def main(arguments: Optional[List[str]] = None) -> None:
 
 def main_with() -> None:
     """robocop sim --with PATH: launch a hosted package in this process, so that ending it ends everything."""
-    path, environment = prepare()
+    args = parsed()
+    path, environment = prepare(args)
     # Not in a new process: in the hosted package's environment this package might not be found.
     os.environ.clear()
     os.environ.update(environment)
-    main([str(path)])
+    main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)])

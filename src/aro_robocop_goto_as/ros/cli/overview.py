@@ -15,8 +15,8 @@ SERVER = "aro_robocop_goto_as_node"
 COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
 
 
-def overview(config: Any, logs: Path) -> str:
-    """The text for a roslaunch configuration whose nodes write their messages to files in `logs`."""
+def overview(config: Any, logs: Path, messages_shown: bool = False) -> str:
+    """The text for a roslaunch configuration; its nodes' messages are shown on the screen or go to files in `logs`."""
     nodes = {node.name for node in config.nodes}
     given = {name[len(SIMULATOR) :]: p.value for name, p in config.params.items() if name.startswith(SIMULATOR)}
     rows = [*_simulated(given)] if "robocop_sim" in nodes else []
@@ -28,10 +28,11 @@ def overview(config: Any, logs: Path) -> str:
             rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
         robot = f" --robot {robots[0]}" if robots else ""
         rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto 0.3 0{robot}"))
+    in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
         ("look inside", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
         ("end", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
-        ("all messages", f"{logs} (or start with --verbose); warnings and errors appear below"),
+        ("all messages", "appear below" if messages_shown else in_files),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
 
