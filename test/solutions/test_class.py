@@ -18,7 +18,7 @@ from graded import RIGHT
 from processes import busy_processes, processes_mentioning
 from waiting import wait_for
 
-from aro_robocop_goto_as.grading.classroom.cluster import connected
+from aro_robocop_goto_as.grading.classroom.dask_cluster import connected
 from aro_robocop_goto_as.grading.classroom.worker import Place
 
 PATIENCE = 120.0  # [s, wall]

@@ -20,8 +20,8 @@ from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, unpa
 from aro_robocop_goto_as.grading.classroom.main import class_seed
 from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results, table
 from aro_robocop_goto_as.grading.classroom.worker import Done
-from aro_robocop_goto_as.grading.draw import LARGEST_SEED
 from aro_robocop_goto_as.grading.plan import load
+from aro_robocop_goto_as.grading.scenario_draw import LARGEST_SEED
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
 

@@ -20,8 +20,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast import caster_library
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import Slice
-from aro_robocop_goto_as.raycast.fleet import Scanners, circles_at
 from aro_robocop_goto_as.raycast.grid_index import Tiles
+from aro_robocop_goto_as.raycast.scanners import Scanners, circles_at
 from aro_robocop_goto_as.raycast.scene import Plane, Scene
 from aro_robocop_goto_as.world.model import Box, Obstacle, World
 

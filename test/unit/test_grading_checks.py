@@ -10,10 +10,10 @@ from support import ROOT
 
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from aro_robocop_goto_as.grading import record as rec
+from aro_robocop_goto_as.grading.check_limits import Limits
 from aro_robocop_goto_as.grading.checks import CHECKS, Failed, NotReached, Passed
 from aro_robocop_goto_as.grading.gradescope import as_gradescope
 from aro_robocop_goto_as.grading.judge import Outcome, judge
-from aro_robocop_goto_as.grading.limits import Limits
 from aro_robocop_goto_as.grading.plan import Plan, load, world_of
 from aro_robocop_goto_as.grading.record import Record
 

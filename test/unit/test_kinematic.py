@@ -15,7 +15,7 @@ from aro_robocop_goto_as.robot.base_controller import wheel_speeds
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
-from aro_robocop_goto_as.world.motion import Motion
+from aro_robocop_goto_as.world.scripted_motion import Motion
 
 RADIUS = 0.105
 WALL = World("wall", (Obstacle("wall", Pose3D((2.0, 0.0, 0.25)), Box((0.02, 4.0, 0.5))),), Pose2D(), (), "")

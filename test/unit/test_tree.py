@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from aro_robocop_goto_as.errors import HostingError
-from aro_robocop_goto_as.grading.guard import Guard
+from aro_robocop_goto_as.grading.resource_guard import Guard
 from aro_robocop_goto_as.hosting import tree
 
 NESTED = "import os\nfor _ in range(1500):\n    os.mkdir('nested')\n    os.chdir('nested')\nopen('file', 'w').close()\n"

@@ -15,7 +15,7 @@ import rospkg
 from ..geometry import Pose2D, Twist2D
 from ..param_loading import from_dict
 from ..params import SimParams
-from ..raycast.fleet import Scanners
+from ..raycast.scanners import Scanners
 from ..robot import base_controller
 from ..robot.catalog import load_model
 from ..ros import convert

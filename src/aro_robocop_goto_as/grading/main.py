@@ -11,12 +11,12 @@ from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive
 from ..process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from .display import require_rviz
-from .draw import MIDDLE
 from .grade_submission import grade_submission
 from .judge import Grade, Outcome, printable, printable_lines
 from .plan import load
 from .report_folder import make_report_folder
 from .sandbox import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
+from .scenario_draw import MIDDLE
 from .submission import prepare_submission
 
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C

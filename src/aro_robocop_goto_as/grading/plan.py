@@ -14,9 +14,9 @@ from ..geometry import Pose2D, Pose3D, compose3, lifted
 from ..hosting.files import read_bytes
 from ..param_loading import from_dict
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
+from .check_limits import Limits
 from .checks import CHECKS
-from .draw import MIDDLE, Draw, checked_seed
-from .limits import Limits
+from .scenario_draw import MIDDLE, Draw, checked_seed
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m

@@ -15,8 +15,8 @@ from ..errors import UngradableError
 from ..process import child
 from ..process.ports import free_port
 from . import record as rec
-from .guard import MAX_MEMORY, Guard
 from .plan import Plan
+from .resource_guard import MAX_MEMORY, Guard
 from .sandbox import OWN_ENVIRONMENT, Sandbox
 from .sandboxed_build import public
 from .submission import Script, Submission

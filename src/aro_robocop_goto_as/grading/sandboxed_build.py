@@ -9,7 +9,7 @@ from typing import IO, Mapping, Optional, Sequence
 from ..errors import GradingError
 from ..hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from ..process import child
-from .guard import Guard
+from .resource_guard import Guard
 from .sandbox import OWN_ENVIRONMENT, Sandbox, change_owner, user
 
 MAX_SOURCE = 64 * 1024**2  # bytes of a package

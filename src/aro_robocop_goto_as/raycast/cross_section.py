@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry import Pose2D, Pose3D, rotation_matrix
 from ..world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
-from ..world.motion import Motion
+from ..world.scripted_motion import Motion
 from .grid_index import Tiles
 
 CYLINDER_SIDES = 64  # of the prism that approximates a tilted cylinder; upright cylinders are exact

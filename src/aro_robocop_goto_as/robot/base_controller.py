@@ -9,7 +9,7 @@ from typing import NamedTuple, Optional, Tuple
 from ..component_params import LimitParams
 from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
-from .figures import ModelFigures
+from .model_figures import ModelFigures
 
 
 class Limits(NamedTuple):

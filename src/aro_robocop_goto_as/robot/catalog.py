@@ -6,8 +6,8 @@ import yaml
 
 from ..errors import RobotModelError
 from ..param_loading import from_dict
-from .figures import ModelFigures
 from .model import RobotModel, load_robot
+from .model_figures import ModelFigures
 
 
 def load_model(name: str, package: str) -> RobotModel:

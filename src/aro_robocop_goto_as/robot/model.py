@@ -10,7 +10,7 @@ from lxml import etree
 from ..errors import RobotModelError
 from ..geometry import Pose2D, Pose3D, Twist2D, Vector3, compose3
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Sphere
-from .figures import ModelFigures
+from .model_figures import ModelFigures
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"

@@ -10,7 +10,7 @@ from ..component_params import ImuNoise, OdometryParams, Rates, WorldParams
 from ..errors import PlaceError
 from ..geometry import Pose2D, Twist2D, compose, compose3, inverse
 from ..physics.engine import Engine
-from ..raycast.fleet import Scanners
+from ..raycast.scanners import Scanners
 from ..raycast.surroundings import Surroundings, body_heights
 from ..robot import base_controller
 from ..robot.base_controller import Limits

@@ -7,7 +7,7 @@ from typing import Dict, Mapping, Optional, Tuple, Union
 import numpy as np
 
 from ..geometry import Pose2D, Pose3D, Vector3, compose, inverse, lifted
-from .motion import Motion
+from .scripted_motion import Motion
 
 
 @dataclass(frozen=True)

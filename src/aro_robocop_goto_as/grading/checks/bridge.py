@@ -3,7 +3,7 @@
 import math
 from typing import List, Optional
 
-from ..limits import Limits
+from ..check_limits import Limits
 from ..record import Click, Goal, Record
 from .life import no_exception, stays_alive
 from .verdict import Failed, NotReached, Passed, Verdict, check

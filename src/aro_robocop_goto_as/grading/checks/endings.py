@@ -4,8 +4,8 @@ import os
 import re
 from typing import Optional, Sequence
 
+from ..check_limits import Limits
 from ..handout import GOAL_RADIUS
-from ..limits import Limits
 from ..record import (
     ABORTED,
     PREEMPTED,

@@ -3,7 +3,7 @@
 import math
 from typing import Callable, List, NamedTuple, Sequence, Tuple
 
-from ..limits import Limits
+from ..check_limits import Limits
 from ..record import Feedback, Goal, Record, Sample, errors_at, results_of, samples_between, wrapped
 from .verdict import Failed, NotReached, Passed, Verdict, check
 

@@ -3,8 +3,8 @@
 import difflib
 import re
 
+from ..check_limits import Limits
 from ..handout import ACTION, ACTION_TYPE
-from ..limits import Limits
 from ..record import Record
 from .endings import last_error
 from .verdict import Failed, NotReached, Passed, Verdict, check

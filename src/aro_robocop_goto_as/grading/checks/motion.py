@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 from typing import Iterator, List, NamedTuple, Optional, Sequence
 
+from ..check_limits import Limits
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..limits import Limits
 from ..record import SUCCEEDED, Command, Goal, Record, errors_at, results_of, samples_between, wrapped
 from .endings import success_too_far, wrong_ending
 from .verdict import Failed, NotReached, Passed, Verdict, check

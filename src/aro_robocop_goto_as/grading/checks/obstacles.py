@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import Optional
 
+from ..check_limits import Limits
 from ..handout import STOP_DISTANCE
-from ..limits import Limits
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, results_of, samples_between
 from .endings import EXCEPTION_LOGGED, last_error, logged, wrong_ending
 from .verdict import Failed, NotReached, Passed, Verdict, check, sentences

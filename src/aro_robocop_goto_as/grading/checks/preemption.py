@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..limits import Limits
+from ..check_limits import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, status_name
 from .endings import success_too_far, wrong_ending
 from .verdict import Failed, NotReached, Passed, Verdict, check, sentences

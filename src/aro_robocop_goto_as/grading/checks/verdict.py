@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Callable, Dict, Union
 
-from ..limits import Limits
+from ..check_limits import Limits
 from ..record import Record
 
 

@@ -15,12 +15,12 @@ from ...errors import GradingSetupError, RobocopError
 from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
-from ..draw import LARGEST_SEED
 from ..judge import printable_lines
 from ..main import INTERRUPTED
 from ..plan import Plan, load
 from ..report_folder import make_report_folder
 from ..sandbox import expect_private
+from ..scenario_draw import LARGEST_SEED
 from .hand_ins import HandIn, collect
 from .overview import page
 from .results import Result, Results, one_line, seed_of, table, write_atomically
@@ -125,7 +125,7 @@ def _grade(group: Class, tasks: List[Task], place: Place) -> None:
     group.write(running=bool(tasks))
     try:
         if tasks:
-            from .cluster import connected, grade_all  # importing dask takes half a second
+            from .dask_cluster import connected, grade_all  # importing dask takes half a second
 
             with connected(replace(place, workers=min(place.workers, len(tasks)))) as client:
                 for name, outcome in grade_all(client, tasks):

@@ -7,7 +7,7 @@ from subprocess import PIPE, STDOUT
 from typing import Any, Callable, Dict, List, Optional
 
 from ...process import child
-from ..guard import Guard
+from ..resource_guard import Guard
 
 MAX_OUTPUT = 200_000  # bytes of a node's output that are kept; the rest is read and dropped
 MAX_LINE = 2_000  # bytes

@@ -20,9 +20,9 @@ from ...simulation.lockstep import SURE, Lockstep
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
-from . import idle
+from . import thread_activity
 from .nodes import Node
-from .one_shot import OneShotSubscriptions
+from .one_shot_subscriptions import OneShotSubscriptions
 from .stage import Stage
 
 # [s, wall] how long a tick waits for an answer:
@@ -60,7 +60,7 @@ class Run:
         self.stage = stage
         self._grader_pids = list(grader_pids)
         self._tree: Tuple[float, List[int]] = (0.0, [])  # when it was read, the node's processes
-        self._threads = idle.Threads()
+        self._threads = thread_activity.Threads()
         self._restless = 0  # waits in a row at whose end the node was still busy
         self.one_shot = OneShotSubscriptions(stage.sensor_topics)
         stage.after_publishing = self._serve_one_shot
@@ -266,7 +266,7 @@ class Run:
             return not self.stage.loop.jobs_waiting
         read, pids = self._tree
         if time.monotonic() - read > TREE_PERIOD:
-            pids = idle.tree([self.node.pid])
+            pids = thread_activity.tree([self.node.pid])
             self._tree = time.monotonic(), pids
         return self._threads.at_rest([*self._grader_pids, *pids], polling) and not self.stage.loop.jobs_waiting
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import WorldError
 from . import xml
-from .wavefront import read_obj
+from .wavefront_obj import read_obj
 
 FORMATS = (".dae", ".obj", ".stl")
 

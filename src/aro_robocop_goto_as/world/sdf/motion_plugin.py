@@ -5,7 +5,7 @@ from typing import List, Optional
 
 from ...geometry import Pose3D
 from ..model import Cylinder, Geometry, Sphere
-from ..motion import Motion, Waypoint
+from ..scripted_motion import Motion, Waypoint
 from . import xml
 
 PLUGIN = "robocop_motion"

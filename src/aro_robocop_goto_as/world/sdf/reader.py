@@ -7,7 +7,7 @@ from typing import Dict, List, Mapping, Optional, Set, Tuple
 from ...errors import WorldError
 from ...geometry import Pose2D, Pose3D, wrap_angle
 from ..model import Obstacle, Plane, World
-from ..motion import Motion
+from ..scripted_motion import Motion
 from . import frames, uris, xml
 from .motion_plugin import is_motion, motion_of, require_movable_shape
 from .shapes import Shapes

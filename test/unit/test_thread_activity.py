@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from aro_robocop_goto_as.grading.probe import idle
+from aro_robocop_goto_as.grading.probe import thread_activity
 
 PATIENCE = 60.0  # [s, wall]
 SLEEPS = "import threading, sys\nprint('up', flush=True)\nsys.stdin.read()\n"
@@ -32,7 +32,7 @@ def started():
 
     yield start
     for process in processes:
-        for pid in idle.tree([process.pid])[1:]:
+        for pid in thread_activity.tree([process.pid])[1:]:
             subprocess.run(["kill", "-KILL", str(pid)], check=False)
         process.kill()
         process.communicate()
@@ -40,9 +40,9 @@ def started():
 
 def comes_to_rest(pid):
     """Whether a process and its children come to rest within a second or two of looking."""
-    deadline, threads = time.monotonic() + PATIENCE, idle.Threads()
+    deadline, threads = time.monotonic() + PATIENCE, thread_activity.Threads()
     for _ in range(50):
-        if threads.at_rest(idle.tree([pid])):
+        if threads.at_rest(thread_activity.tree([pid])):
             return True
         if time.monotonic() > deadline:
             break
@@ -62,17 +62,17 @@ def test_process_that_works_or_has_a_child_that_does_is_not(code, started):
 def test_process_that_has_ended_is_at_rest():
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait(PATIENCE)
-    assert idle.tree([process.pid]) == []
-    assert idle.Threads().at_rest([process.pid])
+    assert thread_activity.tree([process.pid]) == []
+    assert thread_activity.Threads().at_rest([process.pid])
 
 
 def test_process_with_more_threads_than_files_may_be_open_comes_to_rest(started, monkeypatch):
-    monkeypatch.setattr(idle, "MOST_OPEN", 5)
+    monkeypatch.setattr(thread_activity, "MOST_OPEN", 5)
     assert comes_to_rest(started(MANY_THREADS))
 
 
 def test_thread_that_wakes_up_between_two_looks_is_not_at_rest(started, monkeypatch):
-    pid, threads = started(SLEEPS_BRIEFLY), idle.Threads()
+    pid, threads = started(SLEEPS_BRIEFLY), thread_activity.Threads()
     busy = threads._busy
     monkeypatch.setattr(threads, "_busy", lambda found: busy(found) or time.sleep(0.1) or False)
     assert not threads.at_rest([pid])

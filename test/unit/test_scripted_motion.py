@@ -13,7 +13,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.simulation.simulator import SCAN
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
-from aro_robocop_goto_as.world.motion import Motion
+from aro_robocop_goto_as.world.scripted_motion import Motion
 
 PATROL = Motion(Pose2D(1.0, 2.0, math.pi / 2), waypoints=((4.0, 2.0, 0.0), (6.0, 2.0, 1.0), (10.0, 0.0, 0.0)))
 

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from support import ROOT
 
 from aro_robocop_goto_as.errors import PlanError
-from aro_robocop_goto_as.grading.draw import LARGEST_SEED, MIDDLE, Draw
 from aro_robocop_goto_as.grading.plan import load
+from aro_robocop_goto_as.grading.scenario_draw import LARGEST_SEED, MIDDLE, Draw
 
 PLAN = Path(ROOT, "config", "grading.yaml")
 SEEDS = st.integers(1, LARGEST_SEED)

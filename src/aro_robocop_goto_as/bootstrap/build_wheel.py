@@ -1,7 +1,7 @@
 """Building a wheel from the source release of a PyPI package, for a Python that PyPI has none for.
 
-As a program: wheel PYTHON REQUIREMENT FOLDER, with pip's output on standard output; exit status 0 if FOLDER now has a
-wheel of REQUIREMENT (NAME==VERSION) for PYTHON.
+As a program: build_wheel PYTHON REQUIREMENT FOLDER, with pip's output on standard output; exit status 0 if FOLDER now
+has a wheel of REQUIREMENT (NAME==VERSION) for PYTHON.
 """
 
 import contextlib

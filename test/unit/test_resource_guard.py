@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from aro_robocop_goto_as.grading.guard import Guard
+from aro_robocop_goto_as.grading.resource_guard import Guard
 
 MB = 1024**2
 PATIENCE = 30.0  # [s, wall]
