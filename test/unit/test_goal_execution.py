@@ -19,7 +19,7 @@ PERIOD = 100  # [ms] of the control loop
 class BlockedRobot:
     """Inputs of a robot that never moves, with nothing ahead."""
 
-    def missing(self, now: float, started: float) -> Optional[Tuple[Outcome, str]]:
+    def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Nothing."""
 
     def read(self) -> Tuple[Pose2D, float]:

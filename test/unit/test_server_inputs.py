@@ -1,5 +1,7 @@
 """The server's view of its inputs: it changes in one piece, and what is missing is said in the right words."""
 
+import time
+
 import pytest
 import rospy
 from nav_msgs.msg import Odometry
@@ -7,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.goto import Outcome
 from aro_robocop_goto_as.params import GotoParams
-from aro_robocop_goto_as.ros.server.inputs import Inputs
+from aro_robocop_goto_as.ros.server.inputs import FIRST_MESSAGE, Inputs
 
 
 def scan_with(ahead: float) -> LaserScan:
@@ -24,9 +26,28 @@ def inputs(monkeypatch):
 def test_scan_of_nan_is_called_invalid_even_if_it_arrives_after_the_control_period_began(inputs):
     inputs._on_odom(Odometry())
     inputs._on_scan(scan_with(float("nan")))
-    outcome, text = inputs.missing(now=1.45, started=0.0)
+    outcome, text = inputs.missing(now=1.45, started=0.0, accepted=0.0)
     assert outcome is Outcome.NO_SCAN
     assert "no valid beam ahead" in text
+
+
+def test_topic_without_any_message_since_the_goal_was_accepted_may_be_connecting(inputs, monkeypatch):
+    wall = [100.0]
+    monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs.time.monotonic", lambda: wall[0])
+    monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs.wait_until", lambda condition, timeout: condition())
+    assert inputs.missing(now=50.0, started=0.0, accepted=100.0) is None
+    wall[0] += FIRST_MESSAGE
+    outcome, text = inputs.missing(now=50.0, started=0.0, accepted=100.0)
+    assert outcome is Outcome.NO_ODOM and "so far" in text
+
+
+def test_topic_that_fell_silent_after_the_goal_was_accepted_is_missing_at_once(inputs, monkeypatch):
+    accepted = time.monotonic()
+    inputs._on_odom(Odometry())
+    inputs._on_scan(scan_with(2.0))
+    monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs._now", lambda: 50.0)
+    outcome, text = inputs.missing(now=50.0, started=0.0, accepted=accepted)
+    assert outcome is Outcome.NO_ODOM and "for 48.5 s" in text
 
 
 def test_new_scan_is_visible_only_once_it_is_known_whether_it_is_valid(inputs, monkeypatch):

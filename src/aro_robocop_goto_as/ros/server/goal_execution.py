@@ -1,5 +1,6 @@
 """The lab's loop for one goal: in each control period a velocity and feedback, at the end an outcome."""
 
+import time
 from dataclasses import dataclass
 from typing import Optional
 
@@ -41,13 +42,14 @@ class Step:
 
 
 class GoalExecution:
-    """The state of one accepted goal. Times are ROS times."""
+    """The state of one accepted goal. Times are ROS times unless marked wall."""
 
     def __init__(self, message: GoToPositionGoal, p: GotoParams, inputs: Inputs) -> None:
         x, y, self.z = (float(value) for value in ros_numpy.numpify(message.position))
         self.goal = Goal(x, y)
         self.p = p
         self.inputs = inputs
+        self.accepted = time.monotonic()  # [s, wall]
         self.started: Optional[float] = None
         self.last: Optional[float] = None  # time of the previous step
         self.stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
@@ -71,7 +73,7 @@ class GoalExecution:
         gap = 0.0 if self.last is None else now - self.last
         self.stalled += max(0.0, gap - LONGEST_GAP / self.p.control_rate)
         self.last = now
-        missing = self.inputs.missing(now, self.started)
+        missing = self.inputs.missing(now, self.started, self.accepted)
         if missing is not None:
             return Step(ending=Ending(*missing))
         inputs = self.inputs.read()

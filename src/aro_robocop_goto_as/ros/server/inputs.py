@@ -2,6 +2,7 @@
 
 import math
 import threading
+import time
 from dataclasses import dataclass
 from typing import Any, Optional, Tuple
 
@@ -17,20 +18,22 @@ from ...params import GotoParams
 from .. import convert
 from ..ticker import wait_until
 
-CONNECTION_TIME = 10.0  # [s, wall] for the connections to nodes that publish already; a busy simulator takes a second
-FIRST_DATA = 0.5  # [s, wall] from then to the first odometry and scan
+# [s, wall] for the first message on a topic after a goal was accepted. The connection to a publisher that has just
+# started takes up to a second on a busy machine; at full speed data_timeout passes meanwhile.
+FIRST_MESSAGE = 3.0
 LATE_DATA = 0.2  # [s, wall] that a message may arrive after the clock tick it was published before
 LOCKSTEP_PATIENCE = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
 
 
 @dataclass(frozen=True)
 class Received:
-    """A message with the ROS time [s] of its arrival, its stamp and the topic's shortest period so far [ns]."""
+    """A message with the ROS time [s] and the wall time [s] of its arrival, its stamp and the topic's period [ns]."""
 
     message: Any
     at: float
+    wall: float  # of time.monotonic
     stamp_ns: int
-    period_ns: Optional[int]
+    period_ns: Optional[int]  # the shortest so far
 
     def is_newest_at(self, tick_ns: int) -> bool:
         """Whether, by the topic's period, no newer message is due by this time."""
@@ -46,7 +49,7 @@ def _received(message: Any, previous: Optional[Received]) -> Received:
     periods = []
     if previous is not None and stamp_ns > previous.stamp_ns:  # false after the clock was set back
         periods = [period for period in (stamp_ns - previous.stamp_ns, previous.period_ns) if period is not None]
-    return Received(message, _now(), stamp_ns, min(periods) if periods else None)
+    return Received(message, _now(), time.monotonic(), stamp_ns, min(periods) if periods else None)
 
 
 class Inputs:
@@ -59,10 +62,8 @@ class Inputs:
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
         self._arrived = threading.Condition()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
-        self._topics = (
-            rospy.Subscriber("odom", Odometry, self._on_odom),
-            rospy.Subscriber("scan", LaserScan, self._on_scan),
-        )
+        rospy.Subscriber("odom", Odometry, self._on_odom)
+        rospy.Subscriber("scan", LaserScan, self._on_scan)
 
     def _on_odom(self, message: Odometry) -> None:
         with self._arrived:
@@ -78,19 +79,6 @@ class Inputs:
             self.scan = received
             self._arrived.notify_all()
 
-    def await_first(self) -> None:
-        """Wait for the first odometry and scan, as far as somebody publishes them.
-
-        At full speed the sensor timeout passes in the time that a subscription takes: a goal sent as soon as the server
-        was there would end with NO_ODOM although the simulator publishes odometry.
-        """
-        published = {name for name, _ in rospy.get_published_topics()}
-        expected = [topic for topic in self._topics if topic.resolved_name in published]
-        wait_until(lambda: all(topic.get_num_connections() > 0 for topic in expected), CONNECTION_TIME)
-        if expected:
-            with self._arrived:
-                self._arrived.wait_for(lambda: self.odom is not None and self.scan is not None, FIRST_DATA)
-
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
         with self._arrived:
@@ -99,20 +87,28 @@ class Inputs:
                 LOCKSTEP_PATIENCE,
             )
 
-    def missing(self, now: float, started: float) -> Optional[Tuple[Outcome, str]]:
+    def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.
 
-        A message published before a clock tick may arrive after it, so they must also be missing on the wall clock.
+        They must be missing on the wall clock, too: a topic without any message since the goal was accepted, at
+        `accepted` of time.monotonic, may just be connecting, and a message published before a clock tick may arrive
+        after it.
         """
         for received, outcome in ((self.odom, Outcome.NO_ODOM), (self.valid_scan, Outcome.NO_SCAN)):
             last = started
             # A message later than the present is from before the clock was set back; one later than `now` need not be.
             if received is not None and received.at <= _now():
                 last = max(started, received.at)
-            if now - last > self.p.data_timeout and not wait_until(self._has_data, LATE_DATA):
+            if now - last <= self.p.data_timeout or self._may_be_connecting(outcome, accepted):
+                continue
+            if not wait_until(self._has_data, LATE_DATA):
                 since = "so far" if received is None else f"for {now - received.at:.1f} s"
                 return outcome, f"no {self._what_is_missing(outcome)} {since}, limit {self.p.data_timeout:g} s"
         return None
+
+    def _may_be_connecting(self, outcome: Outcome, accepted: float) -> bool:
+        newest = self.odom if outcome is Outcome.NO_ODOM else self.scan
+        return (newest is None or newest.wall < accepted) and time.monotonic() - accepted < FIRST_MESSAGE
 
     def _what_is_missing(self, outcome: Outcome) -> str:
         if outcome is Outcome.NO_ODOM:

@@ -57,7 +57,6 @@ class GotoServer:
         self.loop.start()
         rospy.on_shutdown(self._shut_down)
         self.marker_timer = start_timer(MARKER_PERIOD, self._publish_markers)
-        self.inputs.await_first()
         self.server.start()
 
     # -- the control loop --
