@@ -49,7 +49,7 @@ class ServerRun:
 
     def _bring_up(self) -> bool:
         run = self.run
-        run.death_recorded, run.accepts_late, run.known = False, False, {}
+        run.death_recorded, run.accepts_late, run.punctual, run.known = False, False, True, {}
         run.node = self.launch(run)
         run.one_shot.restart()
         log = run.subscribers["log"]

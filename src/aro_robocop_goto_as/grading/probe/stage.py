@@ -37,8 +37,6 @@ from .watch import Watch
 # A submission has to use odom, not the truth.
 PARAMS = SimParams(clock_rate=30, cmd_vel_timeout=0.0, ground_truth=False)
 STEPS_PER_TICK = PARAMS.physics_rate // PARAMS.control_rate
-# [s, wall] Publish data this long before the clock, so that the node's callbacks finish before its loop wakes.
-DIGEST = 0.003
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
 MAX_EXCLUDED = 600.0  # [s, wall]
@@ -80,6 +78,7 @@ class Stage(LoopInterface):
         self.odd_scan = False
         self.bag: Optional[rosbag.Bag] = None
         self.tick_number = 0
+        self.before_tick: Callable[[], None] = lambda: None  # called before the clock reaches a control tick
         self.after_publishing: Callable[[], None] = lambda: None  # called after each step with something to publish
         self.watch: Optional[Watch] = None  # RViz, where the run is shown
         self._real_time = True
@@ -192,7 +191,7 @@ class Stage(LoopInterface):
             self._write(shown, stamp)
         if observations.clock:
             if observations.control:
-                time.sleep(DIGEST)
+                self.before_tick()
             self.clock.publish(stamp)
 
     def frames_changed(self) -> None:
