@@ -1,29 +1,28 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
-import math
 from dataclasses import dataclass
-from typing import Callable, Dict, FrozenSet, List, Mapping, Optional, Sequence
+from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence
 
 import numpy as np
 
 from ..component_params import ImuNoise, OdometryParams, Rates, WorldParams
-from ..errors import PlaceError
 from ..geometry import Pose2D, Twist2D, compose, compose3, inverse
 from ..physics.engine import Engine
 from ..raycast.scanners import Scanners
-from ..raycast.surroundings import Surroundings, body_heights
 from ..robot import base_controller
 from ..robot.base_controller import Limits
-from ..robot.model import BodyState, RobotModel, RobotSpec, RobotState
+from ..robot.model import BodyState, RobotSpec, RobotState
 from ..sensors import imu, magnetometer
-from ..sensors.camera import CameraImage, CameraSpec, ImageRenderer
+from ..sensors.camera import CameraImage, CameraSpec
 from ..sensors.fleet_odometry import Odometers
 from ..sensors.imu import ImuSample
 from ..sensors.lidar import Lidar
+from ..sensors.noise import NoiseStreams
 from ..sensors.odometry import Odometry
 from ..sensors.scan_profiles import LidarSpec
 from ..world.model import Occupancy, World
 from ..world.occupancy_grid import occupancy_of
+from .cameras import Cameras, MakeRenderer
 from .clock import due, stamp_ns
 from .observations import (
     BATTERY,
@@ -41,6 +40,7 @@ from .observations import (
     RobotTransforms,
     Subscriptions,
 )
+from .room import require_room
 
 CLOCK, CONTROL = "clock", "control"  # scheduled as sensors are
 EVERY_STEP = frozenset((IMU, MAGNETIC_FIELD))  # due on most steps and seldom subscribed to
@@ -73,7 +73,7 @@ class Simulator:
         engine: Engine,
         robots: Sequence[RobotSpec],
         limits: Sequence[Limits],
-        make_renderer: Optional[Callable[[World, Sequence[RobotModel]], ImageRenderer]] = None,
+        make_renderer: Optional[MakeRenderer] = None,
     ) -> None:
         """`engine` holds the same world and no robot yet; `limits` one set per robot; without a renderer no images."""
         self.config = config
@@ -84,16 +84,14 @@ class Simulator:
         self.dt = 1.0 / config.rates.physics
         self.lidar = Lidar(config.lidar)
         self._reset_step = 0  # step of the last reset, from which noise and moving obstacles count
-        self._noise = np.random.Generator(np.random.Philox(0))
-        self._noise_state = self._noise.bit_generator.state
+        self._noise = NoiseStreams()
         self._limits = tuple(limits)
         self.moving = bool(world.moving())
         self.engine = engine
         for robot in self.robots:
             engine.add_robot(robot.model, robot.spawn)
         self._scanners = Scanners([robot.model for robot in self.robots], world)
-        self._make_renderer = make_renderer
-        self._renderer: Optional[ImageRenderer] = None  # made for the first image
+        self.cameras = Cameras([robot.model for robot in self.robots], config.cameras, make_renderer)
         self._schedule = _schedule(config.rates)
         self._start()
 
@@ -186,20 +184,8 @@ class Simulator:
     # -- sensors --
 
     def _noise_of(self, stream: int) -> np.random.Generator:
-        """Noise of one stream on this step: a function of seed, stream and steps since the reset, whoever subscribes.
-
-        The generator's state is set, because a new Philox would read entropy from the system, which costs more than
-        the noise.
-        """
-        step = self.steps - self._reset_step
-        self._noise.bit_generator.state = {
-            **self._noise_state,
-            "state": {
-                "counter": np.array([0, 0, 0, step], np.uint64),
-                "key": np.array([self.seed, stream], np.uint64),
-            },
-        }
-        return self._noise
+        """Noise of one stream on this step, counted from the last reset."""
+        return self._noise.at(self.seed, stream, self.steps - self._reset_step)
 
     def _scan(self, states: Sequence[RobotState], robots: Robots) -> Dict[int, np.ndarray]:
         if not robots:
@@ -239,32 +225,10 @@ class Simulator:
         return imu.measure(before, self.engine.body(robot), self.dt, base_from_imu, noise, self._noise_of(1 + robot))
 
     def _images(self, robots: Robots) -> Dict[int, CameraImage]:
-        """Images of those of the robots that have a camera."""
-        if not robots or self._make_renderer is None:
+        if not robots:
             return {}
-        models = [robot.model for robot in self.robots]
-        if self._renderer is None:
-            self._renderer = self._make_renderer(self.world, models)
-        bases = [self.engine.body(robot).world_from_base for robot in range(len(models))]
-        images = {}
-        for robot in robots:
-            base_from_camera = models[robot].base_from_camera
-            if base_from_camera is not None:
-                world_from_camera = compose3(bases[robot], base_from_camera)
-                images[robot] = self._renderer.render(
-                    self.config.cameras[models[robot].name], world_from_camera, robot, bases, self.world_time
-                )
-        return images
-
-    def camera_of(self, robot: int) -> Optional[CameraSpec]:
-        """The camera of a robot; None if its model has none."""
-        model = self.robots[robot].model
-        return None if model.base_from_camera is None else self.config.cameras[model.name]
-
-    def _close_renderer(self) -> None:
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
+        bases = [self.engine.body(robot).world_from_base for robot in range(len(self.robots))]
+        return self.cameras.images(self.world, bases, robots, self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -298,20 +262,10 @@ class Simulator:
 
     def require_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint overlaps an obstacle or a robot at a pose."""
-        x, y, radius = world_from_footprint.x, world_from_footprint.y, self._footprint_radius(robot)
-        nearest = Surroundings(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
-        if nearest.distance < radius:
-            raise PlaceError(
-                f"x {x:.3f} y {y:.3f} is {nearest.distance:.3f} m from '{nearest.name}', expected at least the robot's "
-                f"radius of {radius:g} m"
-            )
-        for index, other in enumerate(self.robots):
-            pose, least = self.world_from_footprint(index), radius + self._footprint_radius(index)
-            distance = math.hypot(pose.x - x, pose.y - y)
-            if index != robot and distance < least:
-                raise PlaceError(
-                    f"x {x:.3f} y {y:.3f} is {distance:.3f} m from robot '{other.name}', expected at least {least:g} m"
-                )
+        poses = [self.world_from_footprint(index) for index in range(len(self.robots))]
+        require_room(
+            self.world, self.world_time, self.robots, poses, self._footprint_radius, world_from_footprint, robot
+        )
 
     def _footprint_radius(self, robot: int) -> float:
         given = self.config.footprint_radius
@@ -324,7 +278,7 @@ class Simulator:
         self.world = world if self.config.world.moving else world.without_motion()
         self.moving = bool(self.world.moving())
         self._scanners.change_world(self.world)
-        self._close_renderer()
+        self.cameras.close()
         self.engine.change_world(self.world, self.world_time)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
@@ -352,7 +306,7 @@ class Simulator:
 
     def close(self) -> None:
         """Free the engine and the renderer."""
-        self._close_renderer()
+        self.cameras.close()
         self.engine.close()
 
 

@@ -56,7 +56,7 @@ class SimNode(LoopInterface):
         self._outbox = Outbox()
         self._transforms = TransformTopics(messages.frames, messages.topics, names, table.changed)
         self._robots = [
-            RobotTopics(index, robot.name, messages, simulator.camera_of(index), table.changed)
+            RobotTopics(index, robot.name, messages, simulator.cameras.spec(index), table.changed)
             for index, robot in enumerate(simulator.robots)
         ]
         table.set_topics([{**robot.by_sensor, TF: self._transforms.tf} for robot in self._robots])
