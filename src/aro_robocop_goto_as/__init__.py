@@ -3,7 +3,8 @@
 From a velocity command to odometry, scan, tf and clock:
 
     ros.sim.robot_inputs          cmd_vel -> ros.sim.node, which posts a job to the loop
-    simulation.loop               applies it, in lockstep at the end of the control tick; makes the steps
+    simulation.controllers        applies it, in lockstep at the end of the control tick
+    simulation.loop               makes the steps
     simulation.simulator          one step: advance, then measure what is due and subscribed to
         robot.base_controller     command -> limits, command timeout -> wheel speeds
         physics.engine            wheel speeds + world -> robot states, by bullet or kinematic

@@ -15,7 +15,8 @@ from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.simulation.factory import simulator_config
 from aro_robocop_goto_as.simulation.lockstep import Controller
-from aro_robocop_goto_as.simulation.loop import LoopInterface, SimulationLoop
+from aro_robocop_goto_as.simulation.loop import SimulationLoop
+from aro_robocop_goto_as.simulation.loop_interface import LoopInterface
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -149,7 +150,7 @@ def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
 def test_command_moves_the_robot() -> None:
     clock, recorder = FakeClock(), Recorder(end=1.0)
     loop = make(recorder, clock)
-    loop.post(lambda: loop.command(NODE, AHEAD))
+    loop.post(lambda: loop.controllers.command(NODE, AHEAD))
     loop.run()
     assert loop.simulator.world_from_footprint().x > 0.05
 
@@ -157,7 +158,7 @@ def test_command_moves_the_robot() -> None:
 def test_non_finite_command_is_reported_and_ignored() -> None:
     clock, recorder = FakeClock(), Recorder(end=0.2)
     loop = make(recorder, clock)
-    loop.post(lambda: loop.command(NODE, Twist2D(float("nan"), 0.0)))
+    loop.post(lambda: loop.controllers.command(NODE, Twist2D(float("nan"), 0.0)))
     loop.run()
     assert "nan" in str(recorder.events)
     assert loop.simulator.world_from_footprint().x == 0.0
@@ -174,13 +175,13 @@ def test_lockstep_waits_for_each_answer_without_a_miss() -> None:
         recorder.observed.append(observations)
         if observations.control:
             waits.append(clock.time)
-            clock.at(0.3, lambda: loop.post(lambda: loop.answer(node, observations.stamp_ns, AHEAD)))
+            clock.at(0.3, lambda: loop.post(lambda: loop.controllers.answer(node, observations.stamp_ns, AHEAD)))
 
     recorder.publish = answer_when_observed  # type: ignore[method-assign]
     loop.run()
     assert len(waits) == 5
     assert clock.time == pytest.approx(101.5)
-    assert loop.lockstep.misses == 0
+    assert loop.controllers.lockstep.misses == 0
     assert not [event for event in recorder.events if isinstance(event, tuple)]
 
 
@@ -190,7 +191,7 @@ def test_lockstep_continues_without_a_silent_controller() -> None:
     loop = make(recorder, clock, factor=0.0, lockstep=True)
     loop.run()
     assert ("late", [Controller(0, "/answering")]) in recorder.events
-    assert loop.lockstep.misses == 1
+    assert loop.controllers.lockstep.misses == 1
 
 
 def test_lockstep_stops_the_robot_of_a_controller_that_disconnects() -> None:
@@ -198,7 +199,7 @@ def test_lockstep_stops_the_robot_of_a_controller_that_disconnects() -> None:
     recorder.nodes = {"/answering"}
     loop = make(recorder, clock, factor=0.0, lockstep=True)
     node = Controller(0, "/answering")
-    clock.at(0.1, lambda: loop.post(lambda: loop.answer(node, 100000000, AHEAD)))
+    clock.at(0.1, lambda: loop.post(lambda: loop.controllers.answer(node, 100000000, AHEAD)))
     clock.at(0.2, recorder.nodes.clear)
     loop.run()
     assert ("gone", node) in recorder.events
@@ -236,10 +237,10 @@ def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() 
 def test_reset_and_place_announce_new_frames_and_drop_pending_commands() -> None:
     clock, recorder = FakeClock(), Recorder(end=0.25)
     loop = make(recorder, clock, factor=0.0, lockstep=True)
-    loop.command(NODE, AHEAD)
+    loop.controllers.command(NODE, AHEAD)
     loop.place(Pose2D(1.0, 2.0))
     assert recorder.events == ["frames"]
-    loop.command(NODE, AHEAD)
+    loop.controllers.command(NODE, AHEAD)
     loop.reset()
     assert recorder.events == ["frames", "frames", "status"]
     loop.run()
@@ -276,12 +277,12 @@ def test_an_answer_from_before_time_was_set_back_is_ignored() -> None:
     recorder.nodes = {"/answering"}
     loop = make(recorder, clock, factor=0.0, lockstep=True)
     node = Controller(0, "/answering")
-    loop.lockstep.enroll(node)
-    loop.answer(node, 100 * 10**9, AHEAD)
+    loop.controllers.lockstep.enroll(node)
+    loop.controllers.answer(node, 100 * 10**9, AHEAD)
 
     def answer_when_observed(observations: Observations) -> None:
         if observations.control:
-            clock.at(0.1, lambda: loop.post(lambda: loop.answer(node, observations.stamp_ns, None)))
+            clock.at(0.1, lambda: loop.post(lambda: loop.controllers.answer(node, observations.stamp_ns, None)))
 
     recorder.publish = answer_when_observed  # type: ignore[method-assign]
     loop.run()
@@ -298,14 +299,14 @@ def test_a_reset_while_controllers_are_waited_for_asks_nobody_twice() -> None:
     def answer_when_observed(observations: Observations) -> None:
         if observations.control:
             stamp = observations.stamp_ns
-            clock.at(0.1, lambda: loop.post(lambda: loop.answer(first, stamp, None)))
+            clock.at(0.1, lambda: loop.post(lambda: loop.controllers.answer(first, stamp, None)))
             if stamp == 10**8:
                 clock.at(0.15, lambda: loop.post(loop.reset))
-            clock.at(0.2, lambda: loop.post(lambda: loop.answer(second, stamp, None)))
+            clock.at(0.2, lambda: loop.post(lambda: loop.controllers.answer(second, stamp, None)))
 
     recorder.publish = answer_when_observed  # type: ignore[method-assign]
     loop.run()
-    assert loop.lockstep.misses == 0
+    assert loop.controllers.lockstep.misses == 0
     assert clock.time < 101.0
 
 
@@ -329,7 +330,7 @@ def test_another_controllers_command_outlives_one_that_disconnects() -> None:
     clock, recorder = FakeClock(), Recorder(end=0.15)
     recorder.nodes = {"/answering"}
     loop = make(recorder, clock, factor=0.0, lockstep=True)
-    clock.at(0.01, lambda: loop.post(lambda: loop.command(NODE, AHEAD)))
+    clock.at(0.01, lambda: loop.post(lambda: loop.controllers.command(NODE, AHEAD)))
     clock.at(0.02, recorder.nodes.clear)
     loop.run()
     assert ("gone", Controller(0, "/answering")) in recorder.events

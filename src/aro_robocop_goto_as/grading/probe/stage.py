@@ -25,7 +25,8 @@ from ...ros.sim.robot_topics import RobotTopics
 from ...ros.sim.subscriptions import SubscriptionTable
 from ...ros.sim.transform_topics import TransformTopics
 from ...simulation.factory import make_simulator
-from ...simulation.loop import LoopInterface, SimulationLoop
+from ...simulation.loop import SimulationLoop
+from ...simulation.loop_interface import LoopInterface
 from ...simulation.observations import JOINTS, ODOM, TF, Observations, Subscriptions
 from .. import record as rec
 from ..handout import AHEAD

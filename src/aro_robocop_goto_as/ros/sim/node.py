@@ -12,7 +12,8 @@ from ...geometry import Twist2D
 from ...params import SimParams
 from ...simulation.factory import footprint_radius
 from ...simulation.lockstep import Controller
-from ...simulation.loop import LoopInterface, SimulationLoop
+from ...simulation.loop import SimulationLoop
+from ...simulation.loop_interface import LoopInterface
 from ...simulation.observations import TF, Observations, Subscriptions
 from ...simulation.simulator import Simulator
 from .. import convert, param_server
@@ -76,10 +77,10 @@ class SimNode(LoopInterface):
 
     def _connect_inputs(self, robot: int, name: str, lockstep: LockstepParams) -> RobotInputs:
         def on_command(sender: str, twist: Twist2D) -> None:
-            self.loop.post(lambda: self.loop.command(Controller(robot, sender), twist))
+            self.loop.post(lambda: self.loop.controllers.command(Controller(robot, sender), twist))
 
         def on_answer(sender: str, tick_ns: int, twist: Optional[Twist2D]) -> None:
-            self.loop.post(lambda: self.loop.answer(Controller(robot, sender), tick_ns, twist))
+            self.loop.post(lambda: self.loop.controllers.answer(Controller(robot, sender), tick_ns, twist))
 
         return RobotInputs(name, lockstep.enabled, on_command, on_answer)
 
@@ -149,7 +150,7 @@ class SimNode(LoopInterface):
     def controllers_late(self, controllers: Sequence[Controller]) -> None:
         """Warn that simulated time continues without these."""
         names = ", ".join(controller_name(controller, self.simulator.robots) for controller in controllers)
-        timeout = self.loop.lockstep_timeout
+        timeout = self.loop.controllers.timeout
         rospy.logwarn("lockstep: no answer from %s within %g s; simulated time continues without it", names, timeout)
 
     def controller_gone(self, controller: Controller) -> None:

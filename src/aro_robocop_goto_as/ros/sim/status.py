@@ -50,13 +50,13 @@ class StatusTopics:
                     report.reached,
                     report.asked,
                 )
-        elif self._loop.drivers() != self._drivers:
+        elif self._loop.controllers.awaited() != self._drivers:
             self.publish()
 
     def publish(self) -> None:
         """Publish the newest report now."""
         loop, simulator, report = self._loop, self._loop.simulator, self._report
-        self._drivers = loop.drivers()
+        self._drivers = loop.controllers.awaited()
         self._status.publish(
             SimStatus(
                 stamp=convert.to_time(simulator.stamp_ns),
@@ -71,7 +71,7 @@ class StatusTopics:
                 step_time=report.step_time,
                 behind=report.lag,
                 drivers=sorted(controller_name(driver, simulator.robots) for driver in self._drivers),
-                lockstep_misses=loop.lockstep.misses,
+                lockstep_misses=loop.controllers.lockstep.misses,
             )
         )
         if self._diagnostics.get_num_connections():
@@ -79,7 +79,7 @@ class StatusTopics:
 
     @property
     def _sync(self) -> str:
-        return "lockstep" if self._loop.in_lockstep else "free"
+        return "lockstep" if self._loop.controllers.in_lockstep else "free"
 
     def _diagnostic_array(self) -> DiagnosticArray:
         loop, simulator, report = self._loop, self._loop.simulator, self._report
@@ -96,7 +96,7 @@ class StatusTopics:
             "real-time factor reached": round(report.reached, 3),
             "step time [s]": report.step_time,
             "behind [s]": report.lag,
-            "lockstep misses": loop.lockstep.misses,
+            "lockstep misses": loop.controllers.lockstep.misses,
         }
         status = DiagnosticStatus(
             level,
