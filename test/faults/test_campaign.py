@@ -4,10 +4,13 @@
 ./robocop test test/faults --all --soak 3600 -k hours     an hour of goals at full speed, with a table of what is used
 ./robocop test test/faults --episode CONFIGURATION/SEED/NUMBER     one episode again, as a violation names it
 
+The tables are kept in .robocop/log/campaign-CONFIGURATION.log.
+
 Each campaign is a process, because it needs a ROS master of its own, which it may kill.
 """
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -38,6 +41,8 @@ def run(tmp_path, capsys, configuration, goals, *options):
     )
     with capsys.disabled():
         print(f"\n{configuration}\n{done.stdout}")
+    # Of tests in several processes, pytest shows nothing but failures.
+    Path(os.environ["ROBOCOP_STATE"], "log", f"campaign-{configuration}.log").write_text(done.stdout)
     assert done.returncode == 0, done.stdout
     return json.loads((tmp_path / "report.json").read_text())
 
