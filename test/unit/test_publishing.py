@@ -1,0 +1,98 @@
+"""Publishers and the outbox with rospy's own connections, without a ROS master."""
+
+import itertools
+import socket
+import struct
+import weakref
+from typing import Callable, Iterator, List, NamedTuple
+
+import numpy as np
+import pytest
+import rospy
+from rospy.impl.tcpros_base import TCPROSTransport
+from rospy.impl.tcpros_pubsub import TCPROSPub
+from sensor_msgs.msg import LaserScan
+
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.ros.outbox import Outbox
+from aro_robocop_goto_as.ros.packed import PackedMessage
+from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher
+from aro_robocop_goto_as.ros.sim.factory import message_config
+from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
+from aro_robocop_goto_as.simulation.observations import Observations
+
+SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
+NAMES = (f"/topic_{i}" for i in itertools.count())
+
+
+class Link(NamedTuple):
+    """rospy's connection to a subscriber, and the subscriber's end of it."""
+
+    connection: TCPROSTransport
+    socket: socket.socket
+
+
+@pytest.fixture(name="topic")
+def _topic() -> Iterator[Callable[[], DirectPublisher]]:
+    made: List[DirectPublisher] = []
+
+    def make() -> DirectPublisher:
+        made.append(publisher(next(NAMES), LaserScan))
+        return made[-1]
+
+    yield make
+    for topic in made:
+        topic.unregister()
+
+
+@pytest.fixture(name="connect")
+def _connect() -> Iterator[Callable[[DirectPublisher], Link]]:
+    """Connects one more subscriber to a topic, as rospy's server does after the handshake."""
+    server = socket.create_server(("127.0.0.1", 0))
+    names = (f"/subscriber_{i}" for i in itertools.count())
+    ends = [socket.create_connection(server.getsockname())]
+
+    def connect(topic: DirectPublisher) -> Link:
+        connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
+        connection.set_socket(server.accept()[0], next(names))
+        ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number
+        topic.impl.add_connection(connection)
+        return Link(connection, ends[-2])
+
+    yield connect
+    for end in (server, *ends):
+        end.close()
+
+
+def _send(topic: DirectPublisher, message: PackedMessage = SCAN) -> None:
+    outbox = Outbox()
+    outbox.put(topic, message)
+    outbox.flush()
+
+
+def test_descriptors_of_gone_subscribers_are_closed(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans = topic()
+    links = [connect(scans) for _ in range(10)]
+    duplicates = [weakref.ref(outlet.socket) for outlet in scans.outlets]
+    for connection, end in links:
+        end.close()
+        if connection is links[4].connection:
+            rospy.topics.get_topic_manager().check_all()  # rospy notices a part of them by itself
+    while scans.get_num_connections():
+        _send(scans)
+    assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
+
+
+def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams() -> None:
+    lds02 = RobotTopics(0, "lds02", message_config(SimParams(scan_profile="lds02")), None, lambda: None)
+    sent: List[int] = []
+
+    class Outbox:
+        def put(self, _topic: DirectPublisher, message: PackedMessage) -> None:
+            sent.append(struct.unpack_from("<I", message.data, 4)[0])
+
+    for beams in (230, 231, 230, 229, 230):
+        lds02.publish(Observations(0, clock=True, control=True, scans={0: np.ones(beams)}), Outbox())
+    assert sent == [1, 2, 3, 4, 5]
