@@ -13,6 +13,7 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import TCPROSPub
 from sensor_msgs.msg import LaserScan
 
+from aro_robocop_goto_as.grading.probe.one_shot import OneShotSubscriptions
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.ros.outbox import Outbox
 from aro_robocop_goto_as.ros.packed import PackedMessage
@@ -83,6 +84,25 @@ def test_descriptors_of_gone_subscribers_are_closed(
     while scans.get_num_connections():
         _send(scans)
     assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
+
+
+def test_one_shot_subscription_is_served_only_when_it_got_a_message_itself(
+    topic: Callable[[], DirectPublisher],
+    connect: Callable[[DirectPublisher], Link],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scans = topic()
+    one_shot = OneShotSubscriptions(lambda: [scans])
+    with monkeypatch.context() as patched:
+        patched.setattr(scans, "_update_outlets", lambda: None)  # rospy has the connection, the outbox not yet
+        connect(scans)
+        assert one_shot.waiting()
+        _send(scans)
+        assert one_shot.waiting() and not one_shot.served()
+    connect(topic())
+    scans.impl.subscriber_listeners[0].on_change()
+    _send(scans)
+    assert one_shot.served() and not one_shot.waiting()
 
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams() -> None:

@@ -64,9 +64,9 @@ def live_connections(publisher: rospy.Publisher) -> List[Any]:
     return live
 
 
-def messages_sent(publisher: rospy.Publisher) -> int:
-    """How many messages a publisher has sent; rospy's public API does not count them."""
-    return int(publisher.impl.seq)
+def messages_sent(connection: Any) -> int:
+    """How many messages were sent to one subscriber; rospy's public API does not count them."""
+    return int(connection.stat_num_msg)
 
 
 def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> None:
