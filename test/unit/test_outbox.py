@@ -69,8 +69,14 @@ def _subscriber() -> Iterator[Callable[[], Subscriber]]:
 
 def topic_of(*subscribers: Subscriber) -> Any:
     """Stands for a DirectPublisher with these subscribers."""
-    counts = SimpleNamespace(seq=0, message_data_sent=0)
-    return SimpleNamespace(outlets=tuple(it.outlet for it in subscribers), impl=counts)
+    impl = SimpleNamespace(
+        seq=0,
+        message_data_sent=0,
+        c_lock=threading.RLock(),
+        connections=[it.connection for it in subscribers],
+        remove_connection=lambda connection: connection.close(),
+    )
+    return SimpleNamespace(outlets=tuple(it.outlet for it in subscribers), impl=impl)
 
 
 def scan(beams: int) -> PackedMessage:
@@ -143,6 +149,44 @@ def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
     assert lost.connection.closed
     assert reader.connection.stat_num_msg == sent
     assert not reader.connection.closed
+
+
+def _full(reader: Subscriber) -> None:
+    reader.outlet.socket.settimeout(0.0)
+    with pytest.raises(BlockingIOError):
+        while True:
+            reader.outlet.socket.send(bytes(1000))
+    reader.outlet.socket.settimeout(None)
+
+
+def test_message_is_sent_only_when_those_before_it_are_sent_whole(subscriber: Callable[[], Subscriber]) -> None:
+    full, reader, message, outbox = subscriber(), subscriber(), scan(10), Outbox()
+    reader.socket.setblocking(False)
+    _full(full)
+
+    def finish(rest: memoryview) -> None:
+        assert rest == message.data
+        with pytest.raises(BlockingIOError):
+            reader.socket.recv(1)
+
+    full.outlet = full.outlet._replace(socket=SimpleNamespace(sendall=finish, close=full.outlet.socket.close))
+    outbox.put(topic_of(full, reader), message)
+    outbox.flush()
+    assert not full.connection.closed
+    assert reader.received(message.size) == bytes(message.data)
+
+
+def test_subscribers_that_stall_together_are_waited_for_only_once(subscriber: Callable[[], Subscriber]) -> None:
+    stalled, outbox, waits = [subscriber() for _ in range(5)], Outbox(), []
+    for one in stalled:
+        _full(one)
+        near = one.outlet.socket
+        wait = SimpleNamespace(sendall=lambda rest, near=near: waits.append(1) or near.sendall(rest), close=near.close)
+        one.outlet = one.outlet._replace(socket=wait)
+    outbox.put(topic_of(*stalled), scan(10))
+    outbox.flush()
+    assert all(one.connection.closed for one in stalled)
+    assert len(waits) == 1
 
 
 def test_empty_outbox_sends_nothing() -> None:

@@ -4,6 +4,7 @@ import itertools
 import socket
 import struct
 import weakref
+from types import SimpleNamespace
 from typing import Callable, Iterator, List, NamedTuple
 
 import numpy as np
@@ -84,6 +85,26 @@ def test_descriptors_of_gone_subscribers_are_closed(
     while scans.get_num_connections():
         _send(scans)
     assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
+
+
+def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans, new = topic(), []
+    gone, slow = connect(scans), connect(scans)
+    number = gone.connection.fileno()
+    gone.connection.socket.shutdown(socket.SHUT_RDWR)
+
+    def finish(_rest: memoryview) -> None:
+        new.append(connect(scans).connection)
+        scans.impl.check()  # as one of rospy's threads does twice a second
+
+    first, second = scans.outlets
+    scans.outlets = (first, second._replace(socket=SimpleNamespace(sendall=finish)))
+    del first
+    _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
+    assert [connection.fileno() for connection in new] == [number]
+    assert scans.impl.connections == [slow.connection, *new]
 
 
 def test_one_shot_subscription_is_served_only_when_it_got_a_message_itself(

@@ -8,15 +8,15 @@ import ctypes
 import errno
 import functools
 from array import array
-from contextlib import suppress
 from typing import List, Tuple
 
 from .. import compiled
 from .packed import PackedMessage
-from .private_api import count_message, count_sent
+from .private_api import count_message, count_sent, disconnect
 from .publishing import DirectPublisher, Outlet
 
-VERSION = 1  # of sender.c
+VERSION = 2  # of sender.c
+Send = Tuple[DirectPublisher, Outlet, PackedMessage]
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
@@ -24,7 +24,7 @@ LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes not
 def _library() -> ctypes.PyDLL:
     library = compiled.load("sender", VERSION)
     library.aro_send.restype = ctypes.c_int64
-    library.aro_send.argtypes = [ctypes.c_int64] + [ctypes.c_void_p] * 4
+    library.aro_send.argtypes = [ctypes.c_int64] * 2 + [ctypes.c_void_p] * 4
     return library
 
 
@@ -42,40 +42,44 @@ class Outbox:
     def flush(self) -> None:
         """Send everything, in the order in which it was put in.
 
-        A subscriber that does not take its message within publishing.STALL_LIMIT is disconnected.
+        A subscriber that does not take its message within publishing.STALL_LIMIT is disconnected. Others that take
+        nothing by then have stalled as long, and are not waited for again: a stopped node can have many topics.
         """
-        outlets: List[Outlet] = []
-        messages: List[PackedMessage] = []
+        sends: List[Send] = []
         for topic, message in self._messages:
             count_message(topic, message.size)
-            for outlet in topic.outlets:
-                outlets.append(outlet)
-                messages.append(message)
+            sends += [(topic, outlet, message) for outlet in topic.outlets]
         self._messages.clear()
-        if len(outlets) == 1:  # for one message the arrays cost more than the call saves
-            _finish(outlets[0], messages[0], 0)
+        if len(sends) == 1:  # for one message the arrays cost more than the call saves
+            _finish(sends[0], 0, patient=True)
             return
-        sockets = array("i", [outlet.descriptor for outlet in outlets])
-        data = array("Q", [message.address for message in messages])
-        sizes = array("q", [message.size for message in messages])
-        taken = array("q", sizes)
-        if not self._send(len(outlets), *(numbers.buffer_info()[0] for numbers in (sockets, data, sizes, taken))):
-            for outlet, size in zip(outlets, sizes):
-                count_sent(outlet.connection, size)
-            return
-        for outlet, message, count in zip(outlets, messages, taken):
-            _finish(outlet, message, count)
+        sockets = array("i", [outlet.descriptor for _, outlet, _ in sends])
+        data = array("Q", [message.address for _, _, message in sends])
+        sizes = array("q", [message.size for _, _, message in sends])
+        taken = array("q", [0])
+        addresses = [numbers.buffer_info()[0] for numbers in (sockets, data, sizes, taken)]
+        first, patient = 0, True
+        while first < len(sends):
+            end = self._send(first, len(sends), *addresses)
+            for _, outlet, message in sends[first:end]:
+                count_sent(outlet.connection, message.size)
+            if end < len(sends):
+                patient = _finish(sends[end], taken[0], patient) and patient
+            first = end + 1
 
 
-def _finish(outlet: Outlet, message: PackedMessage, taken: int) -> None:
-    """Send the rest of a message of which `taken` bytes were sent, or disconnect the subscriber on an error -taken."""
+def _finish(send: Send, taken: int, patient: bool) -> bool:
+    """Send the rest of a message of which `taken` bytes were sent, or disconnect the subscriber on an error -taken.
+
+    Returns False if the subscriber has stalled. Without patience it has when it took nothing.
+    """
+    topic, outlet, message = send
     try:
-        if taken < 0 and taken not in LATER:
+        if taken < 0 and not (patient and taken in LATER):
             raise OSError(-taken, "send")
-        if taken < message.size:
-            outlet.socket.sendall(memoryview(message.data)[max(0, taken) :])
-    except OSError:
-        with suppress(Exception):  # as rospy: this subscriber is lost, and only this one
-            outlet.connection.close()
-    else:
-        count_sent(outlet.connection, message.size)
+        outlet.socket.sendall(memoryview(message.data)[max(0, taken) :])
+    except OSError as error:  # as rospy: this subscriber is lost, and only this one
+        disconnect(topic, outlet.connection)
+        return not isinstance(error, BlockingIOError)
+    count_sent(outlet.connection, message.size)
+    return True

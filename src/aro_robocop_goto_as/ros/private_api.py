@@ -93,8 +93,20 @@ def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> 
     finally:
         topic.release()
     for connection in failed:
-        with contextlib.suppress(Exception):
-            connection.close()
+        disconnect(publisher, connection)
+
+
+def disconnect(publisher: rospy.Publisher, connection: Any) -> None:
+    """Disconnect a subscriber, unless that has happened already.
+
+    After a connection's own close(), rospy fails to stop watching its socket, as that is closed. While a duplicate is
+    open, the system reports the old descriptor's number, and rospy disconnects the next subscriber that gets it.
+    """
+    topic = publisher.impl
+    if topic is not None:
+        with topic.c_lock, contextlib.suppress(Exception):  # whatever it is, as rospy
+            if connection in topic.connections:
+                topic.remove_connection(connection)
 
 
 def count_message(publisher: rospy.Publisher, size: int) -> None:
