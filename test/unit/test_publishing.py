@@ -1,8 +1,12 @@
 """Publishers and the outbox with rospy's own connections, without a ROS master."""
 
 import itertools
+import os
+import resource
 import socket
 import struct
+import subprocess
+import sys
 import weakref
 from types import SimpleNamespace
 from typing import Callable, Iterator, List, NamedTuple
@@ -105,6 +109,45 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
     _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
     assert [connection.fileno() for connection in new] == [number]
     assert scans.impl.connections == [slow.connection, *new]
+
+
+def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans, limits = topic(), resource.getrlimit(resource.RLIMIT_NOFILE)
+    kept = connect(scans)
+    add = scans.impl.add_connection
+
+    def add_without_descriptors(connection: TCPROSTransport) -> None:
+        unused = [os.dup(0)]
+        while unused[-1] < connection.fileno():
+            unused.append(os.dup(0))
+        resource.setrlimit(resource.RLIMIT_NOFILE, (connection.fileno() + 1, limits[1]))
+        try:
+            add(connection)
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+            for number in unused:
+                os.close(number)
+
+    scans.impl.add_connection = add_without_descriptors
+    lost = connect(scans)
+    lost.socket.settimeout(10.0)
+    assert lost.socket.recv(1) == b""
+    scans.impl.check()
+    assert scans.impl.connections == [kept.connection]
+
+
+def test_simulator_may_open_as_many_descriptors_as_the_system_allows() -> None:
+    program = (
+        "import resource\n"
+        "from aro_robocop_goto_as.process.limits import raise_descriptor_limit\n"
+        "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
+        "raise_descriptor_limit()\n"
+        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (hard, hard)\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_one_shot_subscription_is_served_only_when_it_got_a_message_itself(
