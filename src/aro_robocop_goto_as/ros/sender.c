@@ -12,22 +12,16 @@
 
 int aro_sender_version(void) { return ARO_SENDER_VERSION; }
 
-/* Sends the sizes[i] bytes at the address data[i] to sockets[i], for i from first to n - 1, until a socket does not
- * take its message whole at once. Returns the index of that message, or n; *taken is the number of its bytes that were
- * taken, or -errno. */
-int64_t aro_send(int64_t first, int64_t n, const int32_t *sockets, const uint64_t *data, const int64_t *sizes,
-                 int64_t *taken)
+/* Sends the sizes[i] bytes at the address data[i] to sockets[i] for each i < n, as far as the socket takes them at once;
+ * taken[i] is the number of bytes that it took, or -errno. */
+void aro_send(int64_t n, const int32_t *sockets, const uint64_t *data, const int64_t *sizes, int64_t *taken)
 {
     int64_t i;
-    for (i = first; i < n; i++) {
+    for (i = 0; i < n; i++) {
         ssize_t sent;
         do
             sent = send(sockets[i], (const void *)(uintptr_t)data[i], (size_t)sizes[i], MSG_DONTWAIT | MSG_NOSIGNAL);
         while (sent < 0 && errno == EINTR);
-        if (sent != sizes[i]) {
-            *taken = sent < 0 ? -(int64_t)errno : (int64_t)sent;
-            return i;
-        }
+        taken[i] = sent < 0 ? -(int64_t)errno : (int64_t)sent;
     }
-    return n;
 }
