@@ -46,10 +46,9 @@ class Outbox:
         A subscriber that takes nothing for publishing.STALL_LIMIT is disconnected. While one is waited for, that time
         passes for the others, too: a stopped node can have many topics.
         """
-        sends: List[Send] = []
         for topic, message in self._messages:
             count_message(topic, message.size)
-            sends += [(topic, outlet, message) for outlet in topic.outlets]
+        sends = [(topic, outlet, message) for topic, message in self._messages for outlet in topic.outlets]
         self._messages.clear()
         if len(sends) == 1 or len({outlet.connection for _, outlet, _ in sends}) < len(sends):
             # For one message the arrays cost more than the call saves. In one call, the second of two messages on one
