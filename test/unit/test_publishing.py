@@ -138,7 +138,7 @@ def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
     assert scans.impl.connections == [kept.connection]
 
 
-def test_simulator_may_open_as_many_descriptors_as_the_system_allows() -> None:
+def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
     program = (
         "import resource\n"
         "from aro_robocop_goto_as.process.limits import raise_descriptor_limit\n"

@@ -53,7 +53,7 @@ class Outbox:
         if len(sends) == 1 or len({outlet.connection for _, outlet, _ in sends}) < len(sends):
             # For one message the arrays cost more than the call saves. In one call, the second of two messages on one
             # connection (of topics remapped to one) could come between the parts of the first.
-            counts = [0] * len(sends)
+            counts: Sequence[int] = [0] * len(sends)
         else:
             counts = self._send_at_once(sends)
         patient = True

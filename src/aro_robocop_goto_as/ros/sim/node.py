@@ -10,7 +10,6 @@ from ...component_params import LockstepParams, TimeParams
 from ...errors import CommandError, ParameterError
 from ...geometry import Twist2D
 from ...params import SimParams
-from ...process.limits import raise_descriptor_limit
 from ...simulation.factory import footprint_radius
 from ...simulation.lockstep import Controller
 from ...simulation.loop import LoopInterface, SimulationLoop
@@ -181,7 +180,6 @@ def _serve_gazebo(loop: SimulationLoop, world_services: WorldServices) -> None:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
-    raise_descriptor_limit()
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node("robocop_sim", disable_rostime=True):
         p = param_server.load(SimParams)
