@@ -69,8 +69,14 @@ def _subscriber() -> Iterator[Callable[[], Subscriber]]:
 
 def topic_of(*subscribers: Subscriber) -> Any:
     """Stands for a DirectPublisher with these subscribers."""
-    counts = SimpleNamespace(seq=0, message_data_sent=0)
-    return SimpleNamespace(outlets=tuple(it.outlet for it in subscribers), impl=counts)
+    impl = SimpleNamespace(
+        seq=0,
+        message_data_sent=0,
+        c_lock=threading.RLock(),
+        connections=[it.connection for it in subscribers],
+        remove_connection=lambda connection: connection.close(),
+    )
+    return SimpleNamespace(outlets=tuple(it.outlet for it in subscribers), impl=impl)
 
 
 def scan(beams: int) -> PackedMessage:
@@ -143,6 +149,76 @@ def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
     assert lost.connection.closed
     assert reader.connection.stat_num_msg == sent
     assert not reader.connection.closed
+
+
+def _full(reader: Subscriber) -> None:
+    reader.outlet.socket.settimeout(0.0)
+    with pytest.raises(BlockingIOError):
+        while True:
+            reader.outlet.socket.send(bytes(1000))
+    reader.outlet.socket.settimeout(None)
+
+
+def test_message_is_sent_only_when_the_one_before_it_on_its_connection_is_sent_whole(
+    subscriber: Callable[[], Subscriber],
+) -> None:
+    reader, outbox, message, sent = subscriber(), Outbox(), scan(10), []
+    near = reader.outlet.socket
+    reader.outlet = reader.outlet._replace(socket=SimpleNamespace(sendall=sent.append, close=near.close))
+    for topic in (topic_of(reader), topic_of(reader)):  # remapped to one
+        outbox.put(topic, message)
+    outbox.flush()
+    assert sent == [message.data, message.data], "by sendall(), which ends when the message is sent whole"
+
+
+def _full(reader: Subscriber) -> None:
+    with pytest.raises(BlockingIOError):
+        while True:
+            reader.outlet.socket.send(bytes(1000), socket.MSG_DONTWAIT)
+
+
+@pytest.mark.parametrize("beams", [10, 100_000], ids=["nothing is taken", "a part is taken"])
+def test_subscribers_that_stall_together_are_waited_for_only_once(
+    subscriber: Callable[[], Subscriber], beams: int
+) -> None:
+    stalled, outbox, waited = [subscriber() for _ in range(5)], Outbox(), []
+
+    class Spy(socket.socket):
+        def sendall(self, rest: memoryview) -> None:
+            waited.append(self)
+            super().sendall(rest)
+
+    for one in stalled:
+        if beams < 1000:
+            _full(one)
+        spy = Spy(fileno=one.outlet.socket.detach())
+        one.outlet = Outlet(one.connection, spy, spy.fileno())
+    outbox.put(topic_of(*stalled), scan(beams))
+    outbox.flush()
+    assert all(one.connection.closed for one in stalled)
+    assert waited == [stalled[0].outlet.socket]
+
+
+def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
+    subscriber: Callable[[], Subscriber],
+) -> None:
+    stalled, slow, message, outbox = subscriber(), subscriber(), scan(100_000), Outbox()
+    received: List[bytes] = []
+    reading = threading.Thread(target=lambda: received.append(slow.received(message.size - 100_000)))
+
+    class Stalled(Connection):
+        def close(self) -> None:
+            super().close()
+            received.append(slow.received(100_000))
+            reading.start()
+
+    stalled.connection = Stalled()
+    stalled.outlet = stalled.outlet._replace(connection=stalled.connection)
+    outbox.put(topic_of(stalled, slow), message)
+    outbox.flush()
+    reading.join(10.0)
+    assert stalled.connection.closed and not slow.connection.closed
+    assert b"".join(received) == bytes(message.data)
 
 
 def test_empty_outbox_sends_nothing() -> None:

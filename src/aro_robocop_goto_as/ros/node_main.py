@@ -9,6 +9,7 @@ from typing import Any, Iterator
 import rospy
 
 from ..errors import RobocopError
+from ..process.limits import raise_descriptor_limit
 from ..process.signals import ending_signals
 from . import private_api
 
@@ -22,6 +23,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
     """
     for number in ending_signals():
         signal.signal(number, _shut_down)
+    raise_descriptor_limit()
     try:
         rospy.init_node(name, disable_signals=True, **options)
         yield

@@ -7,23 +7,24 @@ a system call that releases and takes the interpreter's lock, for each message a
 import ctypes
 import errno
 import functools
+import socket
 from array import array
-from contextlib import suppress
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
 from .. import compiled
 from .packed import PackedMessage
-from .private_api import count_message, count_sent
+from .private_api import count_message, count_sent, disconnect
 from .publishing import DirectPublisher, Outlet
 
-VERSION = 1  # of sender.c
+VERSION = 2  # of sender.c
+Send = Tuple[DirectPublisher, Outlet, PackedMessage]
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
 @functools.lru_cache(maxsize=None)
 def _library() -> ctypes.PyDLL:
     library = compiled.load("sender", VERSION)
-    library.aro_send.restype = ctypes.c_int64
+    library.aro_send.restype = None
     library.aro_send.argtypes = [ctypes.c_int64] + [ctypes.c_void_p] * 4
     return library
 
@@ -42,40 +43,52 @@ class Outbox:
     def flush(self) -> None:
         """Send everything, in the order in which it was put in.
 
-        A subscriber that does not take its message within publishing.STALL_LIMIT is disconnected.
+        A subscriber that takes nothing for publishing.STALL_LIMIT is disconnected. While one is waited for, that time
+        passes for the others, too: a stopped node can have many topics.
         """
-        outlets: List[Outlet] = []
-        messages: List[PackedMessage] = []
         for topic, message in self._messages:
             count_message(topic, message.size)
-            for outlet in topic.outlets:
-                outlets.append(outlet)
-                messages.append(message)
+        sends = [(topic, outlet, message) for topic, message in self._messages for outlet in topic.outlets]
         self._messages.clear()
-        if len(outlets) == 1:  # for one message the arrays cost more than the call saves
-            _finish(outlets[0], messages[0], 0)
-            return
-        sockets = array("i", [outlet.descriptor for outlet in outlets])
-        data = array("Q", [message.address for message in messages])
-        sizes = array("q", [message.size for message in messages])
+        if len(sends) == 1 or len({outlet.connection for _, outlet, _ in sends}) < len(sends):
+            # For one message the arrays cost more than the call saves. In one call, the second of two messages on one
+            # connection (of topics remapped to one) could come between the parts of the first.
+            counts: Sequence[int] = [0] * len(sends)
+        else:
+            counts = self._send_at_once(sends)
+        patient = True
+        for send, taken in zip(sends, counts):
+            _, outlet, message = send
+            if taken == message.size:
+                count_sent(outlet.connection, taken)
+            else:
+                patient = _finish(send, taken, patient) and patient
+
+    def _send_at_once(self, sends: Sequence[Send]) -> Sequence[int]:
+        """How many bytes of each message were sent without waiting, or -errno."""
+        sockets = array("i", [outlet.descriptor for _, outlet, _ in sends])
+        data = array("Q", [message.address for _, _, message in sends])
+        sizes = array("q", [message.size for _, _, message in sends])
         taken = array("q", sizes)
-        if not self._send(len(outlets), *(numbers.buffer_info()[0] for numbers in (sockets, data, sizes, taken))):
-            for outlet, size in zip(outlets, sizes):
-                count_sent(outlet.connection, size)
-            return
-        for outlet, message, count in zip(outlets, messages, taken):
-            _finish(outlet, message, count)
+        self._send(len(sends), *(numbers.buffer_info()[0] for numbers in (sockets, data, sizes, taken)))
+        return taken
 
 
-def _finish(outlet: Outlet, message: PackedMessage, taken: int) -> None:
-    """Send the rest of a message of which `taken` bytes were sent, or disconnect the subscriber on an error -taken."""
+def _finish(send: Send, taken: int, patient: bool) -> bool:
+    """Send the rest of a message of which `taken` bytes were sent, or disconnect the subscriber on an error -taken.
+
+    Returns False if the subscriber has stalled: without patience at once, if it takes nothing more.
+    """
+    topic, outlet, message = send
     try:
         if taken < 0 and taken not in LATER:
             raise OSError(-taken, "send")
-        if taken < message.size:
-            outlet.socket.sendall(memoryview(message.data)[max(0, taken) :])
-    except OSError:
-        with suppress(Exception):  # as rospy: this subscriber is lost, and only this one
-            outlet.connection.close()
-    else:
-        count_sent(outlet.connection, message.size)
+        rest = memoryview(message.data)[max(0, taken) :]
+        if not patient:
+            rest = rest[outlet.socket.send(rest, socket.MSG_DONTWAIT) :]
+        outlet.socket.sendall(rest)
+    except OSError as error:  # as rospy: this subscriber is lost, and only this one
+        disconnect(topic, outlet.connection)
+        return not isinstance(error, BlockingIOError)
+    count_sent(outlet.connection, message.size)
+    return True

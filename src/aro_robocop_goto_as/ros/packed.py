@@ -5,10 +5,11 @@ Python object of every number. Here NumPy and struct write the numbers into the 
 """
 
 import ctypes
+import itertools
 import math
 import struct
 from io import BytesIO
-from typing import List, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Tuple
 
 import genpy
 import numpy as np
@@ -64,14 +65,14 @@ class PackedMessage:
 class _Stamped(PackedMessage):
     """A message that starts with a header; `_fields` is where the fields after it start."""
 
-    def __init__(self, template: genpy.Message, frame: str) -> None:
+    def __init__(self, template: genpy.Message, frame: str, numbers: Optional[Iterator[int]] = None) -> None:
+        """`numbers`: the header's sequence number in each message to come."""
         super().__init__(template)
-        self._seq = 0
+        self._numbers = numbers or itertools.count(1)
         self._fields = _LENGTH.size + _HEADER.size + _string(frame)
 
     def _set_header(self, stamp: Stamp) -> None:
-        self._seq = (self._seq + 1) % 2**32
-        _HEADER.pack_into(self.data, _LENGTH.size, self._seq, *stamp)
+        _HEADER.pack_into(self.data, _LENGTH.size, next(self._numbers) % 2**32, *stamp)
 
 
 class PackedClock(PackedMessage):
@@ -87,11 +88,11 @@ class PackedClock(PackedMessage):
 
 
 class PackedScan(_Stamped):
-    """The ranges of one scanner."""
+    """The ranges of one scanner, always the same number; `numbers` as in _Stamped."""
 
-    def __init__(self, spec: LidarSpec, frame: str) -> None:
+    def __init__(self, spec: LidarSpec, frame: str, numbers: Optional[Iterator[int]] = None) -> None:
         template: LaserScan = convert.to_scan(np.zeros(spec.samples), spec, genpy.Time(), frame)
-        super().__init__(template, frame)
+        super().__init__(template, frame, numbers)
         start = self._fields + _SCAN_FIGURES + _LENGTH.size
         self._ranges = np.frombuffer(self.data, "<f4", spec.samples, start)
 

@@ -64,9 +64,9 @@ def live_connections(publisher: rospy.Publisher) -> List[Any]:
     return live
 
 
-def messages_sent(publisher: rospy.Publisher) -> int:
-    """How many messages a publisher has sent; rospy's public API does not count them."""
-    return int(publisher.impl.seq)
+def messages_sent(connection: Any) -> int:
+    """How many messages were sent to one subscriber; rospy's public API does not count them."""
+    return int(connection.stat_num_msg)
 
 
 def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> None:
@@ -93,8 +93,20 @@ def write_message(publisher: rospy.Publisher, data: Union[bytes, bytearray]) -> 
     finally:
         topic.release()
     for connection in failed:
-        with contextlib.suppress(Exception):
-            connection.close()
+        disconnect(publisher, connection)
+
+
+def disconnect(publisher: rospy.Publisher, connection: Any) -> None:
+    """Disconnect a subscriber, unless that has happened already.
+
+    After a connection's own close(), rospy fails to stop watching its socket, as that is closed. While a duplicate is
+    open, the system reports the old descriptor's number, and rospy disconnects the next subscriber that gets it.
+    """
+    topic = publisher.impl
+    if topic is not None:
+        with topic.c_lock, contextlib.suppress(Exception):  # whatever it is, as rospy
+            if connection in topic.connections:
+                topic.remove_connection(connection)
 
 
 def count_message(publisher: rospy.Publisher, size: int) -> None:

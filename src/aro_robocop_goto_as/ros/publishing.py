@@ -1,5 +1,6 @@
 """Publishers that lose nothing: each message is written to its subscribers before the next step is simulated."""
 
+import errno
 import socket
 import struct
 import threading
@@ -69,12 +70,17 @@ def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
     Without TCP_NODELAY, which few subscribers ask for, the kernel holds a small message back until the previous one is
     acknowledged, for up to 40 ms: at ten times real time the odometry of a plain node is then half a second old.
     """
-    with suppress(OSError):  # it is being closed
+    try:
         connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", STALL_LIMIT, 0))
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         duplicate = connected.dup()
-        return Outlet(connection, duplicate, duplicate.fileno())
-    return None
+    except OSError as error:  # mostly because it is being closed
+        if error.errno in (errno.EMFILE, errno.ENFILE):
+            rospy.logerr("%s is disconnected: %s", connection.endpoint_id, error.strerror)
+            with suppress(OSError):
+                connected.shutdown(socket.SHUT_RDWR)  # rospy notices that, and forgets it
+        return None
+    return Outlet(connection, duplicate, duplicate.fileno())
 
 
 def publisher(

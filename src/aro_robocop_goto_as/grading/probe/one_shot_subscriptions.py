@@ -4,24 +4,11 @@ Such a node waits for a message of its own at each call, so simulated time has t
 none may pass while it subscribes or unsubscribes, or it would miss messages that it gets from a simulator in real time.
 """
 
-from typing import Any, Callable, Dict, List, NamedTuple, Sequence
+from typing import Any, Callable, Dict, List, Sequence
 
 import rospy
 
 from ...ros.private_api import live_connections, messages_sent
-
-
-class _Link(NamedTuple):
-    """A connection, its topic, and how many messages that topic had sent when it was first seen."""
-
-    connection: Any
-    topic: rospy.Publisher
-    sent: int
-
-    @property
-    def is_served(self) -> bool:
-        """Whether a message has been sent to it."""
-        return messages_sent(self.topic) > self.sent
 
 
 class OneShotSubscriptions:
@@ -30,7 +17,7 @@ class OneShotSubscriptions:
     def __init__(self, topics: Callable[[], Sequence[rospy.Publisher]]) -> None:
         self._topics = topics
         self._lasting: List[Any] = []  # connections
-        self._links: Dict[int, _Link] = {}  # by the connection's identity
+        self._links: Dict[int, Any] = {}  # connections, by their identity
         self.seen = False  # whether the node has ended a subscription since it was started
         self.lasting_seen = False  # whether one that was made while a goal was active has lasted
 
@@ -47,30 +34,23 @@ class OneShotSubscriptions:
     def served(self) -> bool:
         """Whether one that has received its message still exists: the node has not returned from its call yet."""
         self._look()
-        return any(link.is_served for link in self._links.values())
+        return any(map(messages_sent, self._links.values()))
 
     def waiting(self) -> bool:
         """Whether the node waits for a message."""
         self._look()
-        return any(not link.is_served for link in self._links.values())
+        return not all(map(messages_sent, self._links.values()))
 
     def keep_served(self) -> None:
         """Those that have received a message and still exist are lasting ones."""
-        for link in self._links.values():
-            if link.is_served:
-                self._lasting.append(link.connection)
+        for name, connection in list(self._links.items()):
+            if messages_sent(connection):
+                self._lasting.append(self._links.pop(name))
                 self.lasting_seen = True
-        self._links = {name: link for name, link in self._links.items() if not link.is_served}
 
     def _look(self) -> None:
-        live = {
-            id(connection): (connection, topic) for topic in self._topics() for connection in live_connections(topic)
-        }
-        if any(name not in live for name in self._links):
-            self.seen = True
-        lasting = {id(connection) for connection in self._lasting}
-        self._links = {
-            name: self._links.get(name) or _Link(connection, topic, messages_sent(topic))
-            for name, (connection, topic) in live.items()
-            if name not in lasting
-        }
+        live = {id(connection): connection for topic in self._topics() for connection in live_connections(topic)}
+        self.seen = self.seen or not self._links.keys() <= live.keys()
+        for connection in self._lasting:
+            live.pop(id(connection), None)
+        self._links = live

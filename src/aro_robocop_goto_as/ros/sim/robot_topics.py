@@ -1,5 +1,6 @@
 """The topics on which one robot's measurements are published, each message with the stamp of its step."""
 
+import itertools
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Optional
 
@@ -98,6 +99,7 @@ class RobotTopics:
         self._imu_message = PackedImu(self.imu_frame, covariances)
         self._joints_message = PackedJointState()
         self._scan_messages: Dict[int, PackedScan] = {}  # by the number of beams, which varies with some scanners
+        self._scan_numbers = itertools.count(1)
 
     def publish(self, observed: Observations, outbox: Outbox) -> None:
         """Send this robot's part of one step's observations, what is due often by way of the outbox."""
@@ -132,5 +134,5 @@ class RobotTopics:
     def _scan_message(self, beams: int) -> PackedScan:
         if beams not in self._scan_messages:
             spec = self.lidar if beams == self.lidar.samples else self.lidar.with_samples(beams)
-            self._scan_messages[beams] = PackedScan(spec, self.scan_frame)
+            self._scan_messages[beams] = PackedScan(spec, self.scan_frame, self._scan_numbers)
         return self._scan_messages[beams]
