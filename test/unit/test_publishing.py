@@ -18,7 +18,7 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import TCPROSPub
 from sensor_msgs.msg import LaserScan
 
-from aro_robocop_goto_as.grading.probe.one_shot import OneShotSubscriptions
+from aro_robocop_goto_as.grading.probe.one_shot_subscriptions import OneShotSubscriptions
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.ros.outbox import Outbox
 from aro_robocop_goto_as.ros.packed import PackedMessage
@@ -145,7 +145,7 @@ def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
         "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
         "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
         "raise_descriptor_limit()\n"
-        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (hard, hard)\n"
+        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (min(hard, 65_536), hard)\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
 
