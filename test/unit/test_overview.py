@@ -44,4 +44,4 @@ def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
         params = {"/robocop_sim/world": SimpleNamespace(value=world)}
         texts.append(overview(SimpleNamespace(nodes=nodes, params=params), Path("/logs")))
     assert "goto 0.3 0\n" in texts[0]
-    assert "goto X Y\n" in texts[1]
+    assert "goto X Y " in texts[1]

@@ -67,7 +67,8 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     cause = _wrong_state(record, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
         cause = (
-            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration?"
+            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration, "
+            "and does the scan's callback return at once?"
         )
     seen = status_name(result.status) + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause))
