@@ -30,7 +30,9 @@ def overview(config: Any, logs: Path, messages_shown: bool = False) -> str:
         robot = f" --robot {robots[0]}" if robots else ""
         in_front = given.get("world", DEFAULT_WORLD) == DEFAULT_WORLD
         goal, note = ("0.3 0", "") if in_front else ("X Y", "   (X and Y in map, in metres)")
-        rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto {goal}{robot}{note}"))
+        rows.append(
+            ("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto {goal}{robot}{note}")
+        )
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
         ("look inside", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
