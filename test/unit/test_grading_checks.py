@@ -198,6 +198,7 @@ def test_exception_in_a_library_is_given_the_place_in_the_node() -> None:
         "Traceback (most recent call last):",
         '  File "/tmp/solution/robocop_goto_as.py", line 51, in execute_cb',
         "    position_error = np.linalg.norm(dx, dy)",
+        '  File "<__array_function__ internals>", line 200, in norm',
         '  File "/usr/lib/python3/dist-packages/numpy/linalg/linalg.py", line 2592, in norm',
         '    raise ValueError("Improper number of dimensions to norm.")',
         "ValueError: Improper number of dimensions to norm.",
