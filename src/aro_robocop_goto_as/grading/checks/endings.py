@@ -29,7 +29,7 @@ TWO_STATES_LOGGED = (
 )
 EXCEPTION_LOGGED = "xception in your execute callback", "Traceback"
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
-LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/")  # in the path of a file that is not the node's
+LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/")  # the path of a file that is not the node's
 TRACEBACK = 40  # lines before the error in which its place is looked for
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
@@ -43,7 +43,7 @@ def logged(record: Record, words: Sequence[str]) -> bool:
 
 
 def last_error(record: Record) -> str:
-    """The last line of the last traceback with the node's own innermost place, or the last line that is not information.
+    """The last traceback's last line with the node's own innermost place, or the last line that is not information.
 
     A place in a library is named only if the traceback has no place outside of libraries.
     """
