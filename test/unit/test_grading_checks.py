@@ -193,6 +193,40 @@ def test_error_is_named_with_its_file_and_line() -> None:
     )
 
 
+def test_exception_in_a_library_is_given_the_place_in_the_node() -> None:
+    traceback = (
+        "Traceback (most recent call last):",
+        '  File "/tmp/solution/robocop_goto_as.py", line 51, in execute_cb',
+        "    position_error = np.linalg.norm(dx, dy)",
+        '  File "<__array_function__ internals>", line 200, in norm',
+        '  File "/usr/lib/python3/dist-packages/numpy/linalg/linalg.py", line 2592, in norm',
+        '    raise ValueError("Improper number of dimensions to norm.")',
+        "ValueError: Improper number of dimensions to norm.",
+    )
+    record = _changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause.endswith("norm. (robocop_goto_as.py, line 51)")
+
+
+def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
+    stuck = _changed(goals=(GOAL,), results=(), problem="the robot made no progress for 8 s, and the goal did not end")
+    records = {"server": {"left": stuck, "odd_scan": replace(stuck, name="odd_scan")}}
+    checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
+    odd = checks["odd_scans"].failure
+    assert odd is not None and odd.cause.startswith("This follows from a failure above") and "NaN" not in odd.cause
+
+
+def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
+    lines = ("bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'")
+    click = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4)
+    record = _changed(goals=(), clicks=(click,), lines=tuple(rec.Line(2.0, line) for line in lines))
+    for name in ("forwards_goal", "waits_for_server"):
+        verdict = CHECKS[name](record, LIMITS)
+        assert isinstance(verdict, Failed) and "AttributeError: no attribute 'x'" in verdict.cause
+        assert "wait_for_server" not in verdict.cause
+
+
 def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
     goal = replace(GOAL, ends="ABORTED")
     hit = _changed(goals=(goal,))

@@ -35,3 +35,13 @@ def test_the_address_of_the_web_page_is_shown_if_it_is_started(arguments, addres
 def test_goals_are_offered_only_with_a_server():
     assert "send a goal" in shown("aro_robocop_goto_as_node")
     assert "send a goal" not in shown("robocop_sim")
+
+
+def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
+    nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in ("robocop_sim", "aro_robocop_goto_as_node")]
+    texts = []
+    for world in ("stage_4", "world"):
+        params = {"/robocop_sim/world": SimpleNamespace(value=world)}
+        texts.append(overview(SimpleNamespace(nodes=nodes, params=params), Path("/logs")))
+    assert "goto 0.3 0\n" in texts[0]
+    assert "goto X Y " in texts[1]

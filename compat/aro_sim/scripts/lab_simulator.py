@@ -16,8 +16,9 @@ import sys
 LAUNCH = "robocop_launch.py"
 SHADOWING = ("PYTHONPATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")  # would resolve to this workspace first
 LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"]
-LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint, RViz
-aro_sim: can show the robot and its scan, but not the room, the odometry and the map. odom_tf:=true adds the transform."""
+LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint,
+aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map. odom_tf:=true adds the
+aro_sim: transform."""
 
 
 def spawn_from(words):

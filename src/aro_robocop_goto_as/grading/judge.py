@@ -8,8 +8,8 @@ from .checks import CHECKS, Failed, NotReached, Passed, description, sentences
 from .plan import CheckPlan, Plan
 from .record import Record
 
-# Check -> the state that its goal should have ended in, and the check whose failure explains its own in that case.
-FOLLOWS = {"odd_scans": ("ABORTED", "stops_at_obstacle")}
+# Check -> by the state that its goal should have ended in, the check whose failure explains its own in that case.
+FOLLOWS = {"odd_scans": {"ABORTED": "stops_at_obstacle", "SUCCEEDED": "reaches_goal"}}
 
 
 class Outcome(enum.Enum):
@@ -114,15 +114,18 @@ def _following(result: CheckResult, results: Sequence[CheckResult], records: Rec
     """The result of a check, which refers to an earlier check's failure if its own failure follows from that."""
     if result.failure is None or result.name not in FOLLOWS:
         return result
-    ends, earlier = FOLLOWS[result.name]
     record = records[result.part].get(result.scenario)
-    if record is None or not any(goal.ends == ends for goal in record.goals):
-        return result
+    earlier = {FOLLOWS[result.name].get(goal.ends, "") for goal in record.goals} if record is not None else set()
     for first in results:
-        if first.name == earlier and first.failure is not None:
+        if first.name in earlier and first.failure is not None and not _another_ending(first.failure, result.failure):
             cause = f"This follows from a failure above ({first.sentence.rstrip('.')}): {first.failure.cause}"
             return replace(result, failure=replace(result.failure, cause=cause))
     return result
+
+
+def _another_ending(first: Failed, failure: Failed) -> bool:
+    """Whether a goal that had to succeed failed in another way than the first one, which then explains nothing."""
+    return "SUCCEEDED" in failure.expected and failure.seen != first.seen
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:

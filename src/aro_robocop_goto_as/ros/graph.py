@@ -34,10 +34,10 @@ def published_topics() -> List[Topic]:
 
 
 def unpublished_topics() -> List[str]:
-    """Names of the topics that have a subscriber and no publisher; raises what published_topics raises."""
+    """Names of topics that another node subscribes to and nobody publishes; raises what published_topics raises."""
     publishers, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
     published = {topic for topic, nodes in publishers if nodes}
-    return sorted(topic for topic, nodes in subscribers if nodes and topic not in published)
+    return sorted(topic for topic, nodes in subscribers if {*nodes} - {rospy.get_name()} and topic not in published)
 
 
 def topics_between(publisher: str, subscriber: str) -> List[str]:

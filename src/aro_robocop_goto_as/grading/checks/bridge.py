@@ -6,12 +6,18 @@ from typing import List, Optional
 from ..check_limits import Limits
 from ..record import Click, Goal, Record
 from .life import no_exception, stays_alive
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 PENDING_ENDS = "pending_ends"  # mark: what is missing here appears for a goal that was never seen PENDING
+NO_CLIENT = "No action client connected to robocop_goto_as: is one created, and is its name right?"
+NO_SUBSCRIBER = "The node does not subscribe to /move_base_simple/goal: is the topic's name right?"
+NO_NEWER_GOAL = (
+    "The newer goal was never sent: does the callback wait for the older goal? While it waits, for instance in "
+    "wait_for_result(), it is not called again"
+)
 PENDING_CAUSE = (
     "The bridge treats a PENDING goal as finished; PENDING only means that the server has not accepted it yet"
 )
@@ -34,7 +40,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     goals = _goals_after(record, click)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
-        return Failed(f"a goal at {wanted}", "no goal", click.time, _missing_connection(record))
+        return Failed(f"a goal at {wanted}", "no goal", click.time, _why_no_goal(record, limits))
     goal = goals[-1]
     if not _distance(goal, click.x, click.y) <= POSITION_TOLERANCE:  # this way round NaN fails, too
         seen, cause = f"x {goal.x:.2f} y {goal.y:.2f}", "The goal does not have the message's position: "
@@ -44,13 +50,16 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     return Passed()
 
 
-def _missing_connection(record: Record) -> str:
-    """Name the missing connection, if any."""
+def _why_no_goal(record: Record, limits: Limits) -> str:
+    """Name the node's end, the missing connection, or the exception that may have prevented the goal."""
+    crash = _crash(record, limits)
+    if crash is not None and record.deaths:
+        return crash.cause
     if not record.marks.get("clients", 1.0):  # first: a bridge waiting for a misspelt server has no subscriber either
-        return "The action client did not connect to robocop_goto_as: is its name right?"
+        return NO_CLIENT
     if not record.marks.get("listeners", 1.0):
-        return "The node does not subscribe to /move_base_simple/goal"
-    return "No goal was sent: does the callback call send_goal()?"
+        return NO_SUBSCRIBER
+    return f"No goal was sent: {crash.cause if crash else 'does the callback call send_goal()?'}"
 
 
 def has_reports(record: Record, limits: Limits) -> bool:
@@ -80,7 +89,10 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         "is active: is it created, and does nothing end it?"
     )
     if not record.marks.get("clients", 1.0):  # it may wait for the server before it creates its timer
-        cause = _missing_connection(record)
+        cause = NO_CLIENT
+    crash = _crash(record, limits)
+    if crash is not None:  # it may have ended the timer
+        cause = crash.cause if record.deaths else f"An exception was raised: {crash.cause}"
     if PENDING_ENDS in record.marks:
         cause = f"{PENDING_CAUSE}. Its reports then stop"
     return Failed(
@@ -101,7 +113,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     newer = [goal for goal in _goals_after(record, click) if goal.id != older.id]
     cancelled = [status.id for status in record.statuses]
     if not newer:
-        return Failed("the newer goal", "no goal", click.time, "The newer goal was never sent")
+        return Failed("the newer goal", "no goal", click.time, NO_NEWER_GOAL)
     if older.id not in cancelled:
         cause = (
             "Call cancel_goal() or cancel_all_goals() before sending the newer goal; send_goal() alone does not cancel"
@@ -122,16 +134,12 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
         return _crash(record, limits) or Passed()
     if record.clicks and _goals_after(record, record.clicks[-1]):
         return Passed()
-    if not record.marks.get("clients", 1.0):
-        return Failed(
-            "a goal once the server is running", "no goal", record.marks["clicked"], _missing_connection(record)
+    cause = _why_no_goal(record, limits)
+    if record.marks.get("clients", 1.0) and _crash(record, limits) is None:
+        cause = sentences(
+            cause, "A bridge that starts before the server has to wait for it: call wait_for_server() without a timeout"
         )
-    return Failed(
-        "a goal once the server is running",
-        "no goal",
-        record.marks.get("clicked", 0.0),
-        "A bridge that starts before the server has to connect to it later: call wait_for_server() without a timeout",
-    )
+    return Failed("a goal once the server is running", "no goal", record.marks.get("clicked", 0.0), cause)
 
 
 @check("clicks")

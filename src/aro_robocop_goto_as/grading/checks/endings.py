@@ -29,10 +29,12 @@ TWO_STATES_LOGGED = (
 )
 EXCEPTION_LOGGED = "xception in your execute callback", "Traceback"
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
-TRACEBACK = 6  # lines before the error in which the innermost place is looked for
+LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/")  # the path of a file that is not the node's
+TRACEBACK = 40  # lines before the error in which its place is looked for
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
+SETTERS = "set_succeeded(), set_aborted() and set_preempted()"
 
 
 def logged(record: Record, words: Sequence[str]) -> bool:
@@ -41,13 +43,14 @@ def logged(record: Record, words: Sequence[str]) -> bool:
 
 
 def last_error(record: Record) -> str:
-    """The last line of the last traceback with its place, or the last line that is not information."""
+    """The last traceback's last line with the node's own innermost place, or the last line that is not information.
+
+    A place in a library is named only if the traceback has no place outside of libraries.
+    """
     lines = [text.strip() for line in record.lines for text in line.text.splitlines() if text.strip()]
     errors = [number for number, line in enumerate(lines) if "Error" in line.split(":")[0] or "Exception:" in line]
     if errors:
-        places = [PLACE.search(line) for line in lines[max(0, errors[-1] - TRACEBACK) : errors[-1]]]
-        place = [f" ({os.path.basename(found[1])}, line {found[2]})" for found in places if found]
-        return lines[errors[-1]][:200] + (place[-1] if place else "")
+        return lines[errors[-1]][:200] + _place(lines[max(0, errors[-1] - TRACEBACK) : errors[-1]])
     others = [line for line in lines if not INFORMATION.match(line)]
     return (others or ["its output names no error"])[-1][:200]
 
@@ -67,7 +70,8 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     cause = _wrong_state(record, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
         cause = (
-            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration?"
+            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration, "
+            "and does the scan's callback return at once?"
         )
     seen = status_name(result.status) + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause))
@@ -165,6 +169,14 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
     return Passed() if judged else NotReached("no goal ended")
 
 
+def _place(lines: Sequence[str]) -> str:
+    """File and line of the last traceback in these lines, " (FILE, line N)"; empty without any."""
+    begins = [number for number, line in enumerate(lines) if "Traceback" in line]
+    places = [found for found in map(PLACE.search, lines[begins[-1] if begins else 0 :]) if found]
+    own = [found for found in places if not LIBRARY.search(found[1])]
+    return "".join(f" ({os.path.basename(found[1])}, line {found[2]})" for found in (own or places)[-1:])
+
+
 @check("states")
 def one_ending(record: Record, limits: Limits) -> Verdict:
     """Each goal gets exactly one terminal state, set by the server's own code."""
@@ -176,7 +188,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
         judged = judged or bool(results)
     for line in record.lines:
         if any(word in line.text for word in TWO_STATES_LOGGED):
-            cause = f"{TWO_STATES}, as in the handout's example after a cancel: return after set_preempted()"
+            cause = f"{TWO_STATES}, as in the handout's example after a cancel: return at once after {SETTERS}"
             return Failed("one terminal state", line.text[:160], line.time, cause)
         if any(word in line.text for word in NO_STATE_LOGGED):
             return Failed("a terminal state", "none was set", line.time, NO_STATE)

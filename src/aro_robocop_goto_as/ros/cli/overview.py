@@ -12,6 +12,7 @@ from ...web.access import default_host, url
 
 SIMULATOR = "/robocop_sim/"
 SERVER = "aro_robocop_goto_as_node"
+DEFAULT_WORLD = SimParams.world  # whose example of a goal is in front of the robot
 COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
 
 
@@ -27,7 +28,11 @@ def overview(config: Any, logs: Path, messages_shown: bool = False) -> str:
         if "rviz" in nodes:
             rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
         robot = f" --robot {robots[0]}" if robots else ""
-        rows.append(("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto 0.3 0{robot}"))
+        in_front = given.get("world", DEFAULT_WORLD) == DEFAULT_WORLD
+        goal, note = ("0.3 0", "") if in_front else ("X Y", "   (X and Y in map, in metres)")
+        rows.append(
+            ("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto {goal}{robot}{note}")
+        )
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
         ("look inside", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
@@ -49,6 +54,6 @@ def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
         p = from_dict(SimParams, given, SIMULATOR)
     except RobocopError:
         return []
-    moving = ", its obstacles move" if p.moving else ""
+    moving = ", moving:=true" if p.moving else ""
     robots = f"{p.robots} ({p.model} unless named)" if p.robots else p.model
     return [("world", p.world + moving), ("robots" if p.robots else "robot", robots)]
