@@ -11,7 +11,7 @@ from aro_robocop_goto_as.ros.cli.overview import overview
 def shown(*nodes, arguments=""):
     """The overview's rows for nodes of these names."""
     nodes = [SimpleNamespace(name=name, namespace="/", args=arguments) for name in nodes]
-    text = overview(SimpleNamespace(nodes=nodes, params={}), Path("/logs"))
+    text = overview(SimpleNamespace(nodes=nodes), {}, Path("/logs"))
     return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
 
 
@@ -38,10 +38,17 @@ def test_goals_are_offered_only_with_a_server():
 
 
 def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
-    nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in ("robocop_sim", "aro_robocop_goto_as_node")]
-    texts = []
-    for world in ("stage_4", "world"):
-        params = {"/robocop_sim/world": SimpleNamespace(value=world)}
-        texts.append(overview(SimpleNamespace(nodes=nodes, params=params), Path("/logs")))
+    server = SimpleNamespace(name="aro_robocop_goto_as_node", namespace="/", args="")
+    texts = [
+        overview(SimpleNamespace(nodes=[server]), {"world": world}, Path("/logs")) for world in ("stage_4", "world")
+    ]
     assert "goto 0.3 0\n" in texts[0]
     assert "goto X Y " in texts[1]
+
+
+def test_world_and_robot_are_shown_only_of_a_simulator():
+    nothing = SimpleNamespace(nodes=[])
+    assert overview(nothing, {"world": "maze_1"}, Path("/logs")).startswith(
+        "world         maze_1\nrobot         burger\n"
+    )
+    assert "world" not in overview(nothing, None, Path("/logs"))

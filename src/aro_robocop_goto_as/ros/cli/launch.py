@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Iterator, List, Optional, TextIO
+from typing import Any, Dict, Iterator, List, Optional, TextIO
 
 import rosgraph
 import roslaunch
@@ -88,8 +88,10 @@ def launch(arguments: List[str]) -> int:
             with buffered_stderr(deferred):
                 private_api.load_launch_files(parent)
             parent.start()
-        if (options.quiet or options.overview) and _is_up(parent):
-            print(overview(parent.config, logs, messages_shown=not options.quiet), file=screen, flush=True)
+        if options.quiet or options.overview:
+            simulator = _simulator(parent, expected=options.overview)
+            if not parent.pm.is_shutdown:
+                print(overview(parent.config, simulator, logs, not options.quiet), file=screen, flush=True)
         parent.spin()
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
         if not deferred.interrupted:
@@ -98,22 +100,22 @@ def launch(arguments: List[str]) -> int:
     return FAILED if required.failed else 0
 
 
-def _is_up(parent: ROSLaunchParent) -> bool:
-    """Wait until the simulator runs, if the launch file starts one; False if everything is being shut down instead.
+def _simulator(parent: ROSLaunchParent, expected: bool) -> Optional[Dict[str, Any]]:
+    """Wait until the simulator runs, if the launch file starts one or another process is `expected` to; its parameters.
 
     So the reason why a simulator can't start is not preceded by what to do with it.
     """
     names = [rosgraph.names.ns_join(n.namespace, n.name) for n in parent.config.nodes if n.name == SIMULATOR]
+    names = names or ([f"/{SIMULATOR}"] if expected else [])
     master = rosgraph.Master("/robocop_launch", parent.config.master.uri)
     deadline = time.monotonic() + READY_PATIENCE
-    while not parent.pm.is_shutdown and time.monotonic() < deadline:
+    while names and not parent.pm.is_shutdown and time.monotonic() < deadline:
         with contextlib.suppress(rosgraph.MasterException, OSError):
-            for name in names:
-                master.lookupService(f"{name}/{READY_SERVICE}")
-            break
+            master.lookupService(f"{names[0]}/{READY_SERVICE}")
+            return dict(master.getParam(names[0])) if master.hasParam(names[0]) else {}
         parent.spin_once()
         time.sleep(POLL)
-    return not parent.pm.is_shutdown
+    return None
 
 
 def _quiet(folder: Path) -> TextIO:

@@ -3,24 +3,26 @@
 import os
 import re
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 from ...errors import RobocopError
 from ...param_loading import from_dict
 from ...params import SimParams, WebParams
 from ...web.access import default_host, url
 
-SIMULATOR = "/robocop_sim/"
 SERVER = "aro_robocop_goto_as_node"
 DEFAULT_WORLD = SimParams.world  # whose example of a goal is in front of the robot
 COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
 
 
-def overview(config: Any, logs: Path, messages_shown: bool = False) -> str:
-    """The text for a roslaunch configuration; its nodes' messages are shown on the screen or go to files in `logs`."""
+def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False) -> str:
+    """The text for a roslaunch configuration and the parameters of the simulator, if there is one.
+
+    The nodes' messages are shown on the screen or go to files in `logs`.
+    """
     nodes = {node.name for node in config.nodes}
-    given = {name[len(SIMULATOR) :]: p.value for name, p in config.params.items() if name.startswith(SIMULATOR)}
-    rows = [*_simulated(given)] if "robocop_sim" in nodes else []
+    given = simulator or {}
+    rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in config.nodes if node.name == SERVER} - {""})
     command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
     rows += [("see it", f"in a browser: {_page(node.args)}") for node in config.nodes if node.name == "robocop_web"]
@@ -49,9 +51,9 @@ def _page(arguments: str) -> str:
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
-    """World and robots; nothing where the simulator will refuse its parameters and say why."""
+    """World and robots; nothing where the simulator refuses its parameters and says why."""
     try:
-        p = from_dict(SimParams, given, SIMULATOR)
+        p = from_dict(SimParams, given, "the simulator's parameters")
     except RobocopError:
         return []
     moving = ", moving:=true" if p.moving else ""
