@@ -128,7 +128,7 @@ class Page:
         self._moment = gui.add_slider("Time", 0.0, longest, SLIDER_STEP, 0.0, hint="seconds since the beginning")
         self._moment.on_update(self._on_moment)
         self._speed = gui.add_slider("Speed", 0.1, 10.0, 0.1, replay.speed, hint="recorded seconds per second")
-        self._speed.on_update(lambda event: event.client is not None and replay.set_speed(event.target.value))
+        self._speed.on_update(lambda event: replay.set_speed(event.target.value))
 
     def _build_pad(self, gui: Any, live: bool) -> None:
         with gui.add_folder("Drive", visible=live):

@@ -119,9 +119,13 @@ class WebNode:
             select=self._select,
             visitors=self._wake.set,
         )
-        self._page = Page(server, viser, actions, None if player is None else self._replay(player))
-        replayed = player is not None
-        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack(), replayed)
+        replay = None
+        if player is not None:
+            replay = Replay(player.duration, p.replay_speed, player.play, player.seek, player.set_speed)
+        self._page = Page(server, viser, actions, replay)
+        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack(), replay is not None)
+        if player is not None:
+            player.on_seek = self._view.forget
         self._master = MasterWatch(self._page.show_master_problem)
 
     def _with_ros(self, action: Callable[..., None]) -> Callable[..., None]:
@@ -132,13 +136,6 @@ class WebNode:
                 action(*arguments)
 
         return act
-
-    def _replay(self, player: Player) -> Replay:
-        def seek(position: float) -> None:
-            self._view.forget()
-            player.seek(position)
-
-        return Replay(player.duration, self._p.replay_speed, player.play, seek, player.set_speed)
 
     # -- requests --
 

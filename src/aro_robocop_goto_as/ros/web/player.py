@@ -12,8 +12,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...errors import WebError
 from ...web.state import ReplayState
 
-LEAD = 1.0  # [s, recorded] before the moment that is sought; what is published slower than this is rare
-RARE = 1000  # messages of a topic: up to as many are sent again from the beginning
+LEAD = 1.0  # [s, recorded] before the moment that is sought, for topics with more messages than one in this time
+FEW = 10  # messages of a topic that always count as rare: of rare topics all is sent again from the beginning
 MARKERS = "visualization_msgs/MarkerArray"  # likewise, however many: each one only changes some of the markers
 QUEUE = 1000  # messages that wait for a slow subscriber
 CONNECT = 0.5  # [s, wall] for subscribers that wait already, as `rosbag play` gives them
@@ -58,7 +58,9 @@ class Player:
             raise WebError(f"{path} can't be played: {error}") from error
         topics = self._bag.get_type_and_topic_info().topics
         self.duration = end - self._start
-        self._kept = {name for name, it in topics.items() if it.message_count <= RARE or it.msg_type == MARKERS}
+        self.on_seek: Callable[[], None] = lambda: None  # called before another moment is published
+        few = max(FEW, self.duration / LEAD)
+        self._kept = {name for name, it in topics.items() if it.message_count <= few or it.msg_type == MARKERS}
         self._marked = [name for name, it in topics.items() if it.msg_type == MARKERS]
         self._topics = list(topics)
         self._publishers: Dict[str, rospy.Publisher] = {}
@@ -83,6 +85,7 @@ class Player:
 
     def seek(self, position: float) -> None:
         """Go on from a moment [s] after the beginning."""
+        self.on_seek()
         with self._changed:
             self._sought = min(max(position, 0.0), self.duration)
             self._set(at=self._sought)

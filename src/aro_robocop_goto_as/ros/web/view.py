@@ -79,8 +79,10 @@ class View:
         self.goals.watch(robots)
 
     def forget(self) -> None:
-        """Another moment of a recording is shown: trail and history begin anew."""
+        """Another moment of a recording is shown: trail, plots and history begin anew."""
         self.goals.history.clear()
+        self._robot.errors.clear()
+        self._robot.commands.clear()
         self._trail_frame = ""
 
     @property
