@@ -86,6 +86,23 @@ class Tab:
         """A button of the panel."""
         return self.page.get_by_role("button", name=label, exact=True)
 
+    def click(self, label):
+        """Click a button at once; otherwise playwright waits for frames, of which a busy machine draws few."""
+        self.button(label).click(force=True)
+
+    def slider(self, label):
+        """The slider of the row with this label."""
+        find = """label => document.getElementById(
+            [...document.querySelectorAll('label')].find(element => element.textContent === label).htmlFor
+        ).querySelector('[role=slider]')"""
+        return self.page.evaluate_handle(find, label).as_element()
+
+    def choose(self, shown, wanted):
+        """Choose another option of the drop-down list that shows this one."""
+        find = "text => [...document.querySelectorAll('input')].find(input => input.value === text)"
+        self.page.evaluate_handle(find, shown).as_element().click()
+        self.page.get_by_role("option", name=wanted).click()
+
     def pixel(self, x, y):
         """Where the initial camera shows a point of the floor [m]: columns from the left, rows from the top."""
         ahead = np.subtract(LOOK_AT, CAMERA)

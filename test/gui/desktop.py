@@ -137,6 +137,11 @@ class Ros:
         self.master = rosgraph.Master(CALLER, uri)
 
     def __enter__(self):
+        self.launch()
+        return self
+
+    def launch(self):
+        """Start the master and what comes with it; its process. May be called again when that has ended."""
         launch = self.start("roslaunch", *self.command())
         try:
             wait_for(lambda: launch.poll() is not None or self.master.is_online(), "a ROS master")
@@ -144,7 +149,7 @@ class Ros:
         except BaseException:
             self._end()
             raise
-        return self
+        return launch
 
     def command(self):
         """What starts the master."""
@@ -218,7 +223,7 @@ class Recorder:
 
     def __init__(self, ros, publisher, topic):
         self.ros, self.publisher, self.topic = ros, publisher, topic
-        name = "echo" + topic.replace("/", "_")
+        name = f"echo{topic.replace('/', '_')}_{len(ros.running)}"  # a topic may be recorded several times
         self.log = ros.directory / f"{name}.log"
         self.process = ros.start(name, "rostopic", "echo", topic)
 

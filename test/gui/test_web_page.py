@@ -1,75 +1,22 @@
 """The web page in a real Chromium: it shows the system, and what is clicked there reaches the robot."""
 
 import contextlib
-import http.client
 import math
-import os
-import socket
 
 import pytest
+from actionlib_msgs.msg import GoalStatus
 from browser import Tab, chromium
-from desktop import Recorder, Ros
+from desktop import Recorder
 from playwright.sync_api import Error as PlaywrightError
-from waiting import DEADLINE, wait_for
+from waiting import wait_for
+from web import REACHED, READY, Web
 
-from aro_robocop_goto_as.process.ports import free_port
+from aro_robocop_goto_as.web.page import PLACE_ROBOT, SEND_GOAL
 
 pytestmark = [pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
 
-READY = r"stage_4[\s\S]*robocop_goto_as is ready"  # of simulator and bridge
-REACHED = 0.15  # [m] from the goal: the server's tolerance and half the click's
-
-
-class NoDesktop:
-    """Stands in for a Desktop: the page needs none."""
-
-    environment = dict(os.environ)
-
-    def save_picture(self):
-        """Nothing to save."""
-
-
-class Web:
-    """The lab without RViz, and robocop_web. Commands hold until the next one: nothing but the page stops the robot."""
-
-    def __init__(self, directory, *arguments):
-        self.ros = Ros(directory, NoDesktop(), "rviz:=false", "cmd_vel_timeout:=0", *arguments)
-        self.port = free_port()
-        self.url = f"http://localhost:{self.port}"
-
-    def start(self, *arguments):
-        """Start robocop_web; returns its process when it answers."""
-        command = ("rosrun", "aro_robocop_goto_as", "robocop_web.py", f"web_port:={self.port}", *arguments)
-        process = self.ros.start("web", *command)
-        wait_for(self.answers, "robocop_web answers")
-        return process
-
-    def answers(self):
-        """Whether its port accepts connections."""
-        with socket.socket() as probe:
-            return probe.connect_ex(("localhost", self.port)) == 0
-
-    def status(self, **headers):
-        """The status of the answer to an HTTP request; 101 = the page's WebSocket is opened."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=DEADLINE)
-        try:
-            connection.request("GET", "/", headers=headers)
-            return connection.getresponse().status
-        finally:
-            connection.close()
-
-    def position(self):
-        """The robot's true x, y [m] in the world."""
-        position = self.ros.latest("/ground_truth_odom")["pose"]["pose"]["position"]
-        return position["x"], position["y"]
-
-    def turn(self):
-        """The robot's true angular velocity [rad/s]; the tests turn it on the spot, where no wall is in its way."""
-        return self.ros.latest("/ground_truth_odom")["twist"]["twist"]["angular"]["z"]
-
-    def sim(self):
-        """The simulator's newest report."""
-        return self.ros.latest("/robocop_sim/status")
+SPAWN = (-0.7, 0.0)  # [m] where the robot starts in stage_4
+CLICK = 0.05  # [m] error of a click on the floor, a few pixels
 
 
 @pytest.fixture(scope="module")
@@ -170,19 +117,81 @@ def test_the_robot_stops_when_the_page_that_drives_it_is_closed(web, browser):
 def test_two_pages_show_the_same_state_and_a_reloaded_one_too(web, tab, browser):
     other = Tab(browser, web.url)
     other.wait_for_text(READY)
-    tab.button("Pause").click()
+    tab.click("Pause")
     wait_for(lambda: web.sim()["paused"], "the simulator is paused")
     for page in (tab, other):
         page.wait_for_text("s, paused")
     other.page.reload()
     other.wait_for_text("s, paused")
     before = web.sim()["stamp"]
-    other.button("Step").click()
+    other.click("Step")
     wait_for(lambda: web.sim()["stamp"] != before, "a step")
-    other.button("Run").click()
+    other.click("Run")
     wait_for(lambda: not web.sim()["paused"], "the simulator runs")
     tab.wait_for_text("s, factor")
     other.close()
+
+
+@pytest.mark.slow
+def test_cancel_ends_the_goal_and_stops_the_robot(web, tab):
+    feedback = Recorder(web.ros, "/aro_robocop_goto_as_node", "/robocop_goto_as/feedback")
+    results = Recorder(web.ros, "/aro_robocop_goto_as_node", "/robocop_goto_as/result")
+    wait_for(lambda: feedback.connected() and results.connected(), "recorders of feedback and results")
+    web.place(0.0, 0.0)
+    web.set_factor(0.1)  # a browser that draws in software on a busy machine may take ten seconds for a click
+    try:
+        tab.click_floor(*SPAWN)  # it has to turn round first
+        wait_for(feedback.messages, "the goal is executed")
+        tab.click("Cancel goal")
+        result = wait_for(results.messages, "a result")[0]
+    finally:
+        web.set_factor(1.0)
+    assert result["status"]["status"] == GoalStatus.PREEMPTED
+    wait_for(web.stands, "the robot stands")
+    tab.wait_for_text("✗ .*PREEMPTED: goal .* it was cancelled")
+
+
+@pytest.mark.slow
+def test_reset_puts_robot_and_odometry_back_to_the_start_and_the_server_goes_on(web, tab):
+    web.place(0.0, 0.0)
+    assert math.hypot(*web.position()) < 0.01
+    tab.click("Reset")
+    wait_for(lambda: math.dist(web.position(), SPAWN) < 0.01, "the robot is at its start")
+    odometry = web.ros.latest("/odom")["pose"]["pose"]["position"]
+    assert math.hypot(odometry["x"], odometry["y"]) < 0.01
+    tab.click_floor(-0.5, 0.0)
+    wait_for(lambda: math.dist(web.position(), (-0.5, 0.0)) < REACHED, "a goal is reached after the reset")
+
+
+@pytest.mark.slow
+def test_the_slider_sets_the_real_time_factor_and_the_page_shows_the_factor_reached(web, tab):
+    slider = tab.slider("Factor")
+    assert slider.get_attribute("aria-valuenow") == "1"
+    try:
+        for _ in range(5):
+            slider.press("ArrowLeft")
+        wait_for(lambda: web.sim()["factor_asked"] == 0.5, "the simulator is asked for half of real time")
+        wait_for(lambda: abs(web.sim()["factor_reached"] - 0.5) < 0.05, "the simulator runs at half of real time")
+        tab.wait_for_text(r"factor 0\.(4[5-9]|5[0-5]), requested 0\.5")
+    finally:
+        for _ in range(5):
+            slider.press("ArrowRight")
+    wait_for(lambda: web.sim()["factor_asked"] == 1.0, "the simulator is asked for real time")
+
+
+@pytest.mark.slow
+def test_a_click_places_the_robot_where_that_mode_is_chosen(web, tab):
+    goals = Recorder(web.ros, "/robocop_rviz_goto_ac_node", "/robocop_goto_as/goal")
+    wait_for(goals.connected, "recorder of goals")
+    web.place(*SPAWN)
+    try:
+        tab.choose(SEND_GOAL, PLACE_ROBOT)
+        tab.click_floor(0.0, 0.0)
+        wait_for(lambda: math.hypot(*web.position()) < CLICK, "the robot is where the click was")
+    finally:
+        tab.choose(PLACE_ROBOT, SEND_GOAL)
+    assert web.stands()
+    assert goals.messages() == []
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.pick import FARTHEST_CLICK, floor_point
 from aro_robocop_goto_as.web.series import Series
 from aro_robocop_goto_as.web.shapes import BOX, CYLINDER
-from aro_robocop_goto_as.web.state import REMEMBERED, GoalHistory
+from aro_robocop_goto_as.web.state import REMEMBERED, GoalHistory, ReplayState
 from aro_robocop_goto_as.web.trail import Trail
 from aro_robocop_goto_as.web.urdf import read_links
 
@@ -332,3 +332,8 @@ def test_the_descriptions_of_all_models_are_drawn() -> None:
             links = read_links(stream.read())
         assert sum(map(len, links.values())) >= 10, name
         assert all(np.isfinite(shape.size).all() for shapes in links.values() for shape, _ in shapes)
+
+
+def test_a_recording_says_where_it_is_and_how_fast_it_goes() -> None:
+    assert "12 of 60 s, factor 0.5" in text.progress(ReplayState(12.3, 60.0, True, 0.5))
+    assert "60 of 60 s, paused" in text.progress(ReplayState(60.0, 60.0, False, 2.0))

@@ -47,8 +47,11 @@ def _request(uri: str, method: str, *arguments: str) -> Any:
     return value if status == SUCCESS else None
 
 
-def _ask_master(uri: str, method: str, *arguments: str) -> Any:
-    """As _request(); MasterError if a connection is accepted, but not answered as a ROS master does."""
+def ask_master(uri: str, method: str, *arguments: str) -> Any:
+    """The value that a ROS master returns for a request of its API; None if it reports a failure.
+
+    OSError if there is no connection; MasterError if one is accepted, but not answered as a ROS master does.
+    """
     try:
         return _request(uri, method, *arguments)
     except _TIMEOUTS:
@@ -68,7 +71,7 @@ def master_uri() -> str:
 def master_answers(uri: str) -> bool:
     """Whether there is a ROS master; MasterError if something that does not answer as a master has its port."""
     try:
-        return _ask_master(uri, "getPid") is not None
+        return ask_master(uri, "getPid") is not None
     except OSError:
         return False
 
@@ -80,7 +83,7 @@ def running_simulator(uri: str) -> Optional[str]:
     that), so the node itself is asked.
     """
     try:
-        node = _ask_master(uri, "lookupNode", SIMULATOR)
+        node = ask_master(uri, "lookupNode", SIMULATOR)
     except OSError:
         return None
     try:

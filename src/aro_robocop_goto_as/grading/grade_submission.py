@@ -29,8 +29,9 @@ def grade_submission(
     on_progress: Progress = lambda _part, _scenario: None,
     watched: bool = False,
     scratch: Optional[Path] = None,
+    all_bags: bool = False,
 ) -> Grade:
-    """Write the report and the bags of failed scenarios to `folder`; temporary files go to `scratch`.
+    """Write the report and the bags of failed scenarios, or of all, to `folder`; temporary files go to `scratch`.
 
     With `watched` the run is shown in RViz in real time. A part that is killed from outside is run once more;
     UngradableError if that is killed, too.
@@ -62,9 +63,9 @@ def grade_submission(
         grade = judge.judge(submission.name, plan, records, problems)
         grade = replace(grade, problems=(*grade.problems, *notes))
         folder.mkdir(parents=True, exist_ok=True)
-        report.write(grade, plan, records, folder)
-        for check in grade.checks:
-            bag = Path(work, check.part, f"{check.part}-{check.scenario}.bag")
-            if check.failure is not None and bag.is_file():
+        failed = {f"{check.part}-{check.scenario}" for check in grade.checks if check.failure is not None}
+        for bag in sorted(Path(work).glob("*/*.bag")):
+            if all_bags or bag.stem in failed:
                 shutil.copyfile(bag, folder / bag.name)
+        report.write(grade, plan, records, folder)
     return grade

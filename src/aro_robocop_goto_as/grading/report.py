@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import shlex
 from pathlib import Path
 from typing import Any, Dict, Iterator, Sequence
 from xml.etree import ElementTree
@@ -20,13 +21,13 @@ MOST_LINES = 60  # of a node's output in the report
 
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
-    """Write all files to an existing folder."""
+    """Write all files to an existing folder, which already has the bags."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
     (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
-    page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records)))
+    page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records, folder)))
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
 
@@ -64,7 +65,7 @@ def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
     return suite
 
 
-def _scenarios(grade: Grade, plan: Plan, records: Records) -> Iterator[Dict[str, Any]]:
+def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path) -> Iterator[Dict[str, Any]]:
     """The values of each scenario's section in report.html."""
     about = {scenario.name: scenario.about for scenario in plan.scenarios}
     order = [START, *about, *BRIDGE_SCENARIOS]
@@ -75,8 +76,10 @@ def _scenarios(grade: Grade, plan: Plan, records: Records) -> Iterator[Dict[str,
                 continue
             shown = {PLOT_OF[check.name] for check in checks}
             rest = [PLOTS[plot](record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
+            bag = folder / f"{part}-{record.name}.bag"
             yield {
                 "part": part,
+                "replay": f"./robocop replay {shlex.quote(str(bag.resolve()))}" if bag.is_file() else "",
                 "record": record,
                 "about": about.get(record.name, ""),
                 "panels": list(_panels(record, checks)),

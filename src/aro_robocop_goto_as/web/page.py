@@ -10,12 +10,14 @@ from ..geometry import Pose3D, Twist2D, Vector3
 from . import text
 from .pick import floor_point
 from .series import Series
-from .state import Ended, SimState
+from .state import Ended, ReplayState, SimState
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
 HOLD_RATE = 10.0  # [Hz] at which a page renews the request of a button that is held
 CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; a room of 5 x 5 m
-PAUSE, RUN, STEP, RESET = "Pause", "Run", "Step", "Reset"
+PAUSE, RUN, STEP, RESET, PLAY = "Pause", "Run", "Step", "Reset", "Play"
+SETTLED = 2.0  # [s, wall] after a visitor has moved a slider: until then what is reported may be older than that
+SLIDER_STEP = 0.1  # [s, recorded] of a recording's slider
 PAD = (
     # label, hot key, icon, forward, counter-clockwise
     ("Forward (I)", "I", "ARROW_UP", 1.0, 0.0),
@@ -43,6 +45,17 @@ class Actions:
     visitors: Callable[[], None]  # a browser has come or gone
 
 
+@dataclass(frozen=True)
+class Replay:
+    """A recording that is shown instead of a running system, and what the page asks for; none may block."""
+
+    duration: float  # [s, recorded]
+    speed: float  # at the beginning
+    play: Callable[[bool], None]  # or pause
+    seek: Callable[[float], None]  # to a moment [s, recorded]
+    set_speed: Callable[[float], None]
+
+
 class _Html:
     """An HTML element of the panel, sent when it changes."""
 
@@ -59,12 +72,13 @@ class _Html:
 class Page:
     """The panel of a viser server. The show_ and set_ methods are called from one thread."""
 
-    def __init__(self, server: Any, viser: Any, actions: Actions) -> None:
+    def __init__(self, server: Any, viser: Any, actions: Actions, replay: Optional[Replay] = None) -> None:
         self._server = server
         self._actions = actions
         self._pages: Dict[int, Any] = {}
         self._followed: Optional[Vector3] = None
-        self._factor_set = 0.0  # [s, wall] when a visitor moved the slider
+        self._factor_set = self._moment_set = 0.0  # [s, wall] when a visitor moved the slider
+        self._replay = replay
         self._icons = viser.Icon
         server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, control_width="medium")
         camera = server.initial_camera
@@ -77,13 +91,17 @@ class Page:
     # -- the panel --
 
     def _build(self, gui: Any) -> None:
+        self._master_alert = _Html(gui.add_html("", visible=False))
         self._alert = _Html(gui.add_html("", visible=False))
         self._overview = _Html(gui.add_html(""))
         self._answer = _Html(gui.add_html("", visible=False))
         self._robot = gui.add_dropdown("Robot", ("",), visible=False, hint="shown in detail and driven")
         self._robot.on_update(self._on_select)
-        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), hint="on the floor")
-        self._button("Cancel goal", "X", lambda: self._actions.cancel())
+        live = self._replay is None
+        if self._replay is not None:
+            self._build_replay(gui, self._replay)
+        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
+        self._button("Cancel goal", "X", lambda: self._actions.cancel(), live)
         with gui.add_folder("Goal"):
             self._feedback = _Html(gui.add_html("", visible=False))
             self._history = _Html(gui.add_html(""))
@@ -92,7 +110,7 @@ class Page:
             gui.add_button_group("Simulation", (PAUSE, RUN, STEP, RESET)).on_click(self._on_time)
             self._factor = gui.add_slider("Factor", 0.1, 10.0, 0.1, 1.0, hint="simulated seconds per second")
             self._factor.on_update(self._on_factor)
-        self._build_pad(gui)
+        self._build_pad(gui, live)
         with gui.add_folder("Plots"):
             self._errors = self._plot(gui, "errors", ("position [m]", "angle [rad]"))
             self._commands = self._plot(gui, "cmd_vel", ("v [m/s]", "w [rad/s]"))
@@ -102,8 +120,18 @@ class Page:
             self._trail = gui.add_checkbox("Trail", True)
             self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
 
-    def _build_pad(self, gui: Any) -> None:
-        with gui.add_folder("Drive"):
+    def _build_replay(self, gui: Any, replay: Replay) -> None:
+        self._progress = _Html(gui.add_html(""))
+        buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
+        buttons.on_click(lambda event: replay.play(event.target.value == PLAY))
+        longest = max(round(replay.duration, 1), SLIDER_STEP)
+        self._moment = gui.add_slider("Time", 0.0, longest, SLIDER_STEP, 0.0, hint="seconds since the beginning")
+        self._moment.on_update(self._on_moment)
+        self._speed = gui.add_slider("Speed", 0.1, 10.0, 0.1, replay.speed, hint="recorded seconds per second")
+        self._speed.on_update(lambda event: replay.set_speed(event.target.value))
+
+    def _build_pad(self, gui: Any, live: bool) -> None:
+        with gui.add_folder("Drive", visible=live):
             for label, key, icon, forward, turn in PAD:
                 share = Twist2D(forward, turn)
                 button = gui.add_button(label, icon=getattr(self._icons, icon), hint="drives while it is held")
@@ -113,8 +141,8 @@ class Page:
                 command.on_trigger(self._holder(share))
             self._button("Stop", "HAND_STOP", lambda: self._actions.stop())
 
-    def _button(self, label: str, icon: str, action: Callable[[], None]) -> Any:
-        button = self._server.gui.add_button(label, icon=getattr(self._icons, icon))
+    def _button(self, label: str, icon: str, action: Callable[[], None], visible: bool = True) -> Any:
+        button = self._server.gui.add_button(label, icon=getattr(self._icons, icon), visible=visible)
         button.on_click(lambda _event: action())
         return button
 
@@ -147,6 +175,11 @@ class Page:
         if event.client is not None:
             self._factor_set = time.monotonic()
             self._actions.set_factor(event.target.value)
+
+    def _on_moment(self, event: Any) -> None:
+        if event.client is not None and self._replay is not None:
+            self._moment_set = time.monotonic()
+            self._replay.seek(event.target.value)
 
     @staticmethod
     def _plot(gui: Any, title: str, names: Tuple[str, str]) -> Any:
@@ -197,6 +230,10 @@ class Page:
         """Whether the trail is to be shown."""
         return bool(self._trail.value)
 
+    def show_master_problem(self, problem: str) -> None:
+        """Why the ROS master does not answer, at the top; nothing if it does. May be called from any one thread."""
+        self._master_alert.show(text.alert(f"ROS does not answer: {problem}." if problem else ""))
+
     def show_alert(self, message: str) -> None:
         """A problem of the whole system, at the top; none if empty."""
         self._alert.show(text.alert(message))
@@ -218,14 +255,22 @@ class Page:
     def show_sim(self, sim: Optional[SimState], robots: int, bridge: str) -> None:
         """The simulator's report, None for a robot without one, and the bridge's."""
         self._overview.show(text.overview(sim, robots, bridge))
-        if self._time.visible != (sim is not None):
-            self._time.visible = sim is not None
+        controllable = sim is not None and self._replay is None
+        if self._time.visible != controllable:
+            self._time.visible = controllable
         if sim is None:
             return
-        settled = time.monotonic() - self._factor_set > 2.0  # the report is not older than the visitor's choice
+        settled = time.monotonic() - self._factor_set > SETTLED
         asked = min(max(sim.factor_asked, 0.1), 10.0)
         if settled and sim.factor_asked > 0.0 and abs(self._factor.value - asked) > 1e-6:
             self._factor.value = asked
+
+    def show_replay(self, state: ReplayState) -> None:
+        """How far the recording has been played."""
+        self._progress.show(text.progress(state))
+        moment = min(round(state.position, 1), self._moment.max)
+        if time.monotonic() - self._moment_set > SETTLED and abs(self._moment.value - moment) > SLIDER_STEP / 2.0:
+            self._moment.value = moment
 
     def show_feedback(self, content: Optional[Tuple[float, float, str]]) -> None:
         """The newest feedback, None while no goal is executed."""

@@ -149,10 +149,6 @@ class Scene:
         for node in self._links.pop(robot, {}).values():
             node.handle.remove()
 
-    def robots(self) -> List[str]:
-        """The robots that are drawn."""
-        return list(self._links)
-
     def place_link(self, robot: str, link: str, pose: Optional[Pose3D]) -> None:
         """Place a link's shapes in the fixed frame, or hide them where its place is not known."""
         node = self._links[robot][link]

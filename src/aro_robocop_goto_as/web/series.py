@@ -27,6 +27,11 @@ class Series:
         self._samples.append((time, *values))
         self.changed = True
 
+    def clear(self) -> None:
+        """Forget all samples."""
+        self._samples.clear()
+        self.changed = True
+
     def columns(self, now: float) -> Tuple[np.ndarray, ...]:
         """Times before `now` [s], negative, and one array for each figure; all (n,), and never empty."""
         self.changed = False

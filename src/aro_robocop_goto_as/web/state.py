@@ -29,6 +29,16 @@ class SimState:
 
 
 @dataclass(frozen=True)
+class ReplayState:
+    """A recording that is played: where it is and how long it is [s, recorded], and how fast it goes."""
+
+    position: float
+    duration: float
+    playing: bool
+    speed: float
+
+
+@dataclass(frozen=True)
 class Ended:
     """A goal that has ended."""
 
@@ -54,6 +64,10 @@ class GoalHistory:
     def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
         """A result was received."""
         self._ended.appendleft(Ended(robot, state, message, self._goals.pop(goal_id, None)))
+
+    def clear(self) -> None:
+        """Forget all goals."""
+        self._goals, self._ended = {}, deque(maxlen=REMEMBERED)
 
     def latest(self) -> List[Ended]:
         """The last goals, the newest first."""

@@ -3,7 +3,7 @@
 import html
 from typing import Iterable, List, Optional, Tuple
 
-from .state import Ended, SimState
+from .state import Ended, ReplayState, SimState
 
 LONGEST = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
@@ -45,6 +45,12 @@ def overview(sim: Optional[SimState], robots: int, bridge: str) -> str:
         rows.append(("robots", str(robots)))
     rows.append(("server", bridge or "no report from the bridge yet"))
     return _table(rows)
+
+
+def progress(state: ReplayState) -> str:
+    """How far a recording has been played."""
+    how = f"factor {state.speed:g}" if state.playing else "paused"
+    return _table([("recording", f"{state.position:.0f} of {state.duration:.0f} s, {how}")])
 
 
 def factor(asked: float) -> str:

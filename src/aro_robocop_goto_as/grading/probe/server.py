@@ -4,12 +4,13 @@ from typing import Callable, Sequence, Tuple
 
 import rospy
 from actionlib_msgs.msg import GoalID
+from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 
 from ...geometry import Pose2D, compose
 from ...goto import Errors, track_progress
-from ...ros import graph
+from ...ros import graph, markers
 from .. import record as rec
 from ..handout import ACTION
 from ..plan import Plan, Scenario, Step
@@ -22,6 +23,7 @@ START_TIMEOUT = 20.0  # [s, wall] for the node to connect to the recorder of /ro
 SERVER_TIMEOUT = 5.0  # [s, wall] for its action server to connect, counted from then on
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
+MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
 Launch = Callable[[Run], Node]
 
 
@@ -143,6 +145,7 @@ class ServerRun:
         message.goal_id.id = name
         message.goal.position.x, message.goal.position.y = x, y
         self.stage.keep(f"{ACTION}/goal", message)
+        self.stage.keep(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom_frame)))
         self.goal_topic.publish(message)
         return goal
 

@@ -10,6 +10,8 @@ import rosbag
 import rospkg
 import rospy
 from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
 
 from ...errors import CommandError
 from ...geometry import Pose2D, Twist2D, compose, inverse
@@ -24,13 +26,14 @@ from ...ros.sim.factory import message_config
 from ...ros.sim.robot_topics import RobotTopics
 from ...ros.sim.subscriptions import SubscriptionTable
 from ...ros.sim.transform_topics import TransformTopics
+from ...ros.sim.world_markers import world_markers
 from ...simulation.factory import make_simulator
 from ...simulation.loop import SimulationLoop
 from ...simulation.loop_interface import LoopInterface
 from ...simulation.observations import JOINTS, ODOM, TF, Observations, Subscriptions
 from .. import record as rec
 from ..handout import AHEAD
-from ..plan import Plan, site, world_of
+from ..plan import FARTHEST, Plan, site, world_of
 from ..record import Sample
 from .watch import Watch
 
@@ -78,6 +81,7 @@ class Stage(LoopInterface):
         self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
         self.odd_scan = False
         self.bag: Optional[rosbag.Bag] = None
+        self._site = Pose2D()  # world_from_odom at the scenario's start
         self.tick_number = 0
         self.before_tick: Callable[[], None] = lambda: None  # called before the clock reaches a control tick
         self.after_publishing: Callable[[], None] = lambda: None  # called after each step with something to publish
@@ -133,8 +137,10 @@ class Stage(LoopInterface):
     def begin(self, index: int, odd_scan: bool) -> None:
         """Put the robot at the start of a scenario: at rest at its site, odometry at zero."""
         self.odd_scan = odd_scan
+        self._site = site(index)
         self.loop.reset(PARAMS.seed)
         self.loop.place(site(index))
+        self._keep_scenery()
 
     def teleport(self, index: int, odom_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
@@ -191,6 +197,7 @@ class Stage(LoopInterface):
         if self.bag is not None:
             self._write(shown, stamp)
         if observations.clock:
+            self.keep("/clock", Clock(stamp), stamp)
             if observations.control:
                 self.before_tick()
             self.clock.publish(stamp)
@@ -200,6 +207,29 @@ class Stage(LoopInterface):
         transforms = self._transforms.publish_static(self.sim)
         if self.watch is not None:
             self.watch.publish_static(transforms)
+        self._keep_static_frames()
+
+    # -- the scenario's bag: what the submission was sent and answered, and what else a replay shows --
+
+    def _keep_static_frames(self) -> None:
+        """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
+        frames = PARAMS.frames()
+        map_from_odom = compose(inverse(self._site), self.sim.map_from_odom())
+        static = [
+            convert.to_transform(frames.world, frames.map, self._site, self.stamp),
+            convert.to_transform(frames.map, self.robot.odom_frame, map_from_odom, self.stamp),
+        ]
+        self.keep("/tf_static", TFMessage(static))
+
+    def _keep_scenery(self) -> None:
+        """The obstacles of this scenario, and wheels, which the robot's model needs."""
+        near = [
+            marker
+            for marker in world_markers(self.sim.world, PARAMS.world_frame, self.now)
+            if abs(marker.pose.position.x - self._site.x) < FARTHEST
+        ]
+        self.keep("/robocop_sim/world", MarkerArray(near))
+        self.keep("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), self.stamp))
 
     def _write(self, seen: Observations, stamp: rospy.Time) -> None:
         if 0 in seen.scans:
@@ -208,6 +238,8 @@ class Stage(LoopInterface):
                 convert.to_scan(seen.scans[0], self.sim.lidar.spec, stamp, self.robot.scan_frame),
                 stamp,
             )
+        if 0 in seen.transforms:
+            self.keep("/tf", TFMessage(self._transforms.messages(0, seen.transforms[0], stamp)), stamp)
         if 0 in seen.odometry:
             odometry, truth = seen.odometry[0], self.sim.world_from_footprint()
             zeros = [0.0] * 36

@@ -7,7 +7,7 @@ import socket
 import sys
 import threading
 import time
-from typing import Any, Callable, Dict, Sequence
+from typing import Any, Callable, Dict, Optional, Sequence
 
 import rospkg
 import rospy
@@ -19,18 +19,20 @@ from ...param_loading import from_dict
 from ...params import WebParams
 from ...web import access
 from ...web.dead_man import DeadMan
-from ...web.page import Actions, Page
+from ...web.page import Actions, Page, Replay
 from ...web.scene import Scene
 from .. import private_api
 from ..node_main import node
 from .commands import Commands, Driver
+from .player import Player
 from .view import View
-from .watch import MasterWatch, problem_of_master
+from .watch import MasterWatch
 
 NAME = "robocop_web"
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two looks without a visitor
-MASTER_PERIOD = 1.0  # [s, wall]
+TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
+MASTER_PERIOD = 0.1  # [s, wall]
 
 
 def load_params(arguments: Sequence[str]) -> WebParams:
@@ -43,7 +45,7 @@ def load_params(arguments: Sequence[str]) -> WebParams:
         if name.startswith("_") or not value:
             continue
         try:
-            raw[name] = value if name in ("web_host", "web_frame", "web_origins") else yaml.safe_load(value)
+            raw[name] = value if name in TEXTS else yaml.safe_load(value)
         except yaml.YAMLError as error:
             raise ParameterError(f"arguments of {NAME}: {name}: {error}") from error
     return from_dict(WebParams, raw, f"arguments of {NAME}")
@@ -89,15 +91,18 @@ def _require_free(host: str, port: int) -> None:
 
 
 class WebNode:
-    """Connects the page with ROS. Visitors' requests arrive in viser's threads; everything else is done by `run`."""
+    """Connects the page with ROS. Visitors' requests arrive in viser's threads; everything else is done by `run`.
 
-    def __init__(self, server: Any, p: WebParams) -> None:
+    With a player it shows a recording, to which nobody can send requests.
+    """
+
+    def __init__(self, server: Any, p: WebParams, player: Optional[Player] = None) -> None:
         import viser
 
         self._p = p
         self._server = server
+        self._player = player
         self._wake = threading.Event()
-        self._registered = False  # with a ROS master
         self._wanted = ""  # the robot that was chosen last
         self._commands = Commands()
         self._driver = Driver(DeadMan(), p.web_linear_velocity, p.web_angular_velocity)
@@ -114,14 +119,20 @@ class WebNode:
             select=self._select,
             visitors=self._wake.set,
         )
-        self._page = Page(server, viser, actions)
-        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack())
+        replay = None
+        if player is not None:
+            replay = Replay(player.duration, p.replay_speed, player.play, player.seek, player.set_speed)
+        self._page = Page(server, viser, actions, replay)
+        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack(), replay is not None)
+        if player is not None:
+            player.on_seek = self._view.forget
+        self._master = MasterWatch(self._page.show_master_problem)
 
     def _with_ros(self, action: Callable[..., None]) -> Callable[..., None]:
-        """The action, ignored until this node is registered with a master; the page says that it is waiting."""
+        """The action, ignored while there is no ROS master, which the page says, and where a recording is shown."""
 
         def act(*arguments: Any) -> None:
-            if self._registered:
+            if self._master.registered and not self._master.problem and self._player is None:
                 action(*arguments)
 
         return act
@@ -148,33 +159,35 @@ class WebNode:
 
     def wait_for_master(self) -> None:
         """Return when a ROS master answers; meanwhile the page says that there is none."""
-        while True:
-            problem = problem_of_master()
-            if not problem:
-                self._page.show_alert("")
-                return
-            self._page.show_alert(f"Waiting for ROS: {problem}.")
+        while self._master.problem:
             time.sleep(MASTER_PERIOD)
 
     def run(self) -> bool:
         """Serve until shutdown; True if the master has been replaced by one that does not know this node."""
-        watch, view = MasterWatch(), self._view
-        self._registered = True
+        watch, view = self._master, self._view
+        watch.registered = True
         rospy.on_shutdown(self._driver.end)
+        if self._player is not None:
+            self._player.start()
         while not rospy.is_shutdown():
-            if watch.forgotten and not watch.problem:
+            if watch.forgotten:
+                self._driver.end()
                 return True
             robots = watch.robots or ("",)
             if self._wanted not in robots:
                 self._wanted = robots[0]
             if self._page.visited:
-                view.open()
+                if not watch.problem:  # without a master, connections that exist go on
+                    view.connect(robots, self._wanted)
                 with self._server.atomic():
-                    view.update(robots, self._wanted, watch.problem, self._commands.answer)
+                    view.update(robots, self._commands.answer)
+                    if self._player is not None:
+                        self._page.show_replay(self._player.state)
                 time.sleep(1.0 / RATE)
             else:
-                view.close()
-                view.watch_goals(robots)
+                if not watch.problem:
+                    view.close()
+                    view.watch_goals(robots)
                 self._wake.wait(IDLE_PERIOD)
                 self._wake.clear()
         return False
@@ -194,16 +207,17 @@ def main() -> None:
     """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
     try:
         p = load_params(sys.argv[1:])
+        player = Player(p.replay, p.replay_speed) if p.replay else None
         server = start_server(p)
     except RobocopError as error:
         sys.exit(f"{NAME}: {error.code}: {error}")
     print(f"{NAME}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
-    web = WebNode(server, p)
+    web = WebNode(server, p, player)
     web.wait_for_master()
     replaced = False
     with node(NAME, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
         warn_of_strangers(p)
         replaced = web.run()
-    server.stop()
-    if replaced:
+    if replaced:  # this closes the port, and browsers connect again by themselves
         os.execv(sys.executable, [sys.executable, *sys.argv])
+    server.stop()

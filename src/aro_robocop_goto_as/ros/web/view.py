@@ -1,9 +1,11 @@
 """From what was received to what the page shows; everything here runs in the node's main thread."""
 
 import time
+import xmlrpc.client
 from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
+import rosgraph
 import rospkg
 import rospy
 
@@ -27,7 +29,11 @@ DRAWN_BY_SCENE = ("robots", "noses")  # markers of the simulator that stand for 
 class View:
     """The newest state of everything that is received while a browser shows the page."""
 
-    def __init__(self, page: Page, scene: Scene, fixed_frame: str, packages: rospkg.RosPack) -> None:
+    def __init__(
+        self, page: Page, scene: Scene, fixed_frame: str, packages: rospkg.RosPack, replayed: bool = False
+    ) -> None:
+        """`replayed`: a recording is shown, whose simulator may be silent for as long as it is paused."""
+        self._replayed = replayed
         self.system = SystemTopics()
         self.goals = GoalTopics()
         self.robot_pose: Optional[Pose3D] = None  # of the selected robot, in the fixed frame
@@ -41,17 +47,25 @@ class View:
         self._trail_frame = ""
         self._links: Dict[str, Dict[str, str]] = {}  # frame of each link of each robot
         self._shown: Dict[str, Any] = {"scan": None, "map": None, "image": None}
-        self._slow_at = self._plot_at = 0.0
+        self._connected_at = self._slow_at = self._plot_at = 0.0
         self._opened = False
 
-    def open(self) -> None:
-        """Subscribe, if that has not been done."""
+    def connect(self, robots: Tuple[str, ...], selected: str) -> None:
+        """Subscribe, and read the descriptions of new robots. Only this needs the ROS master, and may wait for it."""
         if not self._opened:
             self._opened = True
             self._world.clear()
             self._server.clear()
             self.system.open()
             self._robot.open()
+        if selected != self._robot.robot:
+            self._select(selected)
+        now = time.monotonic()
+        if now - self._connected_at >= SLOW_PERIOD:
+            self._connected_at = now
+            self.watch_goals(robots)
+            for robot in set(robots) - set(self._links):
+                self._load(robot)
 
     def close(self) -> None:
         """Unsubscribe."""
@@ -64,23 +78,29 @@ class View:
         """Keep the history of these robots' goals."""
         self.goals.watch(robots)
 
+    def forget(self) -> None:
+        """Another moment of a recording is shown: trail, plots and history begin anew."""
+        self.goals.history.clear()
+        self._robot.errors.clear()
+        self._robot.commands.clear()
+        self._trail_frame = ""
+
     @property
     def executing(self) -> bool:
         """Whether the selected robot's server executes a goal."""
         return self._robot.feedback(time.monotonic()) is not None
 
-    def update(self, robots: Tuple[str, ...], selected: str, problem: str, answer: str) -> None:
-        """Show the newest state."""
+    def update(self, robots: Tuple[str, ...], answer: str) -> None:
+        """Show the newest state; nothing before the first `connect`."""
+        if not self._opened:
+            return
         now = time.monotonic()
-        if selected != self._robot.robot:
-            self._select(selected)
-        self._show_robots(robots, now)
+        self._show_robots(robots)
         self._show_markers()
         self._show_scan()
-        self._show_panel(robots, now, problem, answer)
+        self._show_panel(robots, now, answer)
         if now - self._slow_at >= SLOW_PERIOD:
             self._slow_at = now
-            self.watch_goals(robots)
             self._show_map()
             self._page.show_history(self.goals.history.latest(), len(robots) > 1)
 
@@ -111,15 +131,10 @@ class View:
 
     # -- robots --
 
-    def _show_robots(self, robots: Tuple[str, ...], now: float) -> None:
-        slow = now - self._slow_at >= SLOW_PERIOD
-        if slow:
-            for robot in set(self._scene.robots()) - set(robots):
-                self._scene.remove_robot(robot)
-                self._links.pop(robot, None)
-            for robot in robots:
-                if robot not in self._links:
-                    self._load(robot)
+    def _show_robots(self, robots: Tuple[str, ...]) -> None:
+        for robot in set(self._links) - set(robots):
+            self._scene.remove_robot(robot)
+            del self._links[robot]
         for robot, links in self._links.items():
             pose = self._base_pose(robot)
             if robot == self._robot.robot:
@@ -141,8 +156,11 @@ class View:
 
     def _load(self, robot: str) -> None:
         """Read a robot's description, its own or one that all share; until there is one, nothing is drawn."""
-        name = rospy.search_param(absolute(robot, DESCRIPTION))
-        text = rospy.get_param(name, "") if name else rospy.get_param(f"/{DESCRIPTION}", "")
+        try:
+            name = rospy.search_param(absolute(robot, DESCRIPTION))
+            text = rospy.get_param(name, "") if name else rospy.get_param(f"/{DESCRIPTION}", "")
+        except (OSError, rosgraph.MasterException, xmlrpc.client.Error):  # the master has just gone
+            return
         if not isinstance(text, str) or not text:
             return
         try:
@@ -208,13 +226,10 @@ class View:
 
     # -- the panel --
 
-    def _show_panel(self, robots: Tuple[str, ...], now: float, problem: str, answer: str) -> None:
+    def _show_panel(self, robots: Tuple[str, ...], now: float, answer: str) -> None:
         sim = self.system.sim
-        if problem:
-            problem = f"ROS does not answer: {problem}. The page shows what was received last."
-        elif sim is not None and sim.silent_for(now):
-            problem = f"No report from the simulator for {sim.silent_for(now):.0f} s: has it ended?"
-        self._page.show_alert(problem)
+        silence = 0.0 if sim is None or self._replayed else sim.silent_for(now)
+        self._page.show_alert(f"No report from the simulator for {silence:.0f} s: has it ended?" if silence else "")
         self._page.show_answer(answer)
         self._page.show_robots(robots, self._robot.robot)
         self._page.show_sim(sim, len(robots), self._robot.bridge)

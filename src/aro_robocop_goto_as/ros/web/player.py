@@ -1,0 +1,164 @@
+"""Plays a bag on its topics: at any speed, with pauses, from any moment on."""
+
+import math
+import threading
+import time
+from typing import Any, Callable, Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
+
+import rosbag
+import rospy
+from visualization_msgs.msg import Marker, MarkerArray
+
+from ...errors import WebError
+from ...web.state import ReplayState
+
+LEAD = 1.0  # [s, recorded] before the moment that is sought, for topics with more messages than one in this time
+FEW = 10  # messages of a topic that always count as rare: of rare topics all is sent again from the beginning
+MARKERS = "visualization_msgs/MarkerArray"  # likewise, however many: each one only changes some of the markers
+QUEUE = 1000  # messages that wait for a slow subscriber
+CONNECT = 0.5  # [s, wall] for subscribers that wait already, as `rosbag play` gives them
+CLEAR = MarkerArray([Marker(action=Marker.DELETEALL)])
+
+
+class _Clock(NamedTuple):
+    """The moment `at` [s, recorded] was shown at `since` [s, wall]."""
+
+    at: float
+    since: float
+    playing: bool
+    speed: float
+
+    def position(self) -> float:
+        return self.at + (time.monotonic() - self.since) * self.speed if self.playing else self.at
+
+
+class _Newcomers(rospy.SubscribeListener):
+    """Collects subscribers that have just connected, with what publishes to each of them alone."""
+
+    def __init__(self, found: Callable[[str, Callable[[Any], None]], None]) -> None:
+        self._found = found
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """A subscriber has connected."""
+        self._found(topic_name, peer_publish)
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """A subscriber has disconnected."""
+
+
+class Player:
+    """Publishes from a thread of its own, the only one to read the bag. A subscriber that comes late gets the past."""
+
+    def __init__(self, path: str, speed: float) -> None:
+        """WebError if the file is no bag, or has no messages."""
+        try:
+            self._bag = rosbag.Bag(path)
+            self._start, end = self._bag.get_start_time(), self._bag.get_end_time()
+        except (OSError, rosbag.ROSBagException) as error:
+            raise WebError(f"{path} can't be played: {error}") from error
+        topics = self._bag.get_type_and_topic_info().topics
+        self.duration = end - self._start
+        self.on_seek: Callable[[], None] = lambda: None  # called before another moment is published
+        few = max(FEW, self.duration / LEAD)
+        self._kept = {name for name, it in topics.items() if it.message_count <= few or it.msg_type == MARKERS}
+        self._marked = [name for name, it in topics.items() if it.msg_type == MARKERS]
+        self._topics = list(topics)
+        self._publishers: Dict[str, rospy.Publisher] = {}
+        self._changed = threading.Condition()
+        self._clock = _Clock(0.0, time.monotonic(), False, speed)
+        self._sought: Optional[float] = None
+        self._newcomers: List[Tuple[str, Callable[[Any], None]]] = []
+
+    # -- controls, from any thread --
+
+    def play(self, playing: bool) -> None:
+        """Go on, from the beginning if the end was reached, or pause."""
+        if playing and self._clock.position() >= self.duration:
+            self.seek(0.0)
+        with self._changed:
+            self._set(playing=playing)
+
+    def set_speed(self, speed: float) -> None:
+        """How many times as fast as recorded."""
+        with self._changed:
+            self._set(speed=speed)
+
+    def seek(self, position: float) -> None:
+        """Go on from a moment [s] after the beginning."""
+        self.on_seek()
+        with self._changed:
+            self._sought = min(max(position, 0.0), self.duration)
+            self._set(at=self._sought)
+
+    def _set(self, **values: Any) -> None:
+        now = {"at": min(self._clock.position(), self.duration), "since": time.monotonic()}
+        self._clock = self._clock._replace(**{**now, **values})
+        self._changed.notify()
+
+    @property
+    def state(self) -> ReplayState:
+        """What is shown now."""
+        clock = self._clock
+        position = min(clock.position(), self.duration)
+        return ReplayState(position, self.duration, clock.playing and position < self.duration, clock.speed)
+
+    # -- the thread --
+
+    def start(self) -> None:
+        """Publish the topics, and play. The node has to be initialized."""
+        for name in self._topics:
+            _, message, _ = next(self._bag.read_messages(topics=[name]))
+            listener = _Newcomers(self._greet)
+            self._publishers[name] = rospy.Publisher(name, type(message), listener, queue_size=QUEUE)
+        threading.Thread(target=self._work, daemon=True, name="player").start()
+
+    def _greet(self, topic: str, publish: Callable[[Any], None]) -> None:
+        with self._changed:
+            self._newcomers.append((topic, publish))
+            self._changed.notify()
+
+    def _work(self) -> None:
+        time.sleep(CONNECT)
+        self.play(True)
+        position = 0.0
+        while not rospy.is_shutdown():
+            for topic, message, stamp in self._bag.read_messages(start_time=self._stamp(position)):
+                if not self._wait_until(stamp.to_sec() - self._start):
+                    break
+                self._publishers[topic].publish(message)
+            else:
+                self._wait_until(math.inf)
+            with self._changed:
+                position, self._sought = self._sought or 0.0, None
+            for topic in self._marked:
+                self._publishers[topic].publish(CLEAR)
+            for topic, message in self._past(self._topics, position):
+                self._publishers[topic].publish(message)
+
+    def _wait_until(self, position: float) -> bool:
+        """Whether a moment has come; False if another one was sought. Meanwhile newcomers get what they missed."""
+        while True:
+            with self._changed:
+                if self._sought is not None:
+                    return False
+                newcomers, self._newcomers = self._newcomers, []
+                if not newcomers:
+                    ahead = position - self._clock.position()
+                    if ahead <= 0.0:
+                        return True
+                    self._changed.wait(min(ahead / self._clock.speed, 1.0) if self._clock.playing else None)
+            for topic, publish in newcomers:
+                for _, message in self._past([topic], self.state.position):
+                    publish(message)
+
+    def _stamp(self, position: float) -> rospy.Time:
+        return rospy.Time.from_sec(self._start + position)
+
+    def _past(self, topics: Collection[str], position: float) -> Iterator[Tuple[str, Any]]:
+        """Topics and messages that lead to the state at a moment: the rare ones all, of the others the last second."""
+        for kept in (True, False):
+            names = [name for name in topics if (name in self._kept) == kept]
+            begin = 0.0 if kept else max(position - LEAD, 0.0)
+            if names:
+                found = self._bag.read_messages(names, self._stamp(begin), self._stamp(position))
+                yield from ((topic, message) for topic, message, _ in found)

@@ -1,0 +1,133 @@
+"""The web page in a real Chromium when parts of the system are killed and come back: it goes on by itself."""
+
+import math
+import os
+import signal
+import xmlrpc.client
+
+import pytest
+from browser import Tab, chromium
+from desktop import CALLER, Master, end
+from waiting import wait_for
+from web import REACHED, READY, Web
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
+
+PACKAGE = "aro_robocop_goto_as"
+SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
+GONE, SILENT = "ROS does not answer", "No report from the simulator"
+
+
+class Parts(Web):
+    """As Web, but master, simulator and server are started one by one."""
+
+    system = Master
+
+    def start_simulator(self):
+        """Start the simulator."""
+        self.ros.start("sim", "roslaunch", PACKAGE, "robocop_sim.launch", "cmd_vel_timeout:=0")
+
+    def start_server(self, bridge=True):
+        """Start the server, with or without the bridge."""
+        file = "robocop_goto_as.launch"
+        self.ros.start("server", "roslaunch", PACKAGE, file, "sim:=false", "rviz:=false", f"bridge:={bridge}")
+
+    def kill(self, name):
+        """Kill a node."""
+        with xmlrpc.client.ServerProxy(self.ros.master.lookupNode(name)) as node:
+            os.kill(node.getPid(CALLER)[2], signal.SIGKILL)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    parts = Parts(tmp_path_factory.mktemp("parts"))
+    with parts.ros:
+        parts.start_simulator()
+        parts.start_server()
+        parts.page = parts.start()
+        yield parts
+
+
+@pytest.fixture
+def tab(parts, browser):
+    tab = Tab(browser, parts.url)
+    tab.wait_for_text(READY)
+    yield tab
+    tab.close()
+
+
+def expect_a_click_to_drive_the_robot(web, tab):
+    goal = (-0.5, 0.0) if web.position()[0] > -0.25 else (0.0, 0.0)
+    tab.click_floor(*goal)
+    wait_for(lambda: math.dist(web.position(), goal) < REACHED, f"the robot has driven to {goal}; {tab.text()}")
+
+
+def test_the_page_goes_on_when_the_server_is_killed_and_started_again(parts, tab):
+    parts.kill(SERVER)
+    tab.wait_for_text("server.*(lost|not|no )")
+    parts.start_server(bridge=False)
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(parts, tab)
+
+
+def test_the_page_reports_a_killed_simulator_and_shows_the_next_one(parts, tab):
+    parts.kill(SIMULATOR)
+    tab.wait_for_text(SILENT)
+    parts.start_simulator()
+    wait_for(lambda: SILENT not in tab.text(), "the page has a report from the simulator")
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(parts, tab)
+
+
+def test_the_browser_connects_again_by_itself_when_the_page_is_killed_and_started_again(parts, tab):
+    parts.page.kill()
+    parts.page.wait()
+    parts.page = parts.start()
+    sockets = tab.sockets
+    wait_for(lambda: tab.page.evaluate("1") and tab.sockets > sockets, "the browser connects again")
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(parts, tab)
+
+
+def test_a_reloaded_page_drives_the_robot(parts, tab):
+    tab.page.reload()
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(parts, tab)
+
+
+@pytest.fixture
+def lab(tmp_path):
+    web = Web(tmp_path)
+    with web.ros:
+        page = web.start()
+        yield web
+        assert page.poll() is None
+
+
+def test_an_open_page_reports_that_the_master_is_gone_and_goes_on_with_a_new_master_and_system(lab, browser):
+    tab = Tab(browser, lab.url)
+    tab.wait_for_text(READY)
+    end(lab.ros.running[0][0], signal.SIGINT, signal.SIGTERM)
+    tab.wait_for_text(GONE)
+    lab.ros.launch()
+    wait_for(lambda: GONE not in tab.text(), "the page no longer misses ROS")
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(lab, tab)
+    tab.close()
+
+
+def test_a_page_opened_without_a_master_says_so_and_shows_the_system_that_is_started_then(lab, browser):
+    wait_for(lambda: lab.ros.subscriber("/robocop_goto_as/result", "/robocop_web"), "the page's node is registered")
+    end(lab.ros.running[0][0], signal.SIGINT, signal.SIGTERM)
+    tab = Tab(browser, lab.url)
+    tab.wait_for_text(GONE)
+    lab.ros.launch()
+    tab.wait_for_text(READY)
+    expect_a_click_to_drive_the_robot(lab, tab)
+    tab.close()

@@ -1,0 +1,103 @@
+"""./robocop replay in a real Chromium: pause, time and speed of a recording that has a robot drive straight ahead."""
+
+from dataclasses import dataclass
+
+import pytest
+import rosbag
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from aro_robocop_goto_as.msg import GoToPositionActionResult
+from browser import Tab, chromium
+from desktop import Ros
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+from waiting import wait_for
+from web import NoDesktop
+
+from aro_robocop_goto_as.process.ports import free_port
+from aro_robocop_goto_as.ros.web.player import LEAD
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
+
+DURATION, RATE, SPEED = 60.0, 20, 0.1  # [s], [Hz], [m/s]
+FARTHEST = DURATION * SPEED  # [m]
+START = 1_700_000_000.0  # [s]
+
+
+def write_bag(path):
+    """A robot that drives along x, and a goal that is reached at the end."""
+    with rosbag.Bag(path, "w") as bag:
+        for tick in range(int(DURATION * RATE) + 1):
+            stamp, x = rospy.Time.from_sec(START + tick / RATE), SPEED * tick / RATE
+            odometry, transform = Odometry(child_frame_id="base_footprint"), TransformStamped()
+            odometry.header.frame_id = transform.header.frame_id = "odom"
+            odometry.header.stamp = transform.header.stamp = stamp
+            odometry.pose.pose.position.x = transform.transform.translation.x = x
+            odometry.pose.pose.orientation.w = transform.transform.rotation.w = 1.0
+            transform.child_frame_id = "base_footprint"
+            bag.write("/odom", odometry, stamp)
+            bag.write("/tf", TFMessage([transform]), stamp)
+        result = GoToPositionActionResult()
+        result.status.goal_id.id, result.status.status = "goal", GoalStatus.SUCCEEDED
+        result.result.success, result.result.message = True, "REACHED: recorded"
+        bag.write("/robocop_goto_as/result", result, stamp)
+
+
+class Replay(Ros):
+    """The launch file of ./robocop replay."""
+
+    def command(self):
+        """What starts the master."""
+        return ["roslaunch", "-p", self.port, "aro_robocop_goto_as", "replay.launch", "rviz:=false", *self.arguments]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The page that shows the recording."""
+
+    ros: Ros
+    tab: Tab
+
+    def x(self):
+        """Where the robot is according to /odom [m], which a newcomer gets from one second before."""
+        return self.ros.latest("/odom")["pose"]["pose"]["position"]["x"]
+
+    def press(self, label, key):
+        """Press a key on a slider."""
+        self.tab.slider(label).press(key)
+
+
+@pytest.fixture
+def shown(tmp_path):
+    write_bag(tmp_path / "drive.bag")
+    port = free_port()
+    arguments = [f"bag:={tmp_path / 'drive.bag'}", f"web_port:={port}", "rate:=0.1"]
+    with Replay(tmp_path, NoDesktop(), *arguments) as ros, chromium() as browser:
+        wait_for(lambda: ros.subscriber("/robocop_goto_as/result", "/replay"), "the page's node is registered")
+        tab = Tab(browser, f"http://localhost:{port}")
+        tab.wait_for_text("recording.* of 60 s")
+        yield Shown(ros, tab)
+        assert tab.errors == []
+
+
+def test_a_recording_is_paused_played_from_any_moment_and_at_any_speed(shown):
+    tab = shown.tab
+    assert 0.0 <= shown.x() < FARTHEST / 2
+    tab.click("Pause")
+    tab.wait_for_text("of 60 s, paused")
+    shown.press("Time", "End")
+    tab.wait_for_text("60 of 60 s, paused")
+    tab.wait_for_text("✓ goal: REACHED: recorded")
+    assert shown.x() == pytest.approx(FARTHEST - LEAD * SPEED, abs=2.0 * SPEED / RATE)
+    tab.click("Play")  # from the beginning: at a tenth of real time the end is far away
+    wait_for(lambda: "REACHED" not in tab.text(), "the goal has not ended yet at the beginning")
+    tab.click("Pause")
+    shown.press("Time", "Home")
+    tab.wait_for_text(r"\b0 of 60 s, paused")
+    assert shown.x() == pytest.approx(0.0)
+    shown.press("Speed", "End")
+    tab.click("Play")
+    tab.wait_for_text("60 of 60 s, paused")
+    tab.wait_for_text("✓ goal: REACHED: recorded")
+    assert not tab.button("Cancel goal").is_visible()
