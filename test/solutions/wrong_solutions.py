@@ -225,6 +225,35 @@ WRONG = (
         ),
     ),
     _server(
+        "goal_from_where_the_robot_was",
+        "feedback_position",
+        "relative to the robot, where it is when the goal comes",
+        (
+            "        success = False\n        while",
+            "        success = False\n        x0, y0, yaw0 = self.pose\n        while",
+        ),
+        (
+            "            dx = goal.position.x - x\n            dy = goal.position.y - y\n",
+            "            dx = x0 + math.cos(yaw0) * goal.position.x - math.sin(yaw0) * goal.position.y - x\n"
+            "            dy = y0 + math.sin(yaw0) * goal.position.x + math.cos(yaw0) * goal.position.y - y\n",
+        ),
+    ),
+    _server("turns_too_late", "turns_to_goal", "threshold of angle_error", (CONDITION, "if abs(angle_error) > 0.5:")),
+    _server(
+        "gives_up_early",
+        "far_goal",
+        "timeout of its own",
+        ("        success = False\n        while", "        success, begun = False, rospy.Time.now()\n        while"),
+        (OBSTACLE, "elif self.min_dist_ahead < 0.3 or rospy.Time.now() - begun > rospy.Duration(12):"),
+    ),
+    _server("mean_of_the_sector", "stops_at_obstacle", "the nearest of them", ("valid.min()", "valid.mean()")),
+    _server(
+        "looks_left",
+        "stops_at_obstacle",
+        "that of the beams ahead",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[60:120]"),
+    ),
+    _server(
         "one_beam",
         "stops_at_obstacle",
         "ran into an obstacle",
@@ -339,8 +368,8 @@ WRONG = (
     ),
     _server(
         "crash_on_second_goal",
-        "next_goal",
-        "callback",
+        "no_exception",
+        "assert self.count < 2",
         (
             "        success = False\n        while",
             "        self.count += 1\n        assert self.count < 2\n        success = False\n        while",
@@ -348,8 +377,8 @@ WRONG = (
     ),
     _server(
         "done_never_cleared",
-        "next_goal",
-        "The second goal",
+        "reaches_goal",
+        "not reset when a goal begins",
         ("        success = False\n        while", "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
@@ -403,6 +432,18 @@ WRONG = (
         ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
     ),
     _bridge(
+        "bridge_reports_changes",
+        "reports_status",
+        "only report changes",
+        ("        self.sent = False\n", "        self.sent, self.state = False, None\n"),
+        (
+            "        rospy.loginfo('server",
+            "        if self.state == self.client.get_state():\n            return\n"
+            "        self.state = self.client.get_state()\n        rospy.loginfo('server",
+        ),
+    ),
+    _bridge("bridge_logs_debug", "reports_status", "Nothing is logged", ("rospy.loginfo(", "rospy.logdebug(")),
+    _bridge(
         "bridge_publishes_figures",
         "reports_status",
         "rospy.Timer",
@@ -440,7 +481,7 @@ WRONG = (
     ),
     _bridge(
         "bridge_gives_up",
-        "waits_for_server",
+        "forwards_goal",
         "without a timeout",
         ("self.client.wait_for_server()", "self.up = self.client.wait_for_server(rospy.Duration(1))"),
         ("        self.client.send_goal(goal)\n", "        if self.up:\n            self.client.send_goal(goal)\n"),

@@ -189,7 +189,8 @@ def test_error_is_named_with_its_file_and_line() -> None:
     verdict = CHECKS["stays_alive"](record, LIMITS)
     assert isinstance(verdict, Failed)
     assert verdict.cause == (
-        "The node died: TypeError: cannot unpack non-iterable NoneType object (robocop_goto_as.py, line 34)"
+        "The node died: TypeError: cannot unpack non-iterable NoneType object "
+        "(robocop_goto_as.py, line 34: x, y = self.pose)"
     )
 
 
@@ -200,7 +201,8 @@ def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
     checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
     first, odd = checks["stops_at_obstacle"].failure, checks["odd_scans"].failure
     assert first is not None and odd is not None
-    assert odd.cause.startswith("This follows from a failure above") and "NaN" not in odd.cause
+    assert odd.cause.startswith("This follows from another failure: An obstacle closer than") and "NaN" not in odd.cause
+    assert checks["odd_scans"].follows == "stops_at_obstacle"
     alone = judge("anna", load(PLAN), {"server": {"odd_scan_wall": hit}}, {})
     cause = next(check.failure for check in alone.checks if check.name == "odd_scans")
     assert cause is not None and "NaN hides the wall" in cause.cause

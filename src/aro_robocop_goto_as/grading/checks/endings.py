@@ -18,7 +18,8 @@ from ..record import (
     samples_between,
     status_name,
 )
-from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
+from .consequences import EXCEPTION, stopped_by
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, sentences
 
 # Parts of the messages that actionlib's SimpleActionServer and rospy log.
 NO_STATE_LOGGED = "No terminal", "without setting", "did not set the goal to a terminal status", "user should have"
@@ -33,6 +34,9 @@ TRACEBACK = 6  # lines before the error in which the innermost place is looked f
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
+NO_RESULT = "no result"
+NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
+AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
 
 
 def logged(record: Record, words: Sequence[str]) -> bool:
@@ -45,9 +49,11 @@ def last_error(record: Record) -> str:
     lines = [text.strip() for line in record.lines for text in line.text.splitlines() if text.strip()]
     errors = [number for number, line in enumerate(lines) if "Error" in line.split(":")[0] or "Exception:" in line]
     if errors:
-        places = [PLACE.search(line) for line in lines[max(0, errors[-1] - TRACEBACK) : errors[-1]]]
-        place = [f" ({os.path.basename(found[1])}, line {found[2]})" for found in places if found]
-        return lines[errors[-1]][:200] + (place[-1] if place else "")
+        before = [line for line in lines[max(0, errors[-1] - TRACEBACK) : errors[-1]] if line.strip("^~ ")]
+        places = [PLACE.search(line) for line in before]
+        place = [f"{os.path.basename(found[1])}, line {found[2]}" for found in places if found]
+        code = f": {before[-1][:120]}" if place and places[-1] is None else ""  # that line, as the traceback quotes it
+        return lines[errors[-1]][:200] + (f" ({place[-1]}{code})" if place else "")
     others = [line for line in lines if not INFORMATION.match(line)]
     return (others or ["its output names no error"])[-1][:200]
 
@@ -58,19 +64,39 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     if not results:
         last = record.samples[-1].time if record.samples else goal.time
         problem = record.problem or "the goal got no terminal state and no result"
-        cause = problem[:1].upper() + problem[1:]
-        return Failed(status_name(wanted), "no result", last, sentences(_collision(record, goal, last), cause))
+        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:])
+        follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else stopped_by(record, goal)
+        return Failed(status_name(wanted), NO_RESULT, last, cause, follows)
     result = results[0]
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
     cause = _wrong_state(record, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
-        cause = (
-            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration?"
-        )
-    seen = status_name(result.status) + (f": {result.message}" if result.message else "")
-    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause))
+        cause = _unnoticed(record)
+    state = status_name(result.status)
+    seen = state + (f": {result.message}" if result.message else "")
+    follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else (Earlier("reaches_goal", state),)
+    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), follows)
+
+
+def _unnoticed(record: Record) -> str:
+    """The cause of a collision after which the goal succeeded, because odometry continued to advance."""
+    return narrow_obstacle(record) or (
+        "It was not noticed. Is the distance ahead checked in each iteration, and is it that of the beams ahead?"
+    )
+
+
+def narrow_obstacle(record: Record) -> str:
+    """What a server that reacts to a wall has done wrong if the obstacle is narrow; nothing for a wide one."""
+    across = [outline[1::2] for outline in record.obstacles[:1]]
+    if not across or max(across[0]) - min(across[0]) > NARROW:
+        return ""
+    side = "left" if sum(across[0]) > 0.0 else "right"
+    return (
+        f"A narrow obstacle a little to the {side} was missed or noticed too late, although a wall is noticed. Do the "
+        "beams on both sides of straight ahead count, and does the nearest of them decide?"
+    )
 
 
 def _collision(record: Record, goal: Goal, end: float) -> str:
@@ -87,9 +113,14 @@ def _wrong_state(record: Record, status: int, wanted: int) -> str:
     if wanted == ABORTED and status == SUCCEEDED:
         return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:
+        if not record.obstacles:
+            return (
+                "set_aborted is called although there is no obstacle at all: does the server have a timeout of its "
+                "own, or is a range of inf treated as an obstacle?"
+            )
         return (
-            "set_aborted is called although nothing is in the way: which beams count as ahead, which ranges as valid, "
-            "or does the server have a timeout of its own?"
+            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server have "
+            "a timeout of its own?"
         )
     if wanted == PREEMPTED:
         return "Call set_preempted for a goal that is cancelled or replaced"
@@ -103,12 +134,12 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
-    return Failed(
-        f"success within {GOAL_RADIUS:g} m",
-        f"success {nearest:.2f} m away",
-        result.time,
-        f"The threshold of position_error is not {GOAL_RADIUS:g} m, or it is compared with another quantity",
-    )
+    cause = f"The threshold of position_error is not {GOAL_RADIUS:g} m, or it is compared with another quantity"
+    if result.time - goal.time < AT_ONCE:
+        cause += ", or what an earlier goal has changed is not reset when a goal begins"
+    own = [message.position_error for message in record.feedback if message.id == goal.id][-1:]
+    follows = (Earlier("feedback_position"),) if own and own[0] <= limits.reached else ()
+    return Failed(f"success within {GOAL_RADIUS:g} m", f"success {nearest:.2f} m away", result.time, cause, follows)
 
 
 @check("states")
@@ -133,6 +164,8 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         if not result.message:
             cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
+    if not result.message and logged(record, NO_STATE_LOGGED):
+        return Failed("a message", "an empty message", result.time, NO_STATE, (Earlier("one_ending"),))
     if not result.message:
         cause = (
             "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"

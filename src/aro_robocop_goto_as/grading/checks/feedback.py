@@ -1,11 +1,14 @@
 """Checks of the feedback: its rate, and its errors against the true ones."""
 
 import math
-from typing import Callable, List, NamedTuple, Sequence, Tuple
+from dataclasses import replace
+from typing import Callable, Iterator, List, NamedTuple, Sequence, Tuple
 
+from ...geometry import Pose2D, compose
 from ..limits import Limits
 from ..record import Feedback, Goal, Record, Sample, errors_at, results_of, samples_between, wrapped
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .consequences import silent
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
@@ -35,26 +38,30 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         else:
             cause = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
         wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
-        return Failed(wanted, f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s", goal.time, cause)
+        follows = (Earlier("reaches_goal", "no result"),) if silent(record, goal) else ()
+        seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
+        return Failed(wanted, seen, goal.time, cause, follows)
     return Passed() if judged else NotReached("no goal was active for a second")
 
 
 class Pair(NamedTuple):
-    """A feedback message, the samples that it may be based on, and its goal."""
+    """A feedback message, the samples that it may be based on, its goal, and where the robot was when that was sent."""
 
     feedback: Feedback
     samples: List[Sample]
     goal: Goal
+    start: Sample
 
 
 def _pairs(record: Record) -> List[Pair]:
     goals = {goal.id: goal for goal in record.goals}
-    pairs = [
-        Pair(message, samples_between(record, message.time - AGE, message.time + 1e-3), goals[message.id])
-        for message in record.feedback
-        if message.id in goals
-    ]
-    return [pair for pair in pairs if pair.samples]
+    starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
+    pairs = []
+    for message in record.feedback:
+        samples = samples_between(record, message.time - AGE, message.time + 1e-3)
+        if message.id in goals and samples:
+            pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
+    return pairs
 
 
 def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
@@ -117,14 +124,40 @@ def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
     return g.x - s.x, g.y - s.y
 
 
+def _from_start(pair: Pair) -> Goal:
+    """The goal, if it is understood as a position in the robot's frame of when it was sent."""
+    there = compose(Pose2D(pair.start.x, pair.start.y, pair.start.yaw), Pose2D(pair.goal.x, pair.goal.y))
+    return replace(pair.goal, x=there.x, y=there.y)
+
+
+def _offset_by_start(pair: Pair) -> Goal:
+    """The same without the robot's heading."""
+    return replace(pair.goal, x=pair.start.x + pair.goal.x, y=pair.start.y + pair.goal.y)
+
+
+def _relative_to(pair: Pair) -> Goal:
+    """The goal, if it is understood as a position in the robot's present frame."""
+    at = pair.samples[-1]
+    there = compose(Pose2D(at.x, at.y, at.yaw), Pose2D(pair.goal.x, pair.goal.y))
+    return replace(pair.goal, x=there.x, y=there.y)
+
+
+RELATIVE = "The goal is taken relative to the robot, where it is"
+MISREAD: Tuple[Tuple[str, Callable[[Pair], Goal]], ...] = (
+    (f"{RELATIVE} when the goal comes; goals are in odom", _from_start),
+    (f"{RELATIVE} when the goal comes; goals are in odom", _offset_by_start),
+    (f"{RELATIVE} at the moment; goals are in odom", _relative_to),
+)
+POSITION_UNUSED = "the robot's position is left out, or read only at the start"
+WORLD = "in the world or map frame; goals are in odom"
 Hypothesis = Tuple[str, Callable[[Sample, Goal], float]]
 POSITION_CAUSES: Tuple[Hypothesis, ...] = (
     (
-        "The robot's position is taken in the world or map frame; goals are in odom",
+        f"The robot's position is taken {WORLD}",
         lambda s, g: math.hypot(g.x - s.world_x, g.y - s.world_y),
     ),
     (
-        "position_error is measured from odom's origin: the robot's position is left out, or read only at the start",
+        f"position_error is measured from odom's origin: {POSITION_UNUSED}",
         lambda s, g: math.hypot(g.x, g.y),
     ),
     (
@@ -162,11 +195,11 @@ ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
         lambda s, g: math.atan2(*_deltas(s, g)[::-1]) - math.sin(s.yaw / 2.0),
     ),
     (
-        "The heading is taken in the world or map frame; goals are in odom",
+        f"The heading is taken {WORLD}",
         lambda s, g: math.atan2(g.y - s.world_y, g.x - s.world_x) - s.world_yaw,
     ),
     (
-        "angle_error is the goal's direction from odom's origin: the robot's position is left out",
+        f"angle_error is the goal's direction from odom's origin: {POSITION_UNUSED}",
         lambda s, g: math.atan2(g.y, g.x) - s.yaw,
     ),
     ("angle_error has no sign: left and right can't be distinguished", lambda s, g: abs(errors_at(s, g)[1])),
@@ -181,7 +214,18 @@ def _failed(wrong: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypot
     values = [getattr(pair.feedback, name) for pair in wrong]
     truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
     cause = _likely_cause(name, wrong, values, causes, otherwise)
-    return Failed(f"{truth:.2f} {unit}", f"{name} {values[0]:.2f}", wrong[0].feedback.time, cause)
+    of_position = cause.startswith(RELATIVE) or cause.endswith((POSITION_UNUSED, WORLD))
+    follows = (Earlier("feedback_position"),) if of_position else ()
+    return Failed(f"{truth:.2f} {unit}", f"{name} {values[0]:.2f}", wrong[0].feedback.time, cause, follows)
+
+
+def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis]) -> Iterator[Tuple[str, List[float]]]:
+    """For each cause the values that it would lead to."""
+    index = ("position_error", "angle_error").index(name)
+    for cause, predict in causes:
+        yield cause, [predict(pair.samples[-1], pair.goal) for pair in pairs]
+    for cause, misread in MISREAD:
+        yield cause, [errors_at(pair.samples[-1], misread(pair))[index] for pair in pairs]
 
 
 def _likely_cause(
@@ -192,8 +236,8 @@ def _likely_cause(
         return f"Some values of {name} are not finite"
     scale = 1.0 if max(abs(value) for value in values) < 7.0 else 10.0  # degrees and squares vary more
     best, least = otherwise, 0.25
-    for cause, predict in causes:
-        misses = [value - predict(pair.samples[-1], pair.goal) for value, pair in zip(values, wrong)]
+    for cause, predicted in _predictions(name, wrong, causes):
+        misses = [value - prediction for value, prediction in zip(values, predicted)]
         errors = sorted(
             abs(wrapped(miss) if name == "angle_error" and abs(value) < 4.0 else miss)
             for value, miss in zip(values, misses)

@@ -7,14 +7,16 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..limits import Limits
 from ..record import SUCCEEDED, Command, Goal, Record, errors_at, results_of, samples_between, wrapped
-from .endings import success_too_far, wrong_ending
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .consequences import WRONG_ERRORS, acted_on, silent
+from .endings import NO_RESULT, success_too_far, wrong_ending
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
 MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
+TURN = f"{HEADING_TOLERANCE:g} rad"
 
 
 class Situation(NamedTuple):
@@ -63,6 +65,8 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
         if problem is None and len(situations) >= ENOUGH:
             judged = True
             problem = _wrong_turn(situations, limits)
+            if problem is not None and acted_on(record, goal):
+                problem = replace(problem, follows=WRONG_ERRORS)
         if problem is not None:
             return problem
     return Passed() if judged else NotReached("no command was given while angle_error was large")
@@ -72,8 +76,10 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits) -> Optional[Fai
     driving = [it for it in situations if abs(it.command.v) > limits.driving]
     if len(driving) > MOST_WRONG * len(situations):
         command, angle = driving[0]
-        wanted = f"linear.x 0 while angle_error is beyond {HEADING_TOLERANCE:g} rad"
+        wanted = f"linear.x 0 while angle_error is beyond {TURN}"
         cause = "The robot drives while it turns; the handout wants one or the other"
+        if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
+            cause = f"The robot drives straight at {angle:.2f} rad: the threshold of angle_error is not {TURN}"
         return Failed(wanted, f"linear.x {command.v:.2f} at {angle:.2f} rad", command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]
     if len(still) > 0.5 * len(situations):
@@ -103,7 +109,10 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
-        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
+        follows = WRONG_ERRORS if acted_on(record, goal) else ()
+        if silent(record, goal):
+            follows = (Earlier("reaches_goal", NO_RESULT),)
+        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, follows)
     return None
 
 
@@ -121,7 +130,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         judged = True
         problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
         if problem is not None:
-            return problem
+            return replace(problem, follows=WRONG_ERRORS) if acted_on(record, goal) else problem
     return Passed() if judged else NotReached("the robot never headed for the goal")
 
 
@@ -135,7 +144,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
             standing,
             aligned,
             "0",
-            f"The robot heads for the goal but does not drive: linear.x stayed 0 within {HEADING_TOLERANCE:g} rad",
+            f"The robot heads for the goal but does not drive: linear.x stayed 0 within {TURN}",
         ),
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
