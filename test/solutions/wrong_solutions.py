@@ -194,6 +194,23 @@ WRONG = (
         "reached_at_half_a_metre", "reaches_goal", "threshold", ("if position_error < 0.1:", "if position_error < 0.5:")
     ),
     _server(
+        "reached_too_late",
+        "reaches_goal",
+        "the threshold is another one",
+        ("position_error < 0.1:", "position_error < 0.05:"),
+    ),
+    _server(
+        "wrapped_too_far",
+        "feedback_angle",
+        "angle_error",
+        (
+            ERROR,
+            "angle_error = math.atan2(dy, dx) - yaw\n"
+            "            angle_error -= 2 * math.pi if angle_error > math.pi else 0.0\n"
+            "            angle_error += 3 * math.pi if angle_error < -math.pi else 0.0",
+        ),
+    ),
+    _server(
         "never_reaches",
         "reaches_goal",
         "made no progress",

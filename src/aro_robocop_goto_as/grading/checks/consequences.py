@@ -26,7 +26,12 @@ def stopped_by(record: Record, goal: Goal) -> Tuple[Earlier, ...]:
     if silent(record, goal):
         return died
     motion = Earlier("turns_to_goal"), Earlier("drives_straight"), Earlier("reaches_goal", "no result")
-    return (*died, *(WRONG_ERRORS if acted_on(record, goal) else ()), *motion)
+    return (*died, *misled(record, goal), *motion)
+
+
+def misled(record: Record, goal: Goal) -> Tuple[Earlier, ...]:
+    """The failures of the feedback, if the robot did what its feedback called for."""
+    return WRONG_ERRORS if acted_on(record, goal) else ()
 
 
 def acted_on(record: Record, goal: Goal) -> bool:

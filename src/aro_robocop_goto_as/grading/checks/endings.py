@@ -2,6 +2,7 @@
 
 import os
 import re
+from dataclasses import replace
 from typing import Optional, Sequence
 
 from ..handout import GOAL_RADIUS
@@ -18,7 +19,7 @@ from ..record import (
     samples_between,
     status_name,
 )
-from .consequences import EXCEPTION, stopped_by
+from .consequences import EXCEPTION, misled, stopped_by
 from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, sentences
 
 # Parts of the messages that actionlib's SimpleActionServer and rospy log.
@@ -35,6 +36,7 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
 NO_RESULT = "no result"
+SUCCESS = "success"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
 AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
 
@@ -71,13 +73,24 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
+    if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not _stopped(record, result.time, limits):
+        early = success_too_far(record, goal, limits)
+        if early is not None:
+            return replace(
+                early, expected=status_name(wanted), follows=(*early.follows, Earlier("reaches_goal", SUCCESS))
+            )
     cause = _wrong_state(record, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
         cause = _unnoticed(record)
     state = status_name(result.status)
     seen = state + (f": {result.message}" if result.message else "")
-    follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else (Earlier("reaches_goal", state),)
+    follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else (*misled(record, goal), Earlier("reaches_goal", state))
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), follows)
+
+
+def _stopped(record: Record, end: float, limits: Limits) -> bool:
+    """Whether the goal ended where an obstacle has to end it."""
+    return any(sample.ahead <= limits.abort_farthest for sample in samples_between(record, end - 0.25, end))
 
 
 def _unnoticed(record: Record) -> str:
@@ -139,7 +152,7 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
         cause += ", or what an earlier goal has changed is not reset when a goal begins"
     own = [message.position_error for message in record.feedback if message.id == goal.id][-1:]
     follows = (Earlier("feedback_position"),) if own and own[0] <= limits.reached else ()
-    return Failed(f"success within {GOAL_RADIUS:g} m", f"success {nearest:.2f} m away", result.time, cause, follows)
+    return Failed(f"success within {GOAL_RADIUS:g} m", f"{SUCCESS} {nearest:.2f} m away", result.time, cause, follows)
 
 
 @check("states")
@@ -164,6 +177,9 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         if not result.message:
             cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
+    if not result.message and logged(record, EXCEPTION_LOGGED):
+        cause = "The goal's callback raised an exception: " + last_error(record)
+        return Failed("a message", "an empty message", result.time, cause, EXCEPTION)
     if not result.message and logged(record, NO_STATE_LOGGED):
         return Failed("a message", "an empty message", result.time, NO_STATE, (Earlier("one_ending"),))
     if not result.message:

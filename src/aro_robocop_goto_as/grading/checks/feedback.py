@@ -13,6 +13,7 @@ from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
+LONGEST_WRONG = 0.4  # [s] messages that are wrong one after the other for so long are no transition
 EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
 
@@ -65,9 +66,17 @@ def _pairs(record: Record) -> List[Pair]:
 
 
 def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
-    """The pairs whose error exceeds a tolerance, if there are more than a few of them."""
-    wrong = [pair for pair in pairs if error(pair) > tolerance]
-    return wrong if len(wrong) > MOST_WRONG * len(pairs) else []
+    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
+    wrong: List[Pair] = []
+    longest, row = 0.0, math.inf  # [s] how long a row of wrong messages was, when the present one began
+    for pair in pairs:
+        if error(pair) > tolerance:
+            wrong.append(pair)
+            row = min(row, pair.feedback.time)
+            longest = max(longest, pair.feedback.time - row)
+        else:
+            row = math.inf
+    return wrong if len(wrong) > MOST_WRONG * len(pairs) or longest >= LONGEST_WRONG else []
 
 
 def _position_deviation(pair: Pair) -> float:

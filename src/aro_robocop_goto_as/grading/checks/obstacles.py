@@ -38,7 +38,10 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         cause = f"The threshold is not {STOP_DISTANCE:g} m, or beams that are not ahead count"
         return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause)
     if clearances and clearances[-1] < limits.abort_nearest:
-        cause = f"The threshold is not {STOP_DISTANCE:g} m, or the scan is evaluated too rarely"
+        cause = (
+            f"The threshold is not {STOP_DISTANCE:g} m, the scan is evaluated too rarely, or the beams that count are "
+            "not those ahead"
+        )
         cause = narrow_obstacle(record) or cause
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     return None
