@@ -55,6 +55,11 @@ class Mistake:
     points: float
     followers: int
 
+    @property
+    def sentence(self) -> str:
+        """What the mistake is."""
+        return "" if self.check.failure is None else sentences(self.check.failure.cause)
+
 
 @dataclass(frozen=True)
 class Grade:
