@@ -267,7 +267,7 @@ WRONG = (
     _server(
         "looks_left",
         "stops_at_obstacle",
-        "that of the beams ahead",
+        "not those ahead",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[60:120]"),
     ),
     _server(

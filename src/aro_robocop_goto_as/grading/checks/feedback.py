@@ -13,7 +13,7 @@ from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
-LONGEST_WRONG = 0.4  # [s] messages that are wrong one after the other for so long are no transition
+LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
 EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
 
