@@ -331,6 +331,12 @@ WRONG = (
         ),
     ),
     _server(
+        "success_when_preempted",
+        "cancel",
+        "result.success is true",
+        ("GoToPositionResult(False, 'preempted')", "GoToPositionResult(True, 'preempted')"),
+    ),
+    _server(
         "newer_goal_ignored",
         "newer_goal",
         "newer goal is not noticed",

@@ -11,7 +11,7 @@ from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, senten
 
 @check("states")
 def cancel(record: Record, limits: Limits) -> Verdict:
-    """A cancelled goal ends as PREEMPTED without delay."""
+    """A cancelled goal ends as PREEMPTED without delay, and without success."""
     if not record.cancels:
         return NotReached("the goal ended before it could be cancelled")
     request = record.cancels[0]
@@ -43,6 +43,9 @@ def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, req
             follows = (Earlier("reaches_goal", NO_RESULT),)
         return Failed(wanted, seen, requested, f"The {request} is not noticed: {hint}", follows)
     if results[0].status in (PREEMPTED, RECALLED):
+        if results[0].success:
+            cause = "result.success is true although the goal was not reached"
+            return Failed("success False", "success True", results[0].time, cause)
         return Passed()
     return wrong_ending(record, goal, PREEMPTED, limits) or Passed()
 
