@@ -20,9 +20,20 @@ def silent(record: Record, goal: Goal) -> bool:
     return goal.id not in told and not any(command.time >= goal.time for command in record.commands)
 
 
+def silenced_by(record: Record, goal: Goal) -> Tuple[Earlier, ...]:
+    """The failures that are the reason if nothing came from the server; nothing if something did."""
+    if not silent(record, goal):
+        return ()
+    return (*_death(record), Earlier("reaches_goal", "no result"))
+
+
+def _death(record: Record) -> Tuple[Earlier, ...]:
+    return (Earlier("stays_alive"),) if record.deaths else ()
+
+
 def stopped_by(record: Record, goal: Goal) -> Tuple[Earlier, ...]:
     """The failures that may be the reason why a goal did not end."""
-    died = (Earlier("stays_alive"),) if record.deaths else ()
+    died = _death(record)
     if silent(record, goal):
         return died
     motion = Earlier("turns_to_goal"), Earlier("drives_straight"), Earlier("reaches_goal", "no result")

@@ -7,7 +7,7 @@ from typing import Callable, Iterator, List, NamedTuple, Sequence, Tuple
 from ...geometry import Pose2D, compose
 from ..limits import Limits
 from ..record import Feedback, Goal, Record, Sample, errors_at, results_of, samples_between, wrapped
-from .consequences import silent
+from .consequences import silenced_by
 from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
@@ -39,9 +39,8 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         else:
             cause = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
         wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
-        follows = (Earlier("reaches_goal", "no result"),) if silent(record, goal) else ()
         seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
-        return Failed(wanted, seen, goal.time, cause, follows)
+        return Failed(wanted, seen, goal.time, cause, silenced_by(record, goal))
     return Passed() if judged else NotReached("no goal was active for a second")
 
 

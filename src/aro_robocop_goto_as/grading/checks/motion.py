@@ -7,8 +7,8 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..limits import Limits
 from ..record import SUCCEEDED, Command, Goal, Record, errors_at, results_of, samples_between, wrapped
-from .consequences import misled, silent
-from .endings import NO_RESULT, success_too_far, wrong_ending
+from .consequences import misled, silenced_by
+from .endings import success_too_far, wrong_ending
 from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
@@ -110,9 +110,7 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
-        follows = misled(record, goal)
-        if silent(record, goal):
-            follows = (Earlier("reaches_goal", NO_RESULT),)
+        follows = silenced_by(record, goal) or misled(record, goal)
         return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, follows)
     return None
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from ..limits import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, status_name
-from .consequences import EXCEPTION, silent
-from .endings import EXCEPTION_LOGGED, NO_RESULT, logged, success_too_far, wrong_ending
+from .consequences import EXCEPTION, silenced_by
+from .endings import EXCEPTION_LOGGED, logged, success_too_far, wrong_ending
 from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, sentences
 
 
@@ -38,9 +38,9 @@ def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, req
     if not results or results[0].time > requested + limits.preempt_within:
         seen = f"a result {results[0].time - requested:.1f} s later" if results else "no result"
         wanted = f"PREEMPTED within {limits.preempt_within:g} s of the {request}"
-        follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else (Earlier("cancel"),)
-        if silent(record, goal):
-            follows = (Earlier("reaches_goal", NO_RESULT),)
+        follows = silenced_by(record, goal) or (Earlier("cancel"),)
+        if logged(record, EXCEPTION_LOGGED):
+            follows = EXCEPTION
         return Failed(wanted, seen, requested, f"The {request} is not noticed: {hint}", follows)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
