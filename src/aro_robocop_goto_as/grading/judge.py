@@ -154,7 +154,7 @@ def _with_reasons(results: List[CheckResult]) -> List[CheckResult]:
         if result.failure is not None:
             reason = first[alike(failures[reasons[result.name]].cause)]
             if reason != result.name:
-                cause = f"This follows from another failure: {description(reason)}"
+                cause = f'This follows from another failed check: "{description(reason).rstrip(".")}"'
                 if result.failure.seen == INCOMPLETE:
                     cause = result.failure.cause
                 result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)

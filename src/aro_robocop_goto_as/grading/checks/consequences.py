@@ -33,11 +33,10 @@ def _death(record: Record) -> Tuple[Earlier, ...]:
 
 def stopped_by(record: Record, goal: Goal) -> Tuple[Earlier, ...]:
     """The failures that may be the reason why a goal did not end."""
-    died = _death(record)
     if silent(record, goal):
-        return died
+        return silenced_by(record, goal)
     motion = Earlier("turns_to_goal"), Earlier("drives_straight"), Earlier("reaches_goal", "no result")
-    return (*died, *misled(record, goal), *motion)
+    return (*_death(record), *misled(record, goal), *motion)
 
 
 def misled(record: Record, goal: Goal) -> Tuple[Earlier, ...]:

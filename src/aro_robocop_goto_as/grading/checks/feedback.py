@@ -14,6 +14,7 @@ AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of it
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
 LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
+FITS = 0.25  # [m], [rad] largest median error of a hypothesis
 EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
 
@@ -104,7 +105,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
         return NotReached("there was no feedback")
     wrong = _wrong(pairs, _position_deviation, limits.position_tolerance)
     otherwise = "position_error is not the distance from the position in /odom to the goal"
-    return _failed(wrong, 0, "m", POSITION_CAUSES, otherwise) if wrong else Passed()
+    return _failed(wrong, pairs, 0, "m", POSITION_CAUSES, otherwise) if wrong else Passed()
 
 
 @check("errors")
@@ -125,7 +126,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
         return Failed("an angle within +-3.14 rad", seen, message.time, cause)
     wrong = _wrong(pairs, _angle_deviation, limits.angle_tolerance)
     otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
-    return _failed(wrong, 1, "rad", ANGLE_CAUSES, otherwise) if wrong else Passed()
+    return _failed(wrong, pairs, 1, "rad", ANGLE_CAUSES, otherwise) if wrong else Passed()
 
 
 def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
@@ -216,15 +217,17 @@ ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
 )
 
 
-def _failed(wrong: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str) -> Failed:
-    """The first wrong value with the likely cause of all of them; `index` as in errors_at."""
+def _failed(
+    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str
+) -> Failed:
+    """The first wrong value with the likely cause of all of them, among all pairs; `index` as in errors_at."""
     name = ("position_error", "angle_error")[index]
-    values = [getattr(pair.feedback, name) for pair in wrong]
+    value = getattr(wrong[0].feedback, name)
     truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
-    cause = _likely_cause(name, wrong, values, causes, otherwise)
+    cause = _likely_cause(name, wrong, pairs, causes, otherwise)
     of_position = cause.startswith(RELATIVE) or cause.endswith((POSITION_UNUSED, WORLD))
     follows = (Earlier("feedback_position"),) if of_position else ()
-    return Failed(f"{truth:.2f} {unit}", f"{name} {values[0]:.2f}", wrong[0].feedback.time, cause, follows)
+    return Failed(f"{truth:.2f} {unit}", f"{name} {value:.2f}", wrong[0].feedback.time, cause, follows)
 
 
 def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis]) -> Iterator[Tuple[str, List[float]]]:
@@ -237,22 +240,30 @@ def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis])
 
 
 def _likely_cause(
-    name: str, wrong: Sequence[Pair], values: Sequence[float], causes: Sequence[Hypothesis], otherwise: str
+    name: str, wrong: Sequence[Pair], pairs: Sequence[Pair], causes: Sequence[Hypothesis], otherwise: str
 ) -> str:
-    """The hypothesis that fits the values best, if one fits."""
+    """The hypothesis that fits the wrong values best, if one fits these and all values.
+
+    A few wrong values fit many hypotheses, which the right ones then contradict.
+    """
+    values = [getattr(pair.feedback, name) for pair in wrong]
     if not all(map(math.isfinite, values)):
         return f"Some values of {name} are not finite"
-    scale = 1.0 if max(abs(value) for value in values) < 7.0 else 10.0  # degrees and squares vary more
-    best, least = otherwise, 0.25
-    for cause, predicted in _predictions(name, wrong, causes):
-        misses = [value - prediction for value, prediction in zip(values, predicted)]
-        errors = sorted(
-            abs(wrapped(miss) if name == "angle_error" and abs(value) < 4.0 else miss)
-            for value, miss in zip(values, misses)
-        )
-        median = errors[len(errors) // 2] / scale
-        if median < least:
-            best, least = cause, median
+    best, least = otherwise, FITS
+    for (cause, of_wrong), (_, of_all) in zip(_predictions(name, wrong, causes), _predictions(name, pairs, causes)):
+        miss = _miss(name, wrong, of_wrong)
+        if miss < least and _miss(name, pairs, of_all) < FITS:
+            best, least = cause, miss
     if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
         return f"{name} is always {values[0]:.2f}: recalculate it in each iteration from the newest pose"
     return best
+
+
+def _miss(name: str, pairs: Sequence[Pair], predicted: Sequence[float]) -> float:
+    """The median difference between values and predictions; degrees and squares, which vary more, are scaled."""
+    values = [getattr(pair.feedback, name) for pair in pairs]
+    misses = sorted(
+        abs(wrapped(value - prediction) if name == "angle_error" and abs(value) < 4.0 else value - prediction)
+        for value, prediction in zip(values, predicted)
+    )
+    return misses[len(misses) // 2] / (1.0 if max(map(abs, values)) < 7.0 else 10.0)
