@@ -215,7 +215,9 @@ def mutate() -> None:
     parser.add_argument("--sample", type=int, metavar="N", help="mutants of each solution, drawn once (default: all)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--log", type=Path, required=True)
-    parser.add_argument("--kept", action="store_true", help="grade those again that keep full marks by the log")
+    parser.add_argument(
+        "--kept", action="store_true", help="grade those again that keep full marks according to the log"
+    )
     args = parser.parse_args()
     chosen: List[Mutant] = []
     for name in args.names:

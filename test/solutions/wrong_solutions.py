@@ -200,6 +200,15 @@ WRONG = (
         ("position_error < 0.1:", "position_error < 0.05:"),
     ),
     _server(
+        "wrapped_on_one_side",
+        "feedback_angle",
+        "not wrapped: 3.",
+        (
+            ERROR,
+            "angle_error = math.atan2(dy, dx) - yaw\n            angle_error += (angle_error < -math.pi) * 2 * math.pi",
+        ),
+    ),
+    _server(
         "wrapped_too_far",
         "feedback_angle",
         "angle_error",
