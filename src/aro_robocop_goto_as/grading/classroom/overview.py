@@ -3,8 +3,6 @@
 import collections
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Sequence, Tuple
 
-from markupsafe import Markup
-
 from ..html import render
 from ..judge import alike
 from ..plan import PARTS, Plan
@@ -30,7 +28,7 @@ def page(title: str, results: Sequence[Result], plan: Plan, waiting: Mapping[str
         refresh=round(REFRESH + REFRESH_EACH * len(results)),
         shown=SHOWN,
         symbols=SYMBOLS,
-        cells={outcome: Markup(f"<td class={outcome.split()[0]}>{symbol}") for outcome, symbol in SYMBOLS.items()},
+        cells={outcome: f"<td class={outcome.split()[0]}>{symbol}" for outcome, symbol in SYMBOLS.items()},
         checks=list(_checks(results, plan)),
     )
 
