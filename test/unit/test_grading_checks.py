@@ -237,6 +237,15 @@ def _failures(record: Record) -> Dict[str, str]:
     return {check.name: check.follows for check in grade.checks if check.failure is not None}
 
 
+def test_node_that_ends_while_starting_has_made_one_mistake_and_the_other_part_has_its_own() -> None:
+    lines = rec.Line(0.1, "Traceback (most recent call last):"), rec.Line(0.1, "NameError: name 'x' is not defined")
+    dead = Record("start", "server", up=False, lines=lines, deaths=(rec.Death(0.2, 1),))
+    bridge = replace(dead, name="no_server", part="bridge")
+    records = {"server": {"start": dead}, "bridge": {"no_server": bridge}}
+    names = [mistake.check.name for mistake in judge("anna", load(PLAN), records, {}).mistakes]
+    assert sorted(names) == ["action_server", "waits_for_server"]
+
+
 def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_cost() -> None:
     wrong = replace(_fed_back(angle=lambda a: -a), commands=_commanded(lambda c: replace(c, w=-c.w)).commands)
     wrong = replace(wrong, samples=tuple(replace(sample, v=0.2) for sample in wrong.samples))

@@ -119,7 +119,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         for check in plan.checks
         if check.part in records
     ]
-    checks = _with_reasons(checks)
+    checks = [result for part in records for result in _with_reasons([it for it in checks if it.part == part])]
     found = [f"{part}: {text}" for part, text in problems.items() if text]
     if any(check.outcome is not Outcome.PASSED for check in checks):
         found += [f"{part}: {text}" for part, by_name in records.items() for text in _unpublished(by_name)]
@@ -142,7 +142,7 @@ def alike(text: str) -> str:
 
 
 def _with_reasons(results: List[CheckResult]) -> List[CheckResult]:
-    """The results; a failure that follows from another one, or has the same cause as an earlier one, refers to that."""
+    """One part's results: a failure that follows from another one, or has an earlier one's cause, refers to that."""
     failures = {result.name: result.failure for result in results if result.failure is not None}
     reasons = {name: _reason(name, failures) for name in failures}
     first: Dict[str, str] = {}  # by cause
