@@ -134,6 +134,6 @@ def _failed(
     value = getattr(wrong[0].feedback, name)
     truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
     cause = likely_cause(name, wrong, pairs, causes, otherwise)
-    of_position = cause.startswith(RELATIVE) or cause.endswith((POSITION_UNUSED, WORLD))
+    of_position = cause.endswith((RELATIVE, POSITION_UNUSED, WORLD))
     follows = (Earlier("feedback_position"),) if of_position else ()
     return Failed(f"{truth:.2f} {unit}", f"{name} {value:.2f}", wrong[0].feedback.time, cause, follows)

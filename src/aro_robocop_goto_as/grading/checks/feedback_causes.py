@@ -35,19 +35,8 @@ def _offset_by_start(pair: Pair) -> Goal:
     return replace(pair.goal, x=pair.start.x + pair.goal.x, y=pair.start.y + pair.goal.y)
 
 
-def _relative_to(pair: Pair) -> Goal:
-    """The goal, if it is understood as a position in the robot's present frame."""
-    at = pair.samples[-1]
-    there = compose(Pose2D(at.x, at.y, at.yaw), Pose2D(pair.goal.x, pair.goal.y))
-    return replace(pair.goal, x=there.x, y=there.y)
-
-
-RELATIVE = "The goal is taken relative to the robot, where it is"
-MISREAD: Tuple[Tuple[str, Callable[[Pair], Goal]], ...] = (
-    (f"{RELATIVE} when the goal comes; goals are in odom", _from_start),
-    (f"{RELATIVE} when the goal comes; goals are in odom", _offset_by_start),
-    (f"{RELATIVE} at the moment; goals are in odom", _relative_to),
-)
+RELATIVE = "The goal is taken relative to the robot, where it is when the goal comes; goals are in odom"
+MISREAD: Tuple[Callable[[Pair], Goal], ...] = (_from_start, _offset_by_start)
 POSITION_UNUSED = "the robot's position is left out, or read only at the start"
 WORLD = "in the world or map frame; goals are in odom"
 Hypothesis = Tuple[str, Callable[[Sample, Goal], float]]
@@ -113,8 +102,8 @@ def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis])
     index = ("position_error", "angle_error").index(name)
     for cause, predict in causes:
         yield cause, [predict(pair.samples[-1], pair.goal) for pair in pairs]
-    for cause, misread in MISREAD:
-        yield cause, [errors_at(pair.samples[-1], misread(pair))[index] for pair in pairs]
+    for misread in MISREAD:
+        yield RELATIVE, [errors_at(pair.samples[-1], misread(pair))[index] for pair in pairs]
 
 
 def likely_cause(
