@@ -460,7 +460,7 @@ WRONG = (
     _bridge(
         "bridge_reports_once",
         "reports_status",
-        "report repeatedly",
+        "report it repeatedly",
         ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
     ),
     _bridge(

@@ -90,7 +90,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     count = len(_reports(record))
     cause = (
         "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report "
-        "it, also when it has not changed"
+        "it repeatedly, also when it has not changed"
     )
     if count:
         cause = (
