@@ -37,7 +37,7 @@ class Check:
     cause: str = ""
 
 
-_passed = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
+_without_cause = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
 
 
 @dataclass(frozen=True)
@@ -111,13 +111,9 @@ class Results:
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
         checks = [
-            (Check if check["failure"] else _passed)(
-                check["name"],
-                check["part"],
-                check["outcome"],
-                check["points"],
-                (check["failure"] or {}).get("cause", ""),
-            )
+            Check(check["name"], check["part"], check["outcome"], check["points"], check["failure"]["cause"])
+            if check["failure"]
+            else _without_cause(check["name"], check["part"], check["outcome"], check["points"])
             for check in raw["checks"]
         ]
         return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
