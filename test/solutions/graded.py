@@ -33,7 +33,12 @@ def sandbox() -> Sandbox:
 
 
 def recorded(
-    text: str, folder: Path, only: Sequence[str] = (), budget: float = runner.BUDGET, seed: int = 0
+    text: str,
+    folder: Path,
+    only: Sequence[str] = (),
+    budget: float = runner.BUDGET,
+    seed: int = 0,
+    on_progress: runner.Progress = lambda _scenario: None,
 ) -> runner.Recorded:
     """A solution driven through the scenarios of its part, or some of them, in the sandbox."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -41,7 +46,7 @@ def recorded(
     opened = sandbox()
     submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
     script, plan = submission.scripts[0], load(PLAN, seed)
-    return runner.run(submission, script, plan, folder / "out", STATE, opened, only, budget=budget)
+    return runner.run(submission, script, plan, folder / "out", STATE, opened, only, on_progress, budget)
 
 
 def graded(name: str, text: str, folder: Path, seed: int = 0) -> Grade:

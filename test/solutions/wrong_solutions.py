@@ -194,6 +194,32 @@ WRONG = (
         "reached_at_half_a_metre", "reaches_goal", "threshold", ("if position_error < 0.1:", "if position_error < 0.5:")
     ),
     _server(
+        "reached_too_late",
+        "reaches_goal",
+        "the threshold is another one",
+        ("position_error < 0.1:", "position_error < 0.05:"),
+    ),
+    _server(
+        "wrapped_on_one_side",
+        "feedback_angle",
+        "not wrapped: 3.",
+        (
+            ERROR,
+            "angle_error = math.atan2(dy, dx) - yaw\n            angle_error += (angle_error < -math.pi) * 2 * math.pi",
+        ),
+    ),
+    _server(
+        "wrapped_too_far",
+        "feedback_angle",
+        "angle_error",
+        (
+            ERROR,
+            "angle_error = math.atan2(dy, dx) - yaw\n"
+            "            angle_error -= 2 * math.pi if angle_error > math.pi else 0.0\n"
+            "            angle_error += 3 * math.pi if angle_error < -math.pi else 0.0",
+        ),
+    ),
+    _server(
         "never_reaches",
         "reaches_goal",
         "made no progress",
@@ -223,6 +249,35 @@ WRONG = (
             "        rate = rospy.Rate(10)\n",
             "        rate = rospy.Rate(10)\n        self.drive(0.2, 0.0)\n        rospy.sleep(1.0)\n",
         ),
+    ),
+    _server(
+        "goal_from_where_the_robot_was",
+        "feedback_position",
+        "relative to the robot, where it is when the goal comes",
+        (
+            "        success = False\n        while",
+            "        success = False\n        x0, y0, yaw0 = self.pose\n        while",
+        ),
+        (
+            "            dx = goal.position.x - x\n            dy = goal.position.y - y\n",
+            "            dx = x0 + math.cos(yaw0) * goal.position.x - math.sin(yaw0) * goal.position.y - x\n"
+            "            dy = y0 + math.sin(yaw0) * goal.position.x + math.cos(yaw0) * goal.position.y - y\n",
+        ),
+    ),
+    _server("turns_too_late", "turns_to_goal", "threshold of angle_error", (CONDITION, "if abs(angle_error) > 0.5:")),
+    _server(
+        "gives_up_early",
+        "far_goal",
+        "timeout of its own",
+        ("        success = False\n        while", "        success, begun = False, rospy.Time.now()\n        while"),
+        (OBSTACLE, "elif self.min_dist_ahead < 0.3 or rospy.Time.now() - begun > rospy.Duration(12):"),
+    ),
+    _server("mean_of_the_sector", "stops_at_obstacle", "the nearest of them", ("valid.min()", "valid.mean()")),
+    _server(
+        "looks_left",
+        "stops_at_obstacle",
+        "not those ahead",
+        ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[60:120]"),
     ),
     _server(
         "one_beam",
@@ -285,6 +340,12 @@ WRONG = (
         ),
     ),
     _server(
+        "success_when_preempted",
+        "cancel",
+        "result.success is true",
+        ("GoToPositionResult(False, 'preempted')", "GoToPositionResult(True, 'preempted')"),
+    ),
+    _server(
         "newer_goal_ignored",
         "newer_goal",
         "newer goal is not noticed",
@@ -339,8 +400,8 @@ WRONG = (
     ),
     _server(
         "crash_on_second_goal",
-        "next_goal",
-        "callback",
+        "no_exception",
+        "assert self.count < 2",
         (
             "        success = False\n        while",
             "        self.count += 1\n        assert self.count < 2\n        success = False\n        while",
@@ -348,8 +409,8 @@ WRONG = (
     ),
     _server(
         "done_never_cleared",
-        "next_goal",
-        "The second goal",
+        "reaches_goal",
+        "not reset when a goal begins",
         ("        success = False\n        while", "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
@@ -399,9 +460,21 @@ WRONG = (
     _bridge(
         "bridge_reports_once",
         "reports_status",
-        "report repeatedly",
+        "report it repeatedly",
         ("rospy.Duration(2), self.report_cb)", "rospy.Duration(2), self.report_cb, oneshot=True)"),
     ),
+    _bridge(
+        "bridge_reports_changes",
+        "reports_status",
+        "only report changes",
+        ("        self.sent = False\n", "        self.sent, self.state = False, None\n"),
+        (
+            "        rospy.loginfo('server",
+            "        if self.state == self.client.get_state():\n            return\n"
+            "        self.state = self.client.get_state()\n        rospy.loginfo('server",
+        ),
+    ),
+    _bridge("bridge_logs_debug", "reports_status", "Nothing is logged", ("rospy.loginfo(", "rospy.logdebug(")),
     _bridge(
         "bridge_publishes_figures",
         "reports_status",
@@ -440,7 +513,7 @@ WRONG = (
     ),
     _bridge(
         "bridge_gives_up",
-        "waits_for_server",
+        "forwards_goal",
         "without a timeout",
         ("self.client.wait_for_server()", "self.up = self.client.wait_for_server(rospy.Duration(1))"),
         ("        self.client.send_goal(goal)\n", "        if self.up:\n            self.client.send_goal(goal)\n"),

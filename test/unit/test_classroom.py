@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.grading.classroom import overview, worker
-from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, unpack
+from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, pack, unpack
 from aro_robocop_goto_as.grading.classroom.main import class_seed
 from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results, table
 from aro_robocop_goto_as.grading.classroom.worker import Done
@@ -42,9 +42,12 @@ def folder(tmp_path):
 
 
 def only(folder):
-    """The only hand-in of a folder."""
+    """The only hand-in of a folder, packed."""
     (hand_in,), _ = collect(folder)
-    return hand_in
+    assert not hand_in.packed, "those of a large class don't fit into memory"
+    packed = pack(hand_in.path)
+    assert (packed.digest, packed.problem) == (hand_in.digest, hand_in.problem)
+    return packed
 
 
 def test_folders_and_python_files_are_hand_ins_and_are_unpacked_unchanged(folder, tmp_path):
@@ -52,7 +55,7 @@ def test_folders_and_python_files_are_hand_ins_and_are_unpacked_unchanged(folder
     assert [hand_in.name for hand_in in hand_ins] == ["anna", "ben.py"]
     assert others == ["link.py", "list.csv"]
     assert [hand_in.problem for hand_in in hand_ins] == ["", ""]
-    anna, ben = (unpack(hand_in, tmp_path / "out") for hand_in in hand_ins)
+    anna, ben = (unpack(pack(hand_in.path), tmp_path / "out") for hand_in in hand_ins)
     assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
     assert not (anna / "build").exists()
     assert ben.read_text() == "two"
@@ -273,7 +276,7 @@ def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, mo
     monkeypatch.setattr(worker, "_scratch", lambda: None)
     monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
     monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
-    anna, _ = collect(folder)[0]
+    anna = pack(folder / "anna")
     done = worker.work(worker.Task(anna, PLAN.path.read_text(), 0))
     report = json.loads(done.files["report.json"])
     assert report["checks"] == [] and type(error).__name__ in report["problems"][0]

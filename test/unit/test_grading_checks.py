@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, List, Tuple, cast
+from typing import Any, Dict, List, Tuple, cast
 
 import pytest
 from support import ROOT
@@ -119,8 +119,14 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("feedback_position", _fed_back(position=lambda _: math.nan), "not finite"),
     ("feedback_angle", _fed_back(angle=lambda a: a - 2.0 * math.pi), "not wrapped: -5.5 rad"),
     ("feedback_angle", _fed_back(angle=math.degrees), "degrees"),
+    ("feedback_angle", _fed_back(angle=lambda a: a + 1.0 if 0.5 < a < 0.65 else a), "angle_error is not the goal's"),
     ("feedback_angle", _fed_back(angle=lambda a: -a), "sign of angle_error is wrong"),
     ("turns_to_goal", _commanded(lambda c: replace(c, v=0.1)), "drives while it turns"),
+    (
+        "turns_to_goal",
+        _commanded(lambda c: replace(c, v=0.1, w=c.w if c.time < 0.4 else 0.0)),
+        "the threshold of angle_error is not 0.1 rad",
+    ),
     ("turns_to_goal", _commanded(lambda c: replace(c, w=-c.w)), "turns away"),
     ("turns_to_goal", _commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 rad but angular.z stayed 0"),
     ("turns_to_goal", _changed(commands=()), "nothing was published on /cmd_vel"),
@@ -128,6 +134,7 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("drives_straight", _commanded(lambda c: replace(c, v=0.0)), "does not drive"),
     ("drives_straight", _commanded(lambda c: replace(c, w=0.5)), "keeps turning"),
     ("reaches_goal", _changed(results=()), "no terminal state"),
+    ("reaches_goal", _fed_back(position=lambda d: d - 0.1), "the threshold is another one"),
     ("reaches_goal", _changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
     ("reaches_goal", _changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
     ("success_result", _changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "result is missing"),
@@ -189,7 +196,8 @@ def test_error_is_named_with_its_file_and_line() -> None:
     verdict = CHECKS["stays_alive"](record, LIMITS)
     assert isinstance(verdict, Failed)
     assert verdict.cause == (
-        "The node died: TypeError: cannot unpack non-iterable NoneType object (robocop_goto_as.py, line 34)"
+        "The node died: TypeError: cannot unpack non-iterable NoneType object "
+        "(robocop_goto_as.py, line 34: x, y = self.pose)"
     )
 
 
@@ -206,7 +214,7 @@ def test_exception_in_a_library_is_given_the_place_in_the_node() -> None:
     record = _changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
     verdict = CHECKS["stays_alive"](record, LIMITS)
     assert isinstance(verdict, Failed)
-    assert verdict.cause.endswith("norm. (robocop_goto_as.py, line 51)")
+    assert verdict.cause.endswith("norm. (robocop_goto_as.py, line 51: position_error = np.linalg.norm(dx, dy))")
 
 
 def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
@@ -214,17 +222,19 @@ def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
     records = {"server": {"left": stuck, "odd_scan": replace(stuck, name="odd_scan")}}
     checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
     odd = checks["odd_scans"].failure
-    assert odd is not None and odd.cause.startswith("This follows from a failure above") and "NaN" not in odd.cause
+    assert odd is not None and odd.cause.startswith("This follows from another failed check") and "NaN" not in odd.cause
 
 
 def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
     lines = ("bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'")
     click = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4)
     record = _changed(goals=(), clicks=(click,), lines=tuple(rec.Line(2.0, line) for line in lines))
-    for name in ("forwards_goal", "waits_for_server"):
-        verdict = CHECKS[name](record, LIMITS)
-        assert isinstance(verdict, Failed) and "AttributeError: no attribute 'x'" in verdict.cause
-        assert "wait_for_server" not in verdict.cause
+    record = replace(record, name="click", part="bridge")
+    checks = {check.name: check for check in judge("anna", load(PLAN), {"bridge": {"click": record}}, {}).checks}
+    crash = checks["bridge_alive"].failure
+    assert crash is not None and "AttributeError: no attribute 'x'" in crash.cause
+    assert checks["forwards_goal"].follows == "bridge_alive"
+    assert "wait_for_server" not in checks["waits_for_server"].explanation()
 
 
 def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
@@ -234,10 +244,50 @@ def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
     checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
     first, odd = checks["stops_at_obstacle"].failure, checks["odd_scans"].failure
     assert first is not None and odd is not None
-    assert odd.cause.startswith("This follows from a failure above") and "NaN" not in odd.cause
+    assert odd.cause.startswith('This follows from another failed check: "An obstacle closer than')
+    assert "NaN" not in odd.cause
+    assert checks["odd_scans"].follows == "stops_at_obstacle"
     alone = judge("anna", load(PLAN), {"server": {"odd_scan_wall": hit}}, {})
     cause = next(check.failure for check in alone.checks if check.name == "odd_scans")
     assert cause is not None and "NaN hides the wall" in cause.cause
+
+
+def test_what_a_wrong_error_leads_to_follows_from_it_and_another_mistake_does_not() -> None:
+    early = (rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)
+    misled = replace(_fed_back(position=lambda d: d / 20.0), results=early)
+    still_driving = {"stands_at_end": ""}
+    assert _failures(misled) == {"feedback_position": "", "reaches_goal": "feedback_position", **still_driving}
+    unrelated = replace(_fed_back(position=lambda _: 1.0), results=early)  # its feedback did not say that it was there
+    assert _failures(unrelated) == {"feedback_position": "", "reaches_goal": "", **still_driving}
+
+
+def test_robot_that_acts_on_its_wrong_angle_turns_wrongly_because_of_that() -> None:
+    wrong = replace(_fed_back(angle=lambda a: -a), commands=_commanded(lambda c: replace(c, w=-c.w)).commands)
+    assert _failures(wrong) == {"feedback_angle": "", "turns_to_goal": "feedback_angle"}
+    assert _failures(_commanded(lambda c: replace(c, w=-c.w))) == {"turns_to_goal": ""}
+
+
+def _failures(record: Record) -> Dict[str, str]:
+    """The failed checks of a scenario, and what each follows from."""
+    grade = judge("anna", load(PLAN), {"server": {record.name: record}}, {})
+    return {check.name: check.follows for check in grade.checks if check.failure is not None}
+
+
+def test_node_that_ends_while_starting_has_made_one_mistake_and_the_other_part_has_its_own() -> None:
+    lines = rec.Line(0.1, "Traceback (most recent call last):"), rec.Line(0.1, "NameError: name 'x' is not defined")
+    dead = Record("start", "server", up=False, lines=lines, deaths=(rec.Death(0.2, 1),))
+    bridge = replace(dead, name="no_server", part="bridge")
+    records = {"server": {"start": dead}, "bridge": {"no_server": bridge}}
+    names = [mistake.check.name for mistake in judge("anna", load(PLAN), records, {}).mistakes]
+    assert sorted(names) == ["action_server", "waits_for_server"]
+
+
+def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_cost() -> None:
+    wrong = replace(_fed_back(angle=lambda a: -a), commands=_commanded(lambda c: replace(c, w=-c.w)).commands)
+    wrong = replace(wrong, samples=tuple(replace(sample, v=0.2) for sample in wrong.samples))
+    mistakes = judge("anna", load(PLAN), {"server": {"left": wrong}}, {}).mistakes
+    found = [(mistake.check.name, mistake.points, mistake.followers) for mistake in mistakes]
+    assert found == [("feedback_angle", 0.7, 1), ("stands_at_end", 0.15, 0)]
 
 
 def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:

@@ -1,15 +1,16 @@
 """Applies the checks of a plan to records: for each one an outcome, points and a reason."""
 
 import enum
+import re
 from dataclasses import dataclass, replace
-from typing import List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Passed, description, sentences
 from .plan import CheckPlan, Plan
 from .record import Record
 
-# Check -> by the state that its goal should have ended in, the check whose failure explains its own in that case.
-FOLLOWS = {"odd_scans": {"ABORTED": "stops_at_obstacle", "SUCCEEDED": "reaches_goal"}}
+INCOMPLETE = "an incomplete one"
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 class Outcome(enum.Enum):
@@ -34,6 +35,7 @@ class CheckResult:
     scenario: str = ""  # where it failed, or the first one that was examined
     failure: Optional[Failed] = None
     why: str = ""  # reason for NOT_REACHED
+    follows: str = ""  # name of the check whose failure is the reason for this one
 
     def explanation(self) -> str:
         """The outcome with its reason."""
@@ -43,6 +45,20 @@ class CheckResult:
             f"failed: {sentences(self.failure.cause)} Expected {self.failure.expected}, got {self.failure.seen}, "
             f"at {self.failure.time:.1f} s of scenario {self.scenario}"
         )
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A failure that does not follow from another one, the points it costs, and how many failures follow from it."""
+
+    check: CheckResult
+    points: float
+    followers: int
+
+    @property
+    def sentence(self) -> str:
+        """What the mistake is."""
+        return "" if self.check.failure is None else sentences(self.check.failure.cause)
 
 
 @dataclass(frozen=True)
@@ -67,6 +83,16 @@ class Grade:
     def all_right(self) -> bool:
         """Whether every check that is not extra passed."""
         return all(check.outcome is Outcome.PASSED for check in self.checks if not check.extra)
+
+    @property
+    def mistakes(self) -> List[Mistake]:
+        """The mistakes, the most expensive one first."""
+        found = []
+        for check in self.checks:
+            if check.outcome is Outcome.FAILED and not check.follows:
+                lost = [other.points_available for other in self.checks if other.follows == check.name]
+                found.append(Mistake(check, round(check.points_available + sum(lost), 6), len(lost)))
+        return sorted(found, key=lambda mistake: -mistake.points)
 
     def failed(self) -> List[str]:
         """Names of the failed checks."""
@@ -93,7 +119,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         for check in plan.checks
         if check.part in records
     ]
-    checks = [_following(check, checks, records) for check in checks]
+    checks = [result for part in records for result in _with_reasons([it for it in checks if it.part == part])]
     found = [f"{part}: {text}" for part, text in problems.items() if text]
     if any(check.outcome is not Outcome.PASSED for check in checks):
         found += [f"{part}: {text}" for part, by_name in records.items() for text in _unpublished(by_name)]
@@ -110,22 +136,43 @@ def _unpublished(records: Mapping[str, Record]) -> List[str]:
     ]
 
 
-def _following(result: CheckResult, results: Sequence[CheckResult], records: Records) -> CheckResult:
-    """The result of a check, which refers to an earlier check's failure if its own failure follows from that."""
-    if result.failure is None or result.name not in FOLLOWS:
-        return result
-    record = records[result.part].get(result.scenario)
-    earlier = {FOLLOWS[result.name].get(goal.ends, "") for goal in record.goals} if record is not None else set()
-    for first in results:
-        if first.name in earlier and first.failure is not None and not _another_ending(first.failure, result.failure):
-            cause = f"This follows from a failure above ({first.sentence.rstrip('.')}): {first.failure.cause}"
-            return replace(result, failure=replace(result.failure, cause=cause))
-    return result
+def alike(text: str) -> str:
+    """The text without its figures: causes that differ only in them are the same."""
+    return NUMBER.sub("#", text)
 
 
-def _another_ending(first: Failed, failure: Failed) -> bool:
-    """Whether a goal that had to succeed failed in another way than the first one, which then explains nothing."""
-    return "SUCCEEDED" in failure.expected and failure.seen != first.seen
+def _with_reasons(results: List[CheckResult]) -> List[CheckResult]:
+    """One part's results: a failure that follows from another one, or has an earlier one's cause, refers to that."""
+    failures = {result.name: result.failure for result in results if result.failure is not None}
+    reasons = {name: _reason(name, failures) for name in failures}
+    first: Dict[str, str] = {}  # by cause
+    for name, failure in failures.items():
+        if reasons[name] == name:
+            first.setdefault(alike(failure.cause), name)
+    explained = []
+    for result in results:
+        if result.failure is not None:
+            reason = first[alike(failures[reasons[result.name]].cause)]
+            if reason != result.name:
+                cause = f'This follows from another failed check: "{description(reason).rstrip(".")}"'
+                if result.failure.seen == INCOMPLETE:
+                    cause = result.failure.cause
+                result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)
+        explained.append(result)
+    return explained
+
+
+def _reason(name: str, failures: Mapping[str, Failed]) -> str:
+    """The check with whose failure it begins."""
+    chain = [name]
+    while True:
+        for earlier in failures[chain[-1]].follows:
+            failure = failures.get(earlier.check)
+            if failure is not None and earlier.check not in chain and failure.seen.startswith(earlier.seen):
+                chain.append(earlier.check)
+                break
+        else:
+            return chain[-1]
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
@@ -134,7 +181,7 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
     for name in check.scenarios:
         if name not in records:
             if problem:
-                failure = Failed("a complete scenario", "an incomplete one", 0.0, problem)
+                failure = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
                 return _result(check, Outcome.FAILED, name, failure)
             why = why or "the server did not start"
             continue

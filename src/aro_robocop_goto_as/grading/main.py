@@ -41,6 +41,7 @@ def as_text(grade: Grade) -> str:
         if result.outcome is not Outcome.PASSED:
             lines.append(f"{'':11}  {result.explanation()}")
     lines += [f"problem: {problem}" for problem in grade.problems]
+    lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
     lines.append(f"{grade.name}: {grade.points:g} of {grade.points_available:g} points")
     return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
 

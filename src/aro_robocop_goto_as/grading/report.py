@@ -4,7 +4,7 @@ import dataclasses
 import json
 import shlex
 from pathlib import Path
-from typing import Any, Dict, Iterator, Sequence
+from typing import Any, Dict, Iterator, List, Sequence
 from xml.etree import ElementTree
 
 from .checks import PLOTS as PLOT_OF
@@ -27,8 +27,24 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
     (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
-    page = render("report.html", grade=grade, seed=plan.seed, scenarios=list(_scenarios(grade, plan, records, folder)))
+    scenarios = list(_scenarios(grade, plan, records, folder))
+    page = render(
+        "report.html",
+        grade=grade,
+        seed=plan.seed,
+        reached=_failures_first(grade),
+        not_reached=[check for check in grade.checks if check.outcome is Outcome.NOT_REACHED],
+        scenarios=sorted(scenarios, key=lambda scenario: not scenario["failed"]),
+        anchors={name: panel["anchor"] for it in scenarios for panel in it["panels"] for name in panel["names"]},
+    )
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
+
+
+def _failures_first(grade: Grade) -> List[CheckResult]:
+    """The checks that were reached: the mistakes, what follows from them, what passed."""
+    mistakes = [mistake.check for mistake in grade.mistakes]
+    following = [check for check in grade.checks if check.outcome is Outcome.FAILED and check.follows]
+    return [*mistakes, *following, *(check for check in grade.checks if check.outcome is Outcome.PASSED)]
 
 
 def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
@@ -71,7 +87,11 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path) -> Iter
     order = [START, *about, *BRIDGE_SCENARIOS]
     for part, by_name in records.items():
         for record in sorted(by_name.values(), key=lambda record: order.index(record.name)):
-            checks = [check for check in grade.checks if check.part == part and check.scenario == record.name]
+            checks = [
+                check
+                for check in grade.checks
+                if (check.part, check.scenario) == (part, record.name) and check.outcome is not Outcome.NOT_REACHED
+            ]
             if part == "server" and not record.goals and not checks:
                 continue
             shown = {PLOT_OF[check.name] for check in checks}
@@ -85,17 +105,25 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path) -> Iter
                 "panels": list(_panels(record, checks)),
                 "plots": rest,
                 "lines": record.lines[:MOST_LINES],
+                "failed": any(check.outcome is Outcome.FAILED for check in checks),
             }
 
 
 def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
-    """Each check that did not pass beside the plot that illustrates it; checks that passed share one panel a plot."""
+    """Each check that failed beside the plot that illustrates it; checks that passed share one panel a plot."""
     shown = set()
     for check in checks:
         plot, passed = PLOT_OF[check.name], check.outcome is Outcome.PASSED
         if passed and plot in shown:
             continue
+        first = plot not in shown
         shown.add(plot)
-        others = [other.sentence for other in checks if other.outcome is Outcome.PASSED and PLOT_OF[other.name] == plot]
+        others = [other for other in checks if other.outcome is Outcome.PASSED and PLOT_OF[other.name] == plot]
         moments = [] if check.failure is None else [check.failure.time]
-        yield {"check": check, "svg": PLOTS[plot](record, moments), "also_passed": others if passed else []}
+        yield {
+            "check": check,
+            "svg": PLOTS[plot](record, moments),
+            "also_passed": [other.sentence for other in others] if passed else [],
+            "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
+            "anchor": f"{check.part}-{check.name}",
+        }

@@ -146,7 +146,7 @@ def _supervise(
     finally:
         status = child.end(process, None, grace)
         guard.stop()
-    records, killed = _records(out, part), ""
+    records, killed = records_in(out, part), ""
     for record in records.values():
         if any(death.is_from_outside for death in record.deaths):
             killed = f"the {part} was killed in scenario {record.name}"
@@ -170,6 +170,7 @@ def _last_lines(log: Path) -> str:
     return " | ".join(line.strip() for line in lines[-LOG_LINES:])[-600:]
 
 
-def _records(out: Path, part: str) -> Dict[str, rec.Record]:
+def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
+    """The records of a part so far, by scenario."""
     records = [rec.read(path) for path in sorted(out.glob(f"{part}-*.json")) if not path.name.endswith("-job.json")]
     return {record.name: record for record in records}

@@ -6,18 +6,18 @@ from typing import List, Optional
 from ..check_limits import Limits
 from ..record import Click, Goal, Record
 from .life import no_exception, stays_alive
-from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
-PENDING_ENDS = "pending_ends"  # mark: what is missing here appears for a goal that was never seen PENDING
-NO_CLIENT = "No action client connected to robocop_goto_as: is one created, and is its name right?"
-NO_SUBSCRIBER = "The node does not subscribe to /move_base_simple/goal: is the topic's name right?"
+CRASH = (Earlier("bridge_alive"),)
+UNCONNECTED = "No action client connected to robocop_goto_as: is one created, and is its name right?"
 NO_NEWER_GOAL = (
     "The newer goal was never sent: does the callback wait for the older goal? While it waits, for instance in "
     "wait_for_result(), it is not called again"
 )
+PENDING_ENDS = "pending_ends"  # mark: what is missing here appears for a goal that was never seen PENDING
 PENDING_CAUSE = (
     "The bridge treats a PENDING goal as finished; PENDING only means that the server has not accepted it yet"
 )
@@ -40,7 +40,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     goals = _goals_after(record, click)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
-        return Failed(f"a goal at {wanted}", "no goal", click.time, _why_no_goal(record, limits))
+        return Failed(f"a goal at {wanted}", "no goal", click.time, _missing_connection(record), CRASH)
     goal = goals[-1]
     if not _distance(goal, click.x, click.y) <= POSITION_TOLERANCE:  # this way round NaN fails, too
         seen, cause = f"x {goal.x:.2f} y {goal.y:.2f}", "The goal does not have the message's position: "
@@ -50,16 +50,21 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     return Passed()
 
 
-def _why_no_goal(record: Record, limits: Limits) -> str:
-    """Name the node's end, the missing connection, or the exception that may have prevented the goal."""
-    crash = _crash(record, limits)
-    if crash is not None and record.deaths:
-        return crash.cause
-    if not record.marks.get("clients", 1.0):  # first: a bridge waiting for a misspelt server has no subscriber either
-        return NO_CLIENT
+def _has_client(record: Record) -> bool:
+    """Whether its action client connected to the server."""
+    return bool(record.marks.get("clients", 1.0))
+
+
+def _missing_connection(record: Record) -> str:
+    """Name the missing connection, if any."""
+    if not _has_client(record):  # first: a bridge waiting for a misspelt server has no subscriber either
+        return UNCONNECTED
     if not record.marks.get("listeners", 1.0):
-        return NO_SUBSCRIBER
-    return f"No goal was sent: {crash.cause if crash else 'does the callback call send_goal()?'}"
+        return "The node does not subscribe to /move_base_simple/goal: is the topic's name right?"
+    return (
+        "No goal was sent: does the callback call send_goal()? Does a bridge that is started before the server wait "
+        "for it, with wait_for_server() without a timeout?"
+    )
 
 
 def has_reports(record: Record, limits: Limits) -> bool:
@@ -84,23 +89,22 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         return NotReached("the bridge did not get this far")
     if has_reports(record, limits):
         return Passed()
+    if not _has_client(record):  # it may wait for the server before it creates its timer
+        return NotReached(UNCONNECTED)
+    count = len(_reports(record))
     cause = (
-        "A rospy.Timer has to log, print or publish the action client's state, and to report repeatedly while a goal "
-        "is active: is it created, and does nothing end it?"
+        "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report "
+        "it repeatedly, also when it has not changed"
     )
-    if not record.marks.get("clients", 1.0):  # it may wait for the server before it creates its timer
-        cause = NO_CLIENT
-    crash = _crash(record, limits)
-    if crash is not None:  # it may have ended the timer
-        cause = crash.cause if record.deaths else f"An exception was raised: {crash.cause}"
+    if count:
+        cause = (
+            "The status is not reported repeatedly while a goal is active: is the rospy.Timer's period too long, does "
+            "anything end it, or does it only report changes?"
+        )
     if PENDING_ENDS in record.marks:
         cause = f"{PENDING_CAUSE}. Its reports then stop"
-    return Failed(
-        f"{limits.status_reports} reports within {limits.status_span:g} s",
-        f"{len(_reports(record))}",
-        record.marks["watching"],
-        cause,
-    )
+    wanted = f"{limits.status_reports} reports within {limits.status_span:g} s"
+    return Failed(wanted, f"{count}", record.marks["watching"], cause, CRASH)
 
 
 @check("clicks")
@@ -113,7 +117,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     newer = [goal for goal in _goals_after(record, click) if goal.id != older.id]
     cancelled = [status.id for status in record.statuses]
     if not newer:
-        return Failed("the newer goal", "no goal", click.time, NO_NEWER_GOAL)
+        return Failed("the newer goal", "no goal", click.time, NO_NEWER_GOAL, CRASH)
     if older.id not in cancelled:
         cause = (
             "Call cancel_goal() or cancel_all_goals() before sending the newer goal; send_goal() alone does not cancel"
@@ -131,15 +135,16 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
-        return _crash(record, limits) or Passed()
+        return _crash(record, limits) or NotReached("the bridge was not tried with a server")
     if record.clicks and _goals_after(record, record.clicks[-1]):
         return Passed()
-    cause = _why_no_goal(record, limits)
-    if record.marks.get("clients", 1.0) and _crash(record, limits) is None:
-        cause = sentences(
-            cause, "A bridge that starts before the server has to wait for it: call wait_for_server() without a timeout"
-        )
-    return Failed("a goal once the server is running", "no goal", record.marks.get("clicked", 0.0), cause)
+    if not _has_client(record):
+        return NotReached(UNCONNECTED)
+    cause = (
+        "A bridge that starts before the server has to connect to it later: call wait_for_server() without a timeout"
+    )
+    clicked, follows = record.marks.get("clicked", 0.0), (*CRASH, Earlier("forwards_goal"))
+    return Failed("a goal once the server is running", "no goal", clicked, cause, follows)
 
 
 @check("clicks")
@@ -160,13 +165,15 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:
         return NotReached("there was no click")
+    if not record.goals:
+        return NotReached("no click became a goal")
     for number, click in enumerate(record.clicks):
         # What a click causes may come without any simulated time passing.
         until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
         goals = _goals_after(record, click, until)
         if not goals:
             wanted, cause = f"a goal for the click in {click.frame}", "The click was not forwarded"
-            return Failed(wanted, "no goal", click.time, cause)
+            return Failed(wanted, "no goal", click.time, cause, CRASH)
         goal = goals[-1]
         if not _distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
             cause = "The transform is wrong"
@@ -176,5 +183,5 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
                     "from header.frame_id to odom"
                 )
             wanted, seen = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom", f"x {goal.x:.2f} y {goal.y:.2f}"
-            return Failed(wanted, seen, goal.time, cause)
+            return Failed(wanted, seen, goal.time, cause, (Earlier("forwards_goal", "x "),))
     return Passed()

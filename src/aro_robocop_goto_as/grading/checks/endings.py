@@ -2,6 +2,7 @@
 
 import os
 import re
+from dataclasses import replace
 from typing import Optional, Sequence
 
 from ..check_limits import Limits
@@ -18,7 +19,8 @@ from ..record import (
     samples_between,
     status_name,
 )
-from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
+from .consequences import EXCEPTION, misled, stopped_by
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, sentences
 
 # Parts of the messages that actionlib's SimpleActionServer and rospy log.
 NO_STATE_LOGGED = "No terminal", "without setting", "did not set the goal to a terminal status", "user should have"
@@ -35,6 +37,10 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
 SETTERS = "set_succeeded(), set_aborted() and set_preempted()"
+NO_RESULT = "no result"
+SUCCESS = "success"
+NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
+AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
 
 
 def logged(record: Record, words: Sequence[str]) -> bool:
@@ -61,20 +67,51 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     if not results:
         last = record.samples[-1].time if record.samples else goal.time
         problem = record.problem or "the goal got no terminal state and no result"
-        cause = problem[:1].upper() + problem[1:]
-        return Failed(status_name(wanted), "no result", last, sentences(_collision(record, goal, last), cause))
+        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:])
+        follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else stopped_by(record, goal)
+        return Failed(status_name(wanted), NO_RESULT, last, cause, follows)
     result = results[0]
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
+    if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not _stopped(record, result.time, limits):
+        early = success_too_far(record, goal, limits)
+        if early is not None:
+            return replace(
+                early, expected=status_name(wanted), follows=(*early.follows, Earlier("reaches_goal", SUCCESS))
+            )
     cause = _wrong_state(record, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
-        cause = (
-            "Its wheels kept turning until odometry reached the goal. Is the distance ahead checked in each iteration, "
-            "and does the scan's callback return at once?"
-        )
-    seen = status_name(result.status) + (f": {result.message}" if result.message else "")
-    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause))
+        cause = _unnoticed(record)
+    state = status_name(result.status)
+    seen = state + (f": {result.message}" if result.message else "")
+    follows = EXCEPTION if logged(record, EXCEPTION_LOGGED) else (*misled(record, goal), Earlier("reaches_goal", state))
+    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), follows)
+
+
+def _stopped(record: Record, end: float, limits: Limits) -> bool:
+    """Whether the goal ended where an obstacle has to end it."""
+    return any(sample.ahead <= limits.abort_farthest for sample in samples_between(record, end - 0.25, end))
+
+
+def _unnoticed(record: Record) -> str:
+    """The cause of a collision after which the goal succeeded, because odometry continued to advance."""
+    return narrow_obstacle(record) or (
+        "It was not noticed. Is the distance ahead checked in each iteration, is it that of the beams ahead, and does "
+        "the scan's callback return at once?"
+    )
+
+
+def narrow_obstacle(record: Record) -> str:
+    """What a server that reacts to a wall has done wrong if the obstacle is narrow; nothing for a wide one."""
+    across = [outline[1::2] for outline in record.obstacles[:1]]
+    if not across or max(across[0]) - min(across[0]) > NARROW:
+        return ""
+    side = "left" if sum(across[0]) > 0.0 else "right"
+    return (
+        f"A narrow obstacle a little to the {side} was missed or noticed too late, although a wall is noticed. Do the "
+        "beams on both sides of straight ahead count, and does the nearest of them decide?"
+    )
 
 
 def _collision(record: Record, goal: Goal, end: float) -> str:
@@ -91,9 +128,14 @@ def _wrong_state(record: Record, status: int, wanted: int) -> str:
     if wanted == ABORTED and status == SUCCEEDED:
         return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:
+        if not record.obstacles:
+            return (
+                "set_aborted is called although there is no obstacle at all: does the server have a timeout of its "
+                "own, or is a range of inf treated as an obstacle?"
+            )
         return (
-            "set_aborted is called although nothing is in the way: which beams count as ahead, which ranges as valid, "
-            "or does the server have a timeout of its own?"
+            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server have "
+            "a timeout of its own?"
         )
     if wanted == PREEMPTED:
         return "Call set_preempted for a goal that is cancelled or replaced"
@@ -107,12 +149,12 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
-    return Failed(
-        f"success within {GOAL_RADIUS:g} m",
-        f"success {nearest:.2f} m away",
-        result.time,
-        f"The threshold of position_error is not {GOAL_RADIUS:g} m, or it is compared with another quantity",
-    )
+    cause = f"The threshold of position_error is not {GOAL_RADIUS:g} m, or it is compared with another quantity"
+    if result.time - goal.time < AT_ONCE:
+        cause += ", or what an earlier goal has changed is not reset when a goal begins"
+    own = [message.position_error for message in record.feedback if message.id == goal.id][-1:]
+    follows = (Earlier("feedback_position"),) if own and own[0] <= limits.reached else ()
+    return Failed(f"success within {GOAL_RADIUS:g} m", f"{SUCCESS} {nearest:.2f} m away", result.time, cause, follows)
 
 
 @check("states")
@@ -137,6 +179,11 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         if not result.message:
             cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
+    if not result.message and logged(record, EXCEPTION_LOGGED):
+        cause = "The goal's callback raised an exception: " + last_error(record)
+        return Failed("a message", "an empty message", result.time, cause, EXCEPTION)
+    if not result.message and logged(record, NO_STATE_LOGGED):
+        return Failed("a message", "an empty message", result.time, NO_STATE, (Earlier("one_ending"),))
     if not result.message:
         cause = (
             "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
@@ -170,11 +217,15 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
 
 
 def _place(lines: Sequence[str]) -> str:
-    """File and line of the last traceback in these lines, " (FILE, line N)"; empty without any."""
+    """File, line and code of the last traceback in these lines, " (FILE, line N: CODE)"; empty without any."""
     begins = [number for number, line in enumerate(lines) if "Traceback" in line]
-    places = [found for found in map(PLACE.search, lines[begins[-1] if begins else 0 :]) if found]
-    own = [found for found in places if not LIBRARY.search(found[1])]
-    return "".join(f" ({os.path.basename(found[1])}, line {found[2]})" for found in (own or places)[-1:])
+    lines = [*lines[begins[-1] if begins else 0 :], ""]
+    places = [(found, code) for found, code in zip(map(PLACE.search, lines), lines[1:]) if found]
+    own = [(found, code) for found, code in places if not LIBRARY.search(found[1])]
+    for found, code in (own or places)[-1:]:
+        quoted = "" if not code or PLACE.search(code) else f": {code[:120]}"
+        return f" ({os.path.basename(found[1])}, line {found[2]}{quoted})"
+    return ""
 
 
 @check("states")

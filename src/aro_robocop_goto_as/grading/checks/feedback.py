@@ -1,16 +1,27 @@
 """Checks of the feedback: its rate, and its errors against the true ones."""
 
 import math
-from typing import Callable, List, NamedTuple, Sequence, Tuple
+from typing import Callable, List, Sequence
 
 from ..check_limits import Limits
-from ..record import Feedback, Goal, Record, Sample, errors_at, results_of, samples_between, wrapped
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from ..record import Record, errors_at, results_of, samples_between, wrapped
+from .consequences import silenced_by
+from .feedback_causes import (
+    ANGLE_CAUSES,
+    POSITION_CAUSES,
+    POSITION_UNUSED,
+    RELATIVE,
+    WORLD,
+    Hypothesis,
+    Pair,
+    likely_cause,
+)
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
-EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
+LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
 
 
@@ -35,32 +46,34 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         else:
             cause = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
         wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
-        return Failed(wanted, f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s", goal.time, cause)
+        seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
+        return Failed(wanted, seen, goal.time, cause, silenced_by(record, goal))
     return Passed() if judged else NotReached("no goal was active for a second")
-
-
-class Pair(NamedTuple):
-    """A feedback message, the samples that it may be based on, and its goal."""
-
-    feedback: Feedback
-    samples: List[Sample]
-    goal: Goal
 
 
 def _pairs(record: Record) -> List[Pair]:
     goals = {goal.id: goal for goal in record.goals}
-    pairs = [
-        Pair(message, samples_between(record, message.time - AGE, message.time + 1e-3), goals[message.id])
-        for message in record.feedback
-        if message.id in goals
-    ]
-    return [pair for pair in pairs if pair.samples]
+    starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
+    pairs = []
+    for message in record.feedback:
+        samples = samples_between(record, message.time - AGE, message.time + 1e-3)
+        if message.id in goals and samples:
+            pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
+    return pairs
 
 
 def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
-    """The pairs whose error exceeds a tolerance, if there are more than a few of them."""
-    wrong = [pair for pair in pairs if error(pair) > tolerance]
-    return wrong if len(wrong) > MOST_WRONG * len(pairs) else []
+    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
+    wrong: List[Pair] = []
+    longest, row = 0.0, math.inf  # [s] how long a row of wrong messages was, when the present one began
+    for pair in pairs:
+        if error(pair) > tolerance:
+            wrong.append(pair)
+            row = min(row, pair.feedback.time)
+            longest = max(longest, pair.feedback.time - row)
+        else:
+            row = math.inf
+    return wrong if len(wrong) > MOST_WRONG * len(pairs) or longest >= LONGEST_WRONG else []
 
 
 def _position_deviation(pair: Pair) -> float:
@@ -89,7 +102,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
         return NotReached("there was no feedback")
     wrong = _wrong(pairs, _position_deviation, limits.position_tolerance)
     otherwise = "position_error is not the distance from the position in /odom to the goal"
-    return _failed(wrong, 0, "m", POSITION_CAUSES, otherwise) if wrong else Passed()
+    return _failed(wrong, pairs, 0, "m", POSITION_CAUSES, otherwise) if wrong else Passed()
 
 
 @check("errors")
@@ -110,97 +123,17 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
         return Failed("an angle within +-3.14 rad", seen, message.time, cause)
     wrong = _wrong(pairs, _angle_deviation, limits.angle_tolerance)
     otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
-    return _failed(wrong, 1, "rad", ANGLE_CAUSES, otherwise) if wrong else Passed()
+    return _failed(wrong, pairs, 1, "rad", ANGLE_CAUSES, otherwise) if wrong else Passed()
 
 
-def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
-    return g.x - s.x, g.y - s.y
-
-
-Hypothesis = Tuple[str, Callable[[Sample, Goal], float]]
-POSITION_CAUSES: Tuple[Hypothesis, ...] = (
-    (
-        "The robot's position is taken in the world or map frame; goals are in odom",
-        lambda s, g: math.hypot(g.x - s.world_x, g.y - s.world_y),
-    ),
-    (
-        "position_error is measured from odom's origin: the robot's position is left out, or read only at the start",
-        lambda s, g: math.hypot(g.x, g.y),
-    ),
-    (
-        "position_error is the squared distance: the square root is missing",
-        lambda s, g: sum(d * d for d in _deltas(s, g)),
-    ),
-    ("position_error depends on x only", lambda s, g: abs(_deltas(s, g)[0])),
-    ("position_error depends on y only", lambda s, g: abs(_deltas(s, g)[1])),
-    (
-        "position_error is |dx| + |dy| instead of the straight-line distance",
-        lambda s, g: sum(abs(d) for d in _deltas(s, g)),
-    ),
-    ("The sign of position_error is wrong", lambda s, g: -math.hypot(*_deltas(s, g))),
-    ("position_error is always zero: it is never filled in", lambda s, g: 0.0),
-    ("position_error is the angle error: the two are swapped", lambda s, g: errors_at(s, g)[1]),
-)
-ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
-    ("angle_error is in degrees; the handout wants radians", lambda s, g: math.degrees(errors_at(s, g)[1])),
-    (
-        "The sign of angle_error is wrong: it has to be the goal's direction minus the heading",
-        lambda s, g: -errors_at(s, g)[1],
-    ),
-    (
-        "angle_error is the goal's direction in odom: the robot's heading is left out, or read only at the start",
-        lambda s, g: math.atan2(_deltas(s, g)[1], _deltas(s, g)[0]),
-    ),
-    ("The heading is added instead of subtracted", lambda s, g: math.atan2(*_deltas(s, g)[::-1]) + s.yaw),
-    ("The arguments of atan2 are swapped: it is atan2(dy, dx)", lambda s, g: math.atan2(*_deltas(s, g)) - s.yaw),
-    (
-        "atan is used instead of atan2: a goal behind looks like one ahead",
-        lambda s, g: math.atan(_deltas(s, g)[1] / (_deltas(s, g)[0] or 1e-9)) - s.yaw,
-    ),
-    (
-        "The heading is orientation.z, which is a component of the quaternion and not an angle",
-        lambda s, g: math.atan2(*_deltas(s, g)[::-1]) - math.sin(s.yaw / 2.0),
-    ),
-    (
-        "The heading is taken in the world or map frame; goals are in odom",
-        lambda s, g: math.atan2(g.y - s.world_y, g.x - s.world_x) - s.world_yaw,
-    ),
-    (
-        "angle_error is the goal's direction from odom's origin: the robot's position is left out",
-        lambda s, g: math.atan2(g.y, g.x) - s.yaw,
-    ),
-    ("angle_error has no sign: left and right can't be distinguished", lambda s, g: abs(errors_at(s, g)[1])),
-    ("angle_error is always zero: it is never filled in", lambda s, g: 0.0),
-    ("angle_error is the distance: the two are swapped", lambda s, g: errors_at(s, g)[0]),
-)
-
-
-def _failed(wrong: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str) -> Failed:
-    """The first wrong value with the likely cause of all of them; `index` as in errors_at."""
+def _failed(
+    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str
+) -> Failed:
+    """The first wrong value with the likely cause of all of them, among all pairs; `index` as in errors_at."""
     name = ("position_error", "angle_error")[index]
-    values = [getattr(pair.feedback, name) for pair in wrong]
+    value = getattr(wrong[0].feedback, name)
     truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
-    cause = _likely_cause(name, wrong, values, causes, otherwise)
-    return Failed(f"{truth:.2f} {unit}", f"{name} {values[0]:.2f}", wrong[0].feedback.time, cause)
-
-
-def _likely_cause(
-    name: str, wrong: Sequence[Pair], values: Sequence[float], causes: Sequence[Hypothesis], otherwise: str
-) -> str:
-    """The hypothesis that fits the values best, if one fits."""
-    if not all(map(math.isfinite, values)):
-        return f"Some values of {name} are not finite"
-    scale = 1.0 if max(abs(value) for value in values) < 7.0 else 10.0  # degrees and squares vary more
-    best, least = otherwise, 0.25
-    for cause, predict in causes:
-        misses = [value - predict(pair.samples[-1], pair.goal) for value, pair in zip(values, wrong)]
-        errors = sorted(
-            abs(wrapped(miss) if name == "angle_error" and abs(value) < 4.0 else miss)
-            for value, miss in zip(values, misses)
-        )
-        median = errors[len(errors) // 2] / scale
-        if median < least:
-            best, least = cause, median
-    if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
-        return f"{name} is always {values[0]:.2f}: recalculate it in each iteration from the newest pose"
-    return best
+    cause = likely_cause(name, wrong, pairs, causes, otherwise)
+    of_position = cause.endswith((RELATIVE, POSITION_UNUSED, WORLD))
+    follows = (Earlier("feedback_position"),) if of_position else ()
+    return Failed(f"{truth:.2f} {unit}", f"{name} {value:.2f}", wrong[0].feedback.time, cause, follows)

@@ -6,9 +6,11 @@ import re
 from ..check_limits import Limits
 from ..handout import ACTION, ACTION_TYPE
 from ..record import Record
+from .consequences import EXCEPTION
 from .endings import last_error
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
+START = (Earlier("action_server"),)
 UNCAUGHT = re.compile(
     r"^(Syntax|Indentation|Tab)Error|Exception in thread|bad callback|"
     r"Traceback \(most recent call last\)|xception in your execute callback"
@@ -52,7 +54,8 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
     for line in record.lines:
         if UNCAUGHT.search(line.text):
-            return Failed("no exception", line.text[:120].splitlines()[0], line.time, last_error(record))
+            seen, follows = line.text[:120].splitlines()[0], START if record.name == "start" else ()
+            return Failed("no exception", seen, line.time, last_error(record), follows)
     return Passed()
 
 
@@ -61,7 +64,8 @@ def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for death in record.deaths:
         cause = "The node died: " + (death.reason or last_error(record))
-        return Failed("a running node", f"exit status {death.status}", death.time, cause)
+        follows = START if record.name == "start" else () if death.reason else EXCEPTION
+        return Failed("a running node", f"exit status {death.status}", death.time, cause, follows)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
     return Passed()

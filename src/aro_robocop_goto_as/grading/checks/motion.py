@@ -7,14 +7,17 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 from ..check_limits import Limits
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import SUCCEEDED, Command, Goal, Record, errors_at, results_of, samples_between, wrapped
+from .consequences import misled, silenced_by
 from .endings import success_too_far, wrong_ending
-from .verdict import Failed, NotReached, Passed, Verdict, check
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
 MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
+LATE = 0.18  # [s] a server that checks in each iteration reports one position_error that is small enough, at most two
+TURN = f"{HEADING_TOLERANCE:g} rad"
 
 
 class Situation(NamedTuple):
@@ -63,6 +66,8 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
         if problem is None and len(situations) >= ENOUGH:
             judged = True
             problem = _wrong_turn(situations, limits)
+            if problem is not None:
+                problem = replace(problem, follows=misled(record, goal))
         if problem is not None:
             return problem
     return Passed() if judged else NotReached("no command was given while angle_error was large")
@@ -72,8 +77,10 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits) -> Optional[Fai
     driving = [it for it in situations if abs(it.command.v) > limits.driving]
     if len(driving) > MOST_WRONG * len(situations):
         command, angle = driving[0]
-        wanted = f"linear.x 0 while angle_error is beyond {HEADING_TOLERANCE:g} rad"
+        wanted = f"linear.x 0 while angle_error is beyond {TURN}"
         cause = "The robot drives while it turns; the handout wants one or the other"
+        if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
+            cause = f"The robot drives straight at {angle:.2f} rad: the threshold of angle_error is not {TURN}"
         return Failed(wanted, f"linear.x {command.v:.2f} at {angle:.2f} rad", command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]
     if len(still) > 0.5 * len(situations):
@@ -103,7 +110,8 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
-        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
+        follows = silenced_by(record, goal) or misled(record, goal)
+        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, follows)
     return None
 
 
@@ -121,7 +129,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         judged = True
         problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
         if problem is not None:
-            return problem
+            return replace(problem, follows=misled(record, goal))
     return Passed() if judged else NotReached("the robot never headed for the goal")
 
 
@@ -135,7 +143,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
             standing,
             aligned,
             "0",
-            f"The robot heads for the goal but does not drive: linear.x stayed 0 within {HEADING_TOLERANCE:g} rad",
+            f"The robot heads for the goal but does not drive: linear.x stayed 0 within {TURN}",
         ),
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
@@ -163,10 +171,26 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
     for goal in record.goals:
-        problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+        problem = (
+            wrong_ending(record, goal, SUCCEEDED, limits)
+            or success_too_far(record, goal, limits)
+            or _success_too_late(record, goal)
+        )
         if problem is not None:
             return problem
     return Passed() if record.goals else NotReached("no goal was sent")
+
+
+def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
+    """A robot that drives on although the server's own position_error is small enough for success."""
+    own = [message for message in record.feedback if message.id == goal.id]
+    near = [message for message in own if message.position_error < GOAL_RADIUS]
+    if not near or near[-1].time - near[0].time < LATE:
+        return None
+    least = min(message.position_error for message in near)
+    cause = f"The goal goes on although position_error is below {GOAL_RADIUS:g} m: the threshold is another one"
+    seen = f"no success until position_error was {least:.2f} m"
+    return Failed(f"success below {GOAL_RADIUS:g} m", seen, near[0].time, cause, (Earlier("feedback_position"),))
 
 
 @check("track")
@@ -191,7 +215,8 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     if total <= needed + 2.0:
         return None
     cause = "angle_error is not wrapped, so that the robot takes the longer turn, or the robot oscillates"
-    return Failed(f"a turn of about {needed:.1f} rad", f"{total:.1f} rad", goal.time, cause)
+    follows = misled(record, goal)
+    return Failed(f"a turn of about {needed:.1f} rad", f"{total:.1f} rad", goal.time, cause, follows)
 
 
 @check("track")

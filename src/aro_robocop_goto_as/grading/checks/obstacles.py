@@ -6,8 +6,9 @@ from typing import Optional
 from ..check_limits import Limits
 from ..handout import STOP_DISTANCE
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, results_of, samples_between
-from .endings import EXCEPTION_LOGGED, last_error, logged, wrong_ending
-from .verdict import Failed, NotReached, Passed, Verdict, check, sentences
+from .consequences import EXCEPTION
+from .endings import EXCEPTION_LOGGED, last_error, logged, narrow_obstacle, wrong_ending
+from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check, sentences
 
 
 @check("distances")
@@ -26,16 +27,22 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     end = results_of(record, goal)[0].time
     around = samples_between(record, end - 0.25, end + limits.stop_within)
     if any(sample.touching for sample in around):
-        return Failed("a stop before the obstacle", "contact", end, "The obstacle was detected too late")
+        cause = narrow_obstacle(record) or "The obstacle was detected too late"
+        return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = f"an abort at {STOP_DISTANCE:g} m"
     if logged(record, EXCEPTION_LOGGED):
-        return Failed(wanted, "an exception", end, "The goal's callback raised an exception: " + last_error(record))
+        cause = "The goal's callback raised an exception: " + last_error(record)
+        return Failed(wanted, "an exception", end, cause, EXCEPTION)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
         cause = f"The threshold is not {STOP_DISTANCE:g} m, or beams that are not ahead count"
         return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause)
     if clearances and clearances[-1] < limits.abort_nearest:
-        cause = f"The threshold is not {STOP_DISTANCE:g} m, or the scan is evaluated too rarely"
+        cause = (
+            f"The threshold is not {STOP_DISTANCE:g} m, the scan is evaluated too rarely, or the beams that count are "
+            "not those ahead"
+        )
+        cause = narrow_obstacle(record) or cause
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     return None
 
@@ -60,6 +67,10 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     problem = _wrong_abort(record, goal, limits) if wanted == ABORTED else wrong_ending(record, goal, wanted, limits)
     if problem is None:
         return Passed()
+    if wanted == ABORTED:
+        problem = replace(problem, follows=(*problem.follows, Earlier("stops_at_obstacle")))
+    if problem.follows[:1] == EXCEPTION:
+        return problem
     hint = (
         "A range of 0 or NaN is treated as an obstacle" if wanted == SUCCEEDED else "A range of 0 or NaN hides the wall"
     )

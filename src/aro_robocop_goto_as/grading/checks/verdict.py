@@ -1,7 +1,7 @@
 """The verdict of a check on one record, and the registry of all checks."""
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Union
+from typing import Callable, Dict, Tuple, Union
 
 from ..check_limits import Limits
 from ..record import Record
@@ -20,13 +20,25 @@ class NotReached:
 
 
 @dataclass(frozen=True)
+class Earlier:
+    """The failure of another check, in which what was seen begins with `seen`."""
+
+    check: str
+    seen: str = ""
+
+
+@dataclass(frozen=True)
 class Failed:
-    """The contract was broken: expected, seen, simulated time [s], likely cause."""
+    """The contract was broken: expected, seen, simulated time [s], likely cause.
+
+    If one of the failures in `follows` occurred, this one follows from it, and its own cause does not apply.
+    """
 
     expected: str
     seen: str
     time: float
     cause: str
+    follows: Tuple[Earlier, ...] = ()
 
 
 Verdict = Union[Passed, NotReached, Failed]

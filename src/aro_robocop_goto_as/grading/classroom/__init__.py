@@ -2,7 +2,7 @@
 
 hand_ins   folder -> packed hand-ins, each with a digest of its content
 worker     packed hand-in -> the files of its report; runs on a dask worker without a shared disk
-cluster    the dask workers: local ones, or those of an existing scheduler
+dask_cluster  the dask workers: local ones, or those of an existing scheduler
 results    the folder of results, and the CSV table
 overview   results -> index.html
 main       robocop grade-class

@@ -4,9 +4,9 @@ import contextlib
 import os
 import tempfile
 import uuid
-from typing import Iterator, Sequence, Tuple, Union
+from typing import Dict, Iterable, Iterator, Tuple, Union
 
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster, as_completed
 from distributed.security import Security
 
 from ...errors import GradingSetupError
@@ -14,6 +14,9 @@ from .worker import Done, Place, Task, ready, work
 
 CONNECT_PATIENCE = 5.0  # [s, wall]
 RETRIES = 1  # of a task that raised an error; tasks of workers that died are always repeated
+# Hand-ins that are with the scheduler at a time: enough for the workers of a large cluster, few enough for its memory.
+MOST_AHEAD = 100
+MOST_BYTES_AHEAD = 256 * 1024**2
 START = "start workers with: ./robocop grade-worker"
 
 
@@ -77,19 +80,33 @@ def _expect_ready(client: Client, unsafe: bool) -> None:
             raise GradingSetupError(f"the worker at {worker} is not able to grade: {problem}")
 
 
-def grade_all(client: Client, tasks: Sequence[Task]) -> Iterator[Tuple[str, Union[Done, str]]]:
-    """Each hand-in's name with its report or the reason why there is none, in order of completion."""
-    run = uuid.uuid4().hex[:8]  # distinguishes the tasks of several runs on one scheduler
-    futures = {
-        client.submit(work, task, key=f"grade-{run}-{number}", retries=RETRIES): task.hand_in.name
-        for number, task in enumerate(tasks)
-    }
+def grade_all(client: Client, tasks: Iterable[Task]) -> Iterator[Tuple[str, Union[Done, str]]]:
+    """Each hand-in's name with its report or the reason why there is none, in order of completion.
+
+    Takes a task when there is room for it, so that their hand-ins need not be in memory at the same time.
+    """
+    run, waiting = uuid.uuid4().hex[:8], enumerate(tasks)  # `run` distinguishes several runs on one scheduler
+    ahead: Dict[Future, Tuple[str, int]] = {}  # name and size of each hand-in
+    completed = as_completed()
+
+    def submit() -> None:
+        while len(ahead) < MOST_AHEAD and sum(size for _, size in ahead.values()) < MOST_BYTES_AHEAD:
+            number, task = next(waiting, (0, None))
+            if task is None:
+                return
+            future = client.submit(work, task, key=f"grade-{run}-{number}", retries=RETRIES)
+            ahead[future] = task.hand_in.name, len(task.hand_in.packed)
+            completed.add(future)
+
     try:
-        for future in as_completed(futures):
+        submit()
+        for future in completed:
+            name, _ = ahead.pop(future)
+            submit()
             if future.status == "finished":
-                yield futures[future], future.result()
+                yield name, future.result()
             else:
                 error = future.exception() if future.status == "error" else "the connection to the scheduler was lost"
-                yield futures[future], f"could not be graded: {error!r}"[:500]
+                yield name, f"could not be graded: {error!r}"[:500]
     finally:
-        client.cancel([future for future in futures if not future.done()])
+        client.cancel([future for future in ahead if not future.done()])

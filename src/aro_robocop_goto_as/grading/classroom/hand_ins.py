@@ -1,4 +1,4 @@
-"""Collects the hand-ins of a folder, each packed as bytes with a digest of its content."""
+"""Collects the hand-ins of a folder, each with a digest of its content, and packs one as bytes when it is graded."""
 
 import hashlib
 import io
@@ -6,7 +6,7 @@ import os
 import stat
 import tarfile
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import IO, Any, Dict, Iterator, List, Tuple
 
@@ -24,7 +24,8 @@ class HandIn:
     """A folder, zip or Python file, called as in the folder of the class."""
 
     name: str
-    packed: bytes = b""  # a tar archive
+    path: Path = Path()
+    packed: bytes = b""  # a tar archive, empty until `pack`
     digest: str = ""
     problem: str = ""  # why it can't be packed
 
@@ -40,7 +41,7 @@ def collect(folder: Path) -> Tuple[List[HandIn], List[str]]:
         if path.is_symlink() or not (path.is_dir() or path.suffix.lower() in (".py", ZIP) and path.is_file()):
             others.append(path.name)
         else:
-            hand_ins.append(_packed(path))
+            hand_ins.append(replace(pack(path), packed=b""))  # those of a large class don't fit into memory
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected one folder, zip or Python file for each")
     return hand_ins, others
@@ -49,7 +50,8 @@ def collect(folder: Path) -> Tuple[List[HandIn], List[str]]:
 Entry = Tuple[str, int, bytes, str]  # name, st_mode, content of a file, target of a link
 
 
-def _packed(path: Path) -> HandIn:
+def pack(path: Path) -> HandIn:
+    """The hand-in at a path, packed, or with the reason why it can't be."""
     sums, buffer = hashlib.sha256(), io.BytesIO()
     try:
         with tarfile.open(fileobj=buffer, mode="w") as archive:
@@ -66,10 +68,10 @@ def _packed(path: Path) -> HandIn:
                 archive.addfile(info, io.BytesIO(content))
                 sums.update(repr((name, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
     except SubmissionError as error:
-        return HandIn(path.name, problem=str(error))
+        return HandIn(path.name, path, problem=str(error))
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
-        return HandIn(path.name, problem=f"can't be read: {error}")
-    return HandIn(path.name, buffer.getvalue(), sums.hexdigest())
+        return HandIn(path.name, path, problem=f"can't be read: {error}")
+    return HandIn(path.name, path, buffer.getvalue(), sums.hexdigest())
 
 
 def _entries(path: Path) -> Iterator[Entry]:
@@ -131,7 +133,7 @@ def _at_most(source: "IO[bytes]", most: int) -> bytes:
 
 def unpack(hand_in: HandIn, folder: Path) -> Path:
     """Unpack to an empty folder; the path of the hand-in in it."""
-    # Packed by _packed(), from checked names. Python 3.14's default would refuse some links and change modes.
+    # Packed by pack(), from checked names. Python 3.14's default would refuse some links and change modes.
     options: Dict[str, Any] = {"filter": "fully_trusted"} if hasattr(tarfile, "data_filter") else {}
     with tarfile.open(fileobj=io.BytesIO(hand_in.packed)) as archive:
         archive.extractall(folder, **options)

@@ -6,9 +6,10 @@ import hashlib
 import os
 import random
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Optional, Union
+from typing import Dict, Iterable, List, Optional, Union
 from xml.etree import ElementTree
 
 from ...errors import GradingSetupError, RobocopError
@@ -21,12 +22,13 @@ from ..plan import Plan, load
 from ..report_folder import make_report_folder
 from ..sandbox import expect_private
 from ..scenario_draw import LARGEST_SEED
-from .hand_ins import HandIn, collect
+from .hand_ins import HandIn, collect, pack
 from .overview import page
 from .results import Result, Results, one_line, seed_of, table, write_atomically
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
+WRITING = 0.05  # share of the time in which the table and the overview are written while a class is graded
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
@@ -39,8 +41,9 @@ class Class:
         self.done: Dict[str, Result] = {
             hand_in.name: results.read(hand_in.name) for hand_in in hand_ins if not again and results.has(hand_in)
         }
-        self.waiting = [hand_in for hand_in in hand_ins if hand_in.name not in self.done]
+        self.waiting = {hand_in.name: hand_in for hand_in in hand_ins if hand_in.name not in self.done}
         self.problems: Dict[str, str] = {}
+        self._next_write = 0.0  # [s, wall]
 
     def add(self, name: str, outcome: Union[Done, str]) -> str:
         """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
@@ -49,18 +52,22 @@ class Class:
             return one_line(f"{name}: {outcome}")
         self._results.keep(outcome)
         result = self.done[name] = self._results.read(name)
-        self.waiting = [hand_in for hand_in in self.waiting if hand_in.name != name]
-        self.write(running=True)
+        self.waiting.pop(name, None)
+        if time.monotonic() >= self._next_write:
+            self.write(running=True)
         problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
         counter = f"[{len(self.done)}/{self.count}]"
         return one_line(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
+        started = time.monotonic()
         results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems))
-        waiting = {hand_in.name: self.problems.get(hand_in.name, "waiting") for hand_in in self.waiting}
+        waiting = {name: self.problems.get(name, "waiting") for name in self.waiting}
         write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
+        finished = time.monotonic()
+        self._next_write = finished + (finished - started) / WRITING
 
 
 def main() -> None:
@@ -100,9 +107,10 @@ def main() -> None:
             group = Class(folder, results, plan, hand_ins, args.again)
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             print(f"scenarios: seed {seed}", flush=True)
-            tasks = [Task(hand_in, text, seed, args.unsafe) for hand_in in group.waiting]
+            # Packed when it is their turn, from what is there then.
+            tasks = (Task(pack(it.path), text, seed, args.unsafe) for it in list(group.waiting.values()))
             place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
-            _grade(group, tasks, place)
+            grade(group, tasks, place)
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
@@ -120,14 +128,14 @@ def class_seed(given: Optional[int], results: Path) -> int:
     return next(seed for seed in seeds if seed is not None)
 
 
-def _grade(group: Class, tasks: List[Task], place: Place) -> None:
+def grade(group: Class, tasks: Iterable[Task], place: Place) -> None:
     """Grade the remaining hand-ins; if interrupted, write what is done, then exit."""
-    group.write(running=bool(tasks))
+    group.write(running=bool(group.waiting))
     try:
-        if tasks:
+        if group.waiting:
             from .dask_cluster import connected, grade_all  # importing dask takes half a second
 
-            with connected(replace(place, workers=min(place.workers, len(tasks)))) as client:
+            with connected(replace(place, workers=min(place.workers, len(group.waiting)))) as client:
                 for name, outcome in grade_all(client, tasks):
                     reraise_if_interrupted()
                     try:

@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import functools
 import io
 import json
 import os
@@ -9,7 +10,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from ...hosting import tree
 from ..judge import printable
@@ -36,6 +37,9 @@ class Check:
     cause: str = ""
 
 
+_without_cause = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
+
+
 @dataclass(frozen=True)
 class Result:
     """The result of one hand-in."""
@@ -55,9 +59,10 @@ class Result:
         points = [check.points for check in self.checks if check.part == part]
         return round(sum(points), 6) if points else None
 
-    def outcome(self, name: str) -> str:
-        """passed, failed, not reached, or not handed in."""
-        return next((check.outcome for check in self.checks if check.name == name), NOT_HANDED_IN)
+    def outcomes(self, plan: Plan) -> List[str]:
+        """For each check of the plan: passed, failed, not reached, or not handed in."""
+        known = {check.name: check.outcome for check in self.checks}
+        return [known.get(check.name, NOT_HANDED_IN) for check in plan.checks]
 
 
 def seed_of(folder: Path) -> Optional[int]:
@@ -106,13 +111,9 @@ class Results:
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
         checks = [
-            Check(
-                check["name"],
-                check["part"],
-                check["outcome"],
-                check["points"],
-                (check["failure"] or {}).get("cause", ""),
-            )
+            Check(check["name"], check["part"], check["outcome"], check["points"], check["failure"]["cause"])
+            if check["failure"]
+            else _without_cause(check["name"], check["part"], check["outcome"], check["points"])
             for check in raw["checks"]
         ]
         return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
@@ -136,7 +137,7 @@ def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = M
                 plan.points,
                 *(NOT_HANDED_IN if number is None else number for number in points),
                 _plain(" | ".join(result.problems)),
-                *(result.outcome(check.name) for check in plan.checks),
+                *result.outcomes(plan),
             ]
         )
     for name, problem in sorted(problems.items()):
