@@ -67,6 +67,7 @@ def main() -> None:
             require_rviz(sandbox)
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
+            _show_progress("package", "build")
             submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
             folder = given or make_report_folder(state / "reports" / submission.name)
             grade = grade_submission(
