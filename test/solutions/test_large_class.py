@@ -10,7 +10,7 @@ import psutil
 import pytest
 from graded import PLAN, RIGHT
 
-from aro_robocop_goto_as.grading.classroom import cluster
+from aro_robocop_goto_as.grading.classroom import dask_cluster
 from aro_robocop_goto_as.grading.classroom.hand_ins import collect, pack
 from aro_robocop_goto_as.grading.classroom.main import CSV, HTML, Class, grade
 from aro_robocop_goto_as.grading.classroom.results import Results

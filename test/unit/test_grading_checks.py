@@ -394,7 +394,11 @@ def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
 
 
 def test_topic_that_nobody_publishes_is_named_if_something_failed() -> None:
-    waits = replace(RIGHT, name="start", unpublished=("/ground_truth_odom", "/scn"))
+    own = ("/robovop_goto_as/goal", "/robovop_goto_as/cancel")
+    waits = replace(
+        RIGHT, name="start", servers=("/robovop_goto_as",), unpublished=("/ground_truth_odom", "/scn", *own)
+    )
     problems = _grade(load(PLAN), start=waits).problems
+    assert not any("robovop" in problem for problem in problems)
     assert any("subscribes to /scn, which nobody publishes" in problem for problem in problems)
     assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in problems)

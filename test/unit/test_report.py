@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 
+import pytest
 from test_grading_checks import PLAN, RIGHT
 
 from aro_robocop_goto_as.grading import report
@@ -25,3 +26,12 @@ def test_report_begins_with_the_mistakes_and_links_each_row_to_its_plot(tmp_path
     assert targets and all(f"id='{target}'" in html for target in targets)
     rows = html[html.index("<table>") : html.index("</table>")]
     assert rows.count("<a href='#") == rows.count("<tr><td>") > 5
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
+    (tmp_path / "server-left.bag").write_bytes(b"")
+    records = {"server": {"left": RIGHT}}
+    report.write(judge("anna", load(PLAN), records, {}), load(PLAN), records, tmp_path, kept)
+    (command,) = re.findall(r"\./robocop replay ([^<]+)</code>", (tmp_path / "report.html").read_text())
+    assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")

@@ -29,12 +29,12 @@ def grade_submission(
     on_progress: Progress = lambda _part, _scenario: None,
     watched: bool = False,
     scratch: Optional[Path] = None,
-    all_bags: bool = False,
+    keep: bool = False,
 ) -> Grade:
-    """Write the report and the bags of failed scenarios, or of all, to `folder`; temporary files go to `scratch`.
+    """Write the report and the bags of failed scenarios to `folder`; temporary files go to `scratch`.
 
-    With `watched` the run is shown in RViz in real time. A part that is killed from outside is run once more;
-    UngradableError if that is killed, too.
+    With `keep` the folder stays where it is, and gets the bags of all scenarios. With `watched` the run is shown in
+    RViz in real time. A part that is killed from outside is run once more; UngradableError if that is killed, too.
     """
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
@@ -65,7 +65,7 @@ def grade_submission(
         folder.mkdir(parents=True, exist_ok=True)
         failed = {f"{check.part}-{check.scenario}" for check in grade.checks if check.failure is not None}
         for bag in sorted(Path(work).glob("*/*.bag")):
-            if all_bags or bag.stem in failed:
+            if keep or bag.stem in failed:
                 shutil.copyfile(bag, folder / bag.name)
-        report.write(grade, plan, records, folder)
+        report.write(grade, plan, records, folder, keep)
     return grade

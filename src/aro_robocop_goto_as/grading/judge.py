@@ -127,12 +127,13 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
-    """What to say of topics that the node waits for in vain."""
+    """What to say of topics that the node waits for in vain; its action server's own have no client by then."""
     hint = "; the position comes from /odom, as on a real robot"
     return [
         f"it subscribes to {topic}, which nobody publishes{hint if 'ground_truth' in topic else ''}"
         for record in records.values()
         for topic in record.unpublished
+        if topic.rpartition("/")[0] not in record.servers
     ]
 
 

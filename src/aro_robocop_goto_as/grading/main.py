@@ -70,9 +70,7 @@ def main() -> None:
             _show_progress("package", "build")
             submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
             folder = given or make_report_folder(state / "reports" / submission.name)
-            grade = grade_submission(
-                submission, plan, folder, state, sandbox, _show_progress, args.watch, all_bags=True
-            )
+            grade = grade_submission(submission, plan, folder, state, sandbox, _show_progress, args.watch, keep=True)
     except RobocopError as error:
         print(f"robocop grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)

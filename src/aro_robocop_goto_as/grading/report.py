@@ -20,18 +20,19 @@ SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states")
 MOST_LINES = 60  # of a node's output in the report
 
 
-def write(grade: Grade, plan: Plan, records: Records, folder: Path) -> None:
-    """Write all files to an existing folder, which already has the bags."""
+def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
+    """Write all files to an existing folder, which already has the bags; `kept`: they will not be moved elsewhere."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
     (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
-    scenarios = list(_scenarios(grade, plan, records, folder))
+    scenarios = list(_scenarios(grade, plan, records, folder, kept))
     page = render(
         "report.html",
         grade=grade,
         seed=plan.seed,
+        kept=kept,
         reached=_failures_first(grade),
         not_reached=[check for check in grade.checks if check.outcome is Outcome.NOT_REACHED],
         scenarios=sorted(scenarios, key=lambda scenario: not scenario["failed"]),
@@ -81,7 +82,7 @@ def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
     return suite
 
 
-def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path) -> Iterator[Dict[str, Any]]:
+def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool) -> Iterator[Dict[str, Any]]:
     """The values of each scenario's section in report.html."""
     about = {scenario.name: scenario.about for scenario in plan.scenarios}
     order = [START, *about, *BRIDGE_SCENARIOS]
@@ -99,7 +100,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path) -> Iter
             bag = folder / f"{part}-{record.name}.bag"
             yield {
                 "part": part,
-                "replay": f"./robocop replay {shlex.quote(str(bag.resolve()))}" if bag.is_file() else "",
+                "replay": shlex.quote(str(bag.resolve()) if kept else bag.name) if bag.is_file() else "",
                 "record": record,
                 "about": about.get(record.name, ""),
                 "panels": list(_panels(record, checks)),
