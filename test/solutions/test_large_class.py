@@ -56,7 +56,7 @@ def test_a_large_class_needs_little_time_for_each_hand_in_and_keeps_no_report_in
     (tmp_path / "class").mkdir()
     for number in range(COUNT):
         (tmp_path / "class" / f"s{number:05}.py").write_text(f"{text}# {number}")
-    monkeypatch.setattr(cluster, "work", graded_at_once)
+    monkeypatch.setattr(dask_cluster, "work", graded_at_once)
     here, memory = psutil.Process(), []
 
     def tasks(waiting):
