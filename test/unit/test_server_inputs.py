@@ -18,7 +18,7 @@ def scan_with(ahead: float) -> LaserScan:
 
 @pytest.fixture
 def inputs(monkeypatch):
-    monkeypatch.setattr(rospy, "Subscriber", lambda *arguments: None)
+    monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     monkeypatch.setattr("aro_robocop_goto_as.ros.server.inputs._now", lambda: 1.5)
     return Inputs(GotoParams())
 

@@ -62,8 +62,9 @@ class Inputs:
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
         self._arrived = threading.Condition()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
-        rospy.Subscriber("odom", Odometry, self._on_odom)
-        rospy.Subscriber("scan", LaserScan, self._on_scan)
+        # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
+        rospy.Subscriber("odom", Odometry, self._on_odom, tcp_nodelay=True)
+        rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
 
     def _on_odom(self, message: Odometry) -> None:
         with self._arrived:
