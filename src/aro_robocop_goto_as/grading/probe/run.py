@@ -22,9 +22,7 @@ OTHER_STREAM_TIMEOUT = 0.15  # for the other stream's answer once one has come
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback message, but need not
 START_REST = 0.5  # [s, wall] how long time is held while the node starts
 MOST_BUSY = 20.0  # [s, wall] likewise in total, besides the time-out for its start
-ONE_SHOT_TIMEOUT = (
-    2.0  # [s, wall] for a node to unsubscribe after a message, if it is to be the subscription's only one
-)
+ONE_SHOT_TIMEOUT = 2.0  # [s, wall] for a node to unsubscribe after its message, if it wanted only one
 LASTING_TIMEOUT = 0.3  # likewise, once one of the node's subscriptions has lasted
 SETTLE = 0.15  # [s, wall] for what a node does at once, while time is held, if it may sleep on the wall clock
 PUNCTUAL = 0.005  # [s, wall] to an answer, or to the first look at whether the node works on it
