@@ -119,7 +119,7 @@ class GradingSetupError(GradingError):
 
 
 class WatchError(GradingSetupError):
-    """RViz can't show the run; the message says why."""
+    """Neither RViz nor the web page can show the run; the message says why."""
 
 
 class UngradableError(GradingError):

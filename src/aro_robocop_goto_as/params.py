@@ -291,6 +291,7 @@ class WebParams:
     web_angular_velocity: float = positive(1.0, high=100.0)
     replay: str = ""
     replay_speed: float = parameter(1.0, low=0.1, high=10.0)
+    view_only: bool = False
 
     def conflicts(self) -> List[str]:
         """A frame name that tf2 would refuse, in words; empty when there is none."""

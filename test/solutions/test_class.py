@@ -205,7 +205,7 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     with busy_processes():
         os.killpg(first.pid, signal.SIGINT)
         output, _ = first.communicate(timeout=PATIENCE)
-    assert first.returncode == 130, output
+    assert (first.returncode, "Traceback" in output) == (130, False), output
     assert list(scratch.iterdir()) == []
     assert processes_mentioning(scratch) == []
     done = stamps(group)
@@ -220,6 +220,25 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     expect_everybody_once(group, count, output)
     assert {name: os.stat(group.parent / "results" / name).st_ino for name in done} == places
     assert all(stamps(group)[name] == done[name] for name in done)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("processes", range(2, 7))
+def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceback(
+    processes, group, start, tmp_path, monkeypatch
+):
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
+    grading = grade_class(start, group)
+    with busy_processes():
+        assert any("scenarios: seed" in grading.stdout.readline() for _ in range(3))
+        wait_for(lambda: len(processes_mentioning(scratch)) >= processes, f"{processes} processes of the grading")
+        os.killpg(grading.pid, signal.SIGINT)
+        output, _ = grading.communicate(timeout=PATIENCE)
+    assert (grading.returncode, "Traceback" in output) == (130, False), output
+    wait_for(lambda: processes_mentioning(scratch) == [], "all its processes ended")
+    assert list(scratch.iterdir()) == []
 
 
 @pytest.mark.slow

@@ -5,6 +5,8 @@ import io
 import json
 import os
 import shutil
+import subprocess
+import sys
 import tempfile
 import warnings
 import zipfile
@@ -15,6 +17,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.grading.classroom import main as classroom
 from aro_robocop_goto_as.grading.classroom import overview, worker
 from aro_robocop_goto_as.grading.classroom.hand_ins import HandIn, collect, pack, unpack
 from aro_robocop_goto_as.grading.classroom.main import class_seed
@@ -22,6 +25,7 @@ from aro_robocop_goto_as.grading.classroom.results import Check, Result, Results
 from aro_robocop_goto_as.grading.classroom.worker import Done
 from aro_robocop_goto_as.grading.plan import load
 from aro_robocop_goto_as.grading.scenario_draw import LARGEST_SEED
+from aro_robocop_goto_as.hosting.workspace import exclusive
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
 
@@ -162,6 +166,23 @@ def test_class_keeps_its_seed_unless_another_one_is_given(used, tmp_path):
     Results(tmp_path, {"seed": used}).keep(report("anna", 0.2))
     assert class_seed(None, tmp_path) == used
     assert class_seed(3, tmp_path) == 3
+
+
+def test_gradings_of_a_new_class_at_the_same_time_share_a_seed(tmp_path):
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "anna.py").write_text("one")
+    out = tmp_path / "out"
+    code = f"from {classroom.__name__} import main; main()"
+    command = [sys.executable, "-u", "-c", code, tmp_path / "class", "--report", out]
+    with exclusive(out / ".run"):  # the first one is running
+        second = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert "waiting for another process" in second.stderr.readline()
+        Results(out, {"seed": 4711}).keep(report("anna", 0.2))
+    try:
+        assert [second.stdout.readline() for _ in range(2)][1] == "scenarios: seed 4711\n"
+    finally:
+        second.kill()
+        second.communicate()
 
 
 def test_new_class_gets_a_seed_that_draws(tmp_path):

@@ -52,9 +52,10 @@ ORDER = {
     "ros.client": "errors geometry params ros",
     "ros.web": "bootstrap errors geometry param_loading params ros ros.client web",
     "ros.cli": "bootstrap errors geometry hosting param_loading params process robot ros ros.client rviz web",
-    "grading": "errors geometry hosting param_loading process world",
+    "grading": "errors geometry hosting param_loading params process web world",
     "grading.classroom": "errors grading hosting process",
-    "grading.probe": "errors geometry goto grading params process robot ros ros.sim rviz simulation world",
+    "grading.probe": "component_params errors geometry goto grading params process robot ros ros.sim rviz simulation "
+    "web world",
     "bench": "errors geometry param_loading params process raycast robot ros sensors simulation world",
 }
 # Modules whose rosdep key differs from their name.

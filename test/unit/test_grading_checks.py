@@ -1,11 +1,14 @@
 """Each check on constructed records: a correct one passes, each mistake fails with its own cause."""
 
+import dataclasses
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Tuple, cast
 
 import pytest
+import yaml
 from support import ROOT
 
 from aro_robocop_goto_as.errors import ParameterError, PlanError
@@ -304,16 +307,24 @@ def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each
     assert len(world_of(plan).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in plan.scenarios)
 
 
+def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
+    section = PLAN.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
+    lines = [re.fullmatch(r"  #(\w+): (\S+) +# \S.*", line) for line in section]
+    assert all(lines) and yaml.safe_load(PLAN.read_text())["limits"] is None
+    assert {line[1]: float(line[2]) for line in lines if line} == dataclasses.asdict(LIMITS)
+    assert load(PLAN).limits == LIMITS
+
+
 @pytest.mark.parametrize(
     "old, new, error",
     [
-        ("  feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
+        ("  #feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
         ("points: 0.5, scenarios: [start]", "punkte: 0.5, scenarios: [start]", "unknown: punkte"),
         ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.7]", "expected 2 numbers"),
         ("ends: ABORTED", "ends: FAILED", "expected SUCCEEDED, ABORTED or PREEMPTED"),
         ("limits:", "limits: [", "line"),
         ("limits:", "border:", "unknown: border"),
-        ("  stall: 8.0", "  stall: .nan", "stall: expected a finite number"),
+        ("  #stall: 8.0", "  stall: .nan", "stall: expected a finite number"),
         (
             "goal: [0.5..0.9, 0.5..0.9]",
             "goal: [.nan, 0.7]",

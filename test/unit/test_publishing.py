@@ -52,15 +52,15 @@ def _topic() -> Iterator[Callable[[], DirectPublisher]]:
 
 
 @pytest.fixture(name="connect")
-def _connect() -> Iterator[Callable[[DirectPublisher], Link]]:
+def _connect() -> Iterator[Callable[..., Link]]:
     """Connects one more subscriber to a topic, as rospy's server does after the handshake."""
     server = socket.create_server(("127.0.0.1", 0))
     names = (f"/subscriber_{i}" for i in itertools.count())
     ends = [socket.create_connection(server.getsockname())]
 
-    def connect(topic: DirectPublisher) -> Link:
+    def connect(topic: DirectPublisher, name: str = "") -> Link:
         connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
-        connection.set_socket(server.accept()[0], next(names))
+        connection.set_socket(server.accept()[0], name or next(names))
         ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number
         topic.impl.add_connection(connection)
         return Link(connection, ends[-2])
@@ -141,7 +141,7 @@ def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
 def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
     program = (
         "import resource\n"
-        "from aro_robocop_goto_as.process.limits import raise_descriptor_limit\n"
+        "from aro_robocop_goto_as.process.rlimits import raise_descriptor_limit\n"
         "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
         "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
         "raise_descriptor_limit()\n"
@@ -167,6 +167,21 @@ def test_one_shot_subscription_is_served_only_when_it_got_a_message_itself(
     scans.impl.subscriber_listeners[0].on_change()
     _send(scans)
     assert one_shot.served() and not one_shot.waiting()
+
+
+def test_subscriptions_of_the_page_that_shows_a_run_are_none_of_the_submission(
+    topic: Callable[[], DirectPublisher], connect: Callable[..., Link]
+) -> None:
+    scans = topic()
+    one_shot = OneShotSubscriptions(lambda: [scans])
+    page = connect(scans, "/robocop_watch/page")
+    assert not one_shot.waiting()
+    _send(scans)
+    assert not one_shot.served()
+    page.socket.close()
+    assert not one_shot.waiting() and not one_shot.seen
+    connect(scans)
+    assert one_shot.waiting()
 
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams() -> None:

@@ -210,16 +210,6 @@ def test_goto_passes_negative_numbers():
     assert dry_run("goto", "-0.5", "-1", "--frame", "map")[0].endswith("/robocop_goto.py -0.5 -1 --frame map")
 
 
-@pytest.mark.parametrize(
-    "settings, problem", [({}, "DISPLAY is not set"), ({"DISPLAY": ":4711"}, ":4711 (DISPLAY) does not answer")]
-)
-def test_grade_watch_without_a_display_is_refused_with_advice(settings, problem, tmp_path):
-    done = robocop("grade", str(tmp_path), "--watch", **settings)
-    assert (done.returncode, done.stdout) == (1, "")
-    assert f"{problem}: run it on a desktop, or grade without --watch" in done.stderr
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.fixture
 def checkout(tmp_path):
     """A copy of the checkout at a path with a space, that needs nothing from PyPI but pybullet's source release."""

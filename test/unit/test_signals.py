@@ -96,6 +96,27 @@ except KeyboardInterrupt:
     assert output_of(code, number) == (["cleaned"], 0)
 
 
+def test_threads_that_fail_after_the_interrupt_print_no_traceback(number):
+    code = """
+import sys, threading
+sys.stderr = sys.stdout
+signals.interrupt_on_signal()
+ended = threading.Event()
+def work():
+    ended.wait()
+    raise OSError("the system has gone")
+thread = threading.Thread(target=work)
+thread.start()
+try:
+    os.kill(os.getpid(), number)
+except KeyboardInterrupt:
+    ended.set()
+    thread.join()
+print("end")
+"""
+    assert output_of(code, number) == (["end"], 0)
+
+
 def test_swallowed_keyboard_interrupt_is_raised_again(number):
     code = """
 signals.interrupt_on_signal()

@@ -14,6 +14,7 @@ from .plan import Plan
 from .record import Record
 from .sandbox import Sandbox
 from .submission import Submission
+from .viewer import Viewer
 
 Progress = Callable[[str, str], None]  # part, scenario
 ATTEMPTS = 2
@@ -27,14 +28,14 @@ def grade_submission(
     state: Path,
     sandbox: Optional[Sandbox],
     on_progress: Progress = lambda _part, _scenario: None,
-    watched: bool = False,
+    viewer: Optional[Viewer] = None,
     scratch: Optional[Path] = None,
     keep: bool = False,
 ) -> Grade:
     """Write the report and the bags of failed scenarios to `folder`; temporary files go to `scratch`.
 
-    With `keep` the folder stays where it is, and gets the bags of all scenarios. With `watched` the run is shown in
-    RViz in real time. A part that is killed from outside is run once more; UngradableError if that is killed, too.
+    With `keep` the folder stays where it is, and gets the bags of all scenarios. With a `viewer` the run is shown
+    in real time. A part that is killed from outside is run once more; UngradableError if that is killed, too.
     """
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
@@ -51,7 +52,7 @@ def grade_submission(
                     state,
                     sandbox,
                     on_progress=partial(on_progress, script.part),
-                    watched=watched,
+                    viewer=viewer,
                 )
                 if not recorded.killed:
                     break

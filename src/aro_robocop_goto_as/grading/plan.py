@@ -90,6 +90,7 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
         raise PlanError(f"{path}: {error}") from error
     keys = {"limits", "scenarios", "checks"}
     _expect(raw, keys, str(path), keys)
+    raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
     for name, kind, words in (
         ("limits", dict, "a mapping"),
         ("scenarios", list, "a list"),

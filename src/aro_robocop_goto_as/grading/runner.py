@@ -20,6 +20,7 @@ from .resource_guard import MAX_MEMORY, Guard
 from .sandbox import OWN_ENVIRONMENT, Sandbox
 from .sandboxed_build import public
 from .submission import Script, Submission
+from .viewer import Viewer
 
 PROBE = "aro_robocop_goto_as.grading.probe.main"
 Progress = Callable[[str], None]
@@ -49,11 +50,11 @@ def run(
     only: Sequence[str] = (),
     on_progress: Progress = lambda _: None,
     budget: float = BUDGET,
-    watched: bool = False,
+    viewer: Optional[Viewer] = None,
 ) -> Recorded:
     """Run all scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
 
-    If watched, the run is shown in RViz at real time. UngradableError where RViz or the ROS master can't be started.
+    A viewer shows the run at real time. UngradableError where it or the ROS master can't be started.
     """
     out.mkdir(parents=True, exist_ok=True)
     home = out / "home"
@@ -89,14 +90,15 @@ def run(
                 "seed": plan.seed,
                 "out": str(out),
                 "only": list(only),
-                "watched": watched,
+                "viewer": viewer and viewer.as_dict(),
             }
         )
     )
     probe = [sys.executable, "-m", PROBE, str(job)]
     if sandbox is not None:
         probe = sandbox.probe_command(probe)
-    return _supervise(probe, environment, out, script.part, on_progress, budget)
+    inherited = viewer.descriptors if viewer is not None else ()
+    return _supervise(probe, environment, out, script.part, on_progress, budget, inherited)
 
 
 def _environment(out: Path, state: Path) -> Dict[str, str]:
@@ -116,12 +118,21 @@ def _environment(out: Path, state: Path) -> Dict[str, str]:
 
 
 def _supervise(
-    command: List[str], environment: Dict[str, str], out: Path, part: str, on_progress: Progress, budget: float
+    command: List[str],
+    environment: Dict[str, str],
+    out: Path,
+    part: str,
+    on_progress: Progress,
+    budget: float,
+    inherited: Sequence[int] = (),
 ) -> Recorded:
-    """Start the probe, follow what it reports on its standard output, and end it after `budget` [s, wall]."""
+    """Start the probe, follow what it reports on its standard output, and end it after `budget` [s, wall].
+
+    It inherits these file descriptors.
+    """
     lines: queue.Queue[Optional[str]] = queue.Queue()
     log = out / f"{part}-probe.log"
-    process = child.start(command, log, environment, stdout=PIPE)
+    process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
     guard = Guard(process.pid, memory=MAX_MEMORY + PROBE_MEMORY)
     threading.Thread(target=_read, args=(process, lines), daemon=True).start()
     deadline, problem, scenario, grace = time.monotonic() + budget, "", "start", 0.0

@@ -42,7 +42,7 @@ def make(share: Path, folder: Path, image: Optional[str] = None) -> None:
 
 def main() -> None:
     """Exit status 1 if the folder exists already."""
-    parser = argparse.ArgumentParser(prog="robocop new", description=__doc__)
+    parser = argparse.ArgumentParser(prog="robocop new", description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "name", help="folder to create; the package itself is called aro_robocop_goto_as, as in the lab"
     )

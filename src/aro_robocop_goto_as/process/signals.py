@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from typing import Any, Dict, Optional, Tuple
 
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -23,6 +24,7 @@ def interrupt_on_signal() -> None:
 def _interrupt(_number: int, _frame: object) -> None:
     global _interrupted
     _interrupted = True
+    threading.excepthook = lambda _: None  # threads fail when the system that they use is ended
     begin_cleanup()
     raise KeyboardInterrupt
 

@@ -9,7 +9,7 @@ from typing import Any, Iterator
 import rospy
 
 from ..errors import RobocopError
-from ..process.limits import raise_descriptor_limit
+from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 from . import private_api
 

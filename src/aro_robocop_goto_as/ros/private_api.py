@@ -64,6 +64,11 @@ def live_connections(publisher: rospy.Publisher) -> List[Any]:
     return live
 
 
+def subscriber_of(connection: Any) -> str:
+    """Name of the node to which a publisher's connection goes; rospy's public API has no names of subscribers."""
+    return str(connection.endpoint_id)
+
+
 def messages_sent(connection: Any) -> int:
     """How many messages were sent to one subscriber; rospy's public API does not count them."""
     return int(connection.stat_num_msg)
@@ -251,17 +256,19 @@ def install_roslaunch_signal_handlers() -> None:
 
 
 @contextlib.contextmanager
-def checked_requests(refusal: Callable[[Any], str], headers: Dict[str, str]) -> Iterator[None]:
+def checked_requests(
+    refusal: Callable[[Any], str], headers: Dict[str, str], listening: Optional[socket.socket] = None
+) -> Iterator[None]:
     """A viser server made in this block answers only HTTP requests for which `refusal` returns an empty string.
 
-    Every answer gets these headers. viser passes no such options on to websockets' serve(), which it calls before its
-    constructor returns.
+    Every answer gets these headers. With a `listening` socket it accepts its connections, and opens no port itself.
+    viser passes no such options on to websockets' serve(), which it calls before its constructor returns.
     """
     from websockets.asyncio import server as websockets_server  # not installed where the page has never been used
 
     serve = websockets_server.serve
 
-    def checking_serve(*arguments: Any, process_request: Any, **options: Any) -> Any:
+    def checking_serve(handler: Any, host: str, port: int, process_request: Any, **options: Any) -> Any:
         def process(connection: Any, request: Any) -> Any:
             reason = refusal(request.headers)
             response = connection.respond(403, reason + "\n") if reason else process_request(connection, request)
@@ -269,7 +276,8 @@ def checked_requests(refusal: Callable[[Any], str], headers: Dict[str, str]) -> 
                 response.headers.update(headers)
             return response
 
-        return serve(*arguments, process_request=process, **{**options, "max_size": LARGEST_REQUEST})
+        options = {**options, "process_request": process, "max_size": LARGEST_REQUEST}
+        return serve(handler, host, port, **options) if listening is None else serve(handler, sock=listening, **options)
 
     setattr(websockets_server, "serve", checking_serve)  # noqa: B010  mypy refuses to assign to a module's function
     try:

@@ -6,25 +6,18 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..geometry import Pose3D, Twist2D, Vector3
+from ..geometry import Pose3D, Vector3
 from . import text
+from .drive_pad import Drive, Release, add_drive_pad
+from .panel_html import Html
 from .pick import floor_point
+from .replay_panel import SETTLED, Replay, ReplayPanel
 from .series import Series
-from .state import Ended, ReplayState, SimState
+from .state import Ended, SimState
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
-HOLD_RATE = 10.0  # [Hz] at which a page renews the request of a button that is held
 CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; a room of 5 x 5 m
-PAUSE, RUN, STEP, RESET, PLAY = "Pause", "Run", "Step", "Reset", "Play"
-SETTLED = 2.0  # [s, wall] after a visitor has moved a slider: until then what is reported may be older than that
-SLIDER_STEP = 0.1  # [s, recorded] of a recording's slider
-PAD = (
-    # label, hot key, icon, forward, counter-clockwise
-    ("Forward (I)", "I", "ARROW_UP", 1.0, 0.0),
-    ("Turn left (J)", "J", "ARROW_BACK_UP", 0.0, 1.0),
-    ("Turn right (L)", "L", "ARROW_FORWARD_UP", 0.0, -1.0),
-    ("Backward (K)", "K", "ARROW_DOWN", -1.0, 0.0),
-)
+PAUSE, RUN, STEP, RESET = "Pause", "Run", "Step", "Reset"
 PLOT_HEIGHT = 130  # [pixel]
 
 
@@ -33,8 +26,8 @@ class Actions:
     """What the page asks for; called from viser's threads, and none may block."""
 
     click: Callable[[float, float, bool], None]  # x, y [m] in the fixed frame; whether to place the robot there
-    drive: Callable[[int, Twist2D], None]  # page, velocity as a share of the full speed, -1 to 1
-    release: Callable[[int], None]  # page
+    drive: Drive
+    release: Release
     stop: Callable[[], None]
     cancel: Callable[[], None]
     pause: Callable[[bool], None]  # or run
@@ -45,40 +38,21 @@ class Actions:
     visitors: Callable[[], None]  # a browser has come or gone
 
 
-@dataclass(frozen=True)
-class Replay:
-    """A recording that is shown instead of a running system, and what the page asks for; none may block."""
-
-    duration: float  # [s, recorded]
-    speed: float  # at the beginning
-    play: Callable[[bool], None]  # or pause
-    seek: Callable[[float], None]  # to a moment [s, recorded]
-    set_speed: Callable[[float], None]
-
-
-class _Html:
-    """An HTML element of the panel, sent when it changes."""
-
-    def __init__(self, handle: Any) -> None:
-        self._handle = handle
-        self._content = ""
-
-    def show(self, content: str) -> None:
-        if content != self._content:
-            self._handle.content = self._content = content
-            self._handle.visible = bool(content)
-
-
 class Page:
     """The panel of a viser server. The show_ and set_ methods are called from one thread."""
 
-    def __init__(self, server: Any, viser: Any, actions: Actions, replay: Optional[Replay] = None) -> None:
+    def __init__(
+        self, server: Any, viser: Any, actions: Actions, replay: Optional[Replay] = None, live: bool = True
+    ) -> None:
+        """`live`: visitors can send requests to the system; otherwise they only watch it, or a recording."""
         self._server = server
         self._actions = actions
         self._pages: Dict[int, Any] = {}
         self._followed: Optional[Vector3] = None
-        self._factor_set = self._moment_set = 0.0  # [s, wall] when a visitor moved the slider
+        self._factor_set = 0.0  # [s, wall] when a visitor moved the slider
+        self._factor_agreed = 0.0  # [s, wall] when it was last found to show the simulator's factor
         self._replay = replay
+        self._live = live
         self._icons = viser.Icon
         server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, control_width="medium")
         camera = server.initial_camera
@@ -91,72 +65,39 @@ class Page:
     # -- the panel --
 
     def _build(self, gui: Any) -> None:
-        self._master_alert = _Html(gui.add_html("", visible=False))
-        self._alert = _Html(gui.add_html("", visible=False))
-        self._overview = _Html(gui.add_html(""))
-        self._answer = _Html(gui.add_html("", visible=False))
+        self._master_alert = Html(gui.add_html("", visible=False))
+        self._alert = Html(gui.add_html("", visible=False))
+        self._overview = Html(gui.add_html(""))
+        self._answer = Html(gui.add_html("", visible=False))
         self._robot = gui.add_dropdown("Robot", ("",), visible=False, hint="shown in detail and driven")
         self._robot.on_update(self._on_select)
-        live = self._replay is None
-        if self._replay is not None:
-            self._build_replay(gui, self._replay)
-        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
-        self._button("Cancel goal", "X", lambda: self._actions.cancel(), live)
+        self.replay_panel = None if self._replay is None else ReplayPanel(gui, self._replay)
+        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=self._live, hint="on the floor")
+        self._button("Cancel goal", "X", self._actions.cancel, self._live)
         with gui.add_folder("Goal"):
-            self._feedback = _Html(gui.add_html("", visible=False))
-            self._history = _Html(gui.add_html(""))
+            self._feedback = Html(gui.add_html("", visible=False))
+            self._history = Html(gui.add_html(""))
         self._time = gui.add_folder("Time", visible=False)
         with self._time:
             gui.add_button_group("Simulation", (PAUSE, RUN, STEP, RESET)).on_click(self._on_time)
             self._factor = gui.add_slider("Factor", 0.1, 10.0, 0.1, 1.0, hint="simulated seconds per second")
             self._factor.on_update(self._on_factor)
-        self._build_pad(gui, live)
+        with gui.add_folder("Drive", visible=self._live):
+            add_drive_pad(gui, self._icons, self._actions.drive, self._actions.release)
+            self._button("Stop", "HAND_STOP", self._actions.stop)
         with gui.add_folder("Plots"):
             self._errors = self._plot(gui, "errors", ("position [m]", "angle [rad]"))
             self._commands = self._plot(gui, "cmd_vel", ("v [m/s]", "w [rad/s]"))
         with gui.add_folder("View"):
             self._follow = gui.add_checkbox("Follow the robot", False)
             self._frames = gui.add_checkbox("Frames", False)
-            self._trail = gui.add_checkbox("Trail", True)
+            self._trail = gui.add_checkbox("Trail", self._live or self._replay is not None)
             self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
-
-    def _build_replay(self, gui: Any, replay: Replay) -> None:
-        self._progress = _Html(gui.add_html(""))
-        buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
-        buttons.on_click(lambda event: replay.play(event.target.value == PLAY))
-        longest = max(round(replay.duration, 1), SLIDER_STEP)
-        self._moment = gui.add_slider("Time", 0.0, longest, SLIDER_STEP, 0.0, hint="seconds since the beginning")
-        self._moment.on_update(self._on_moment)
-        self._speed = gui.add_slider("Speed", 0.1, 10.0, 0.1, replay.speed, hint="recorded seconds per second")
-        self._speed.on_update(lambda event: replay.set_speed(event.target.value))
-
-    def _build_pad(self, gui: Any, live: bool) -> None:
-        with gui.add_folder("Drive", visible=live):
-            for label, key, icon, forward, turn in PAD:
-                share = Twist2D(forward, turn)
-                button = gui.add_button(label, icon=getattr(self._icons, icon), hint="drives while it is held")
-                button.on_hold(self._holder(share), callback_hz=HOLD_RATE)
-                button.on_click(self._on_release)
-                command = gui.add_command(label, hotkey=key, description="drives while the key is held")
-                command.on_trigger(self._holder(share))
-            self._button("Stop", "HAND_STOP", lambda: self._actions.stop())
 
     def _button(self, label: str, icon: str, action: Callable[[], None], visible: bool = True) -> Any:
         button = self._server.gui.add_button(label, icon=getattr(self._icons, icon), visible=visible)
         button.on_click(lambda _event: action())
         return button
-
-    def _holder(self, share: Twist2D) -> Callable[[Any], Any]:
-        # Coroutines run one after the other in viser's event loop; functions would run in its thread pool, where a late
-        # request could overtake the release.
-        async def hold(event: Any) -> None:
-            self._actions.drive(event.client_id, share)
-
-        return hold
-
-    async def _on_release(self, event: Any) -> None:
-        """The pointer was released over its button of the pad; if released elsewhere, the requests just stop."""
-        self._actions.release(event.client_id)
 
     def _on_time(self, event: Any) -> None:
         wanted = event.target.value
@@ -167,19 +108,14 @@ class Page:
         elif wanted == RESET:
             self._actions.reset()
 
-    def _on_select(self, event: Any) -> None:
+    async def _on_select(self, event: Any) -> None:  # a coroutine, as _on_factor
         if event.client is not None:
             self._actions.select(event.target.value)
 
-    def _on_factor(self, event: Any) -> None:
+    async def _on_factor(self, event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
         if event.client is not None:
             self._factor_set = time.monotonic()
             self._actions.set_factor(event.target.value)
-
-    def _on_moment(self, event: Any) -> None:
-        if event.client is not None and self._replay is not None:
-            self._moment_set = time.monotonic()
-            self._replay.seek(event.target.value)
 
     @staticmethod
     def _plot(gui: Any, title: str, names: Tuple[str, str]) -> Any:
@@ -254,23 +190,18 @@ class Page:
 
     def show_sim(self, sim: Optional[SimState], robots: int, bridge: str) -> None:
         """The simulator's report, None for a robot without one, and the bridge's."""
-        self._overview.show(text.overview(sim, robots, bridge))
-        controllable = sim is not None and self._replay is None
+        known = self._live or sim is not None or bridge  # a grader's run, or its recording, has neither
+        self._overview.show(text.overview(sim, robots, bridge) if known else "")
+        controllable = sim is not None and self._live
         if self._time.visible != controllable:
             self._time.visible = controllable
         if sim is None:
             return
-        settled = time.monotonic() - self._factor_set > SETTLED
-        asked = min(max(sim.factor_asked, 0.1), 10.0)
-        if settled and sim.factor_asked > 0.0 and abs(self._factor.value - asked) > 1e-6:
-            self._factor.value = asked
-
-    def show_replay(self, state: ReplayState) -> None:
-        """How far the recording has been played."""
-        self._progress.show(text.progress(state))
-        moment = min(round(state.position, 1), self._moment.max)
-        if time.monotonic() - self._moment_set > SETTLED and abs(self._moment.value - moment) > SLIDER_STEP / 2.0:
-            self._moment.value = moment
+        now, asked = time.monotonic(), min(max(sim.factor_asked, 0.1), 10.0)
+        if sim.factor_asked <= 0.0 or abs(self._factor.value - asked) < 1e-6:
+            self._factor_agreed = now
+        elif now - max(self._factor_agreed, self._factor_set) > SETTLED:
+            self._factor.value = asked  # not at once: a visitor's value may be on its way, and would be overwritten
 
     def show_feedback(self, content: Optional[Tuple[float, float, str]]) -> None:
         """The newest feedback, None while no goal is executed."""

@@ -5,7 +5,7 @@ from typing import List, Optional
 
 from ..check_limits import Limits
 from ..record import Click, Goal, Record
-from .life import no_exception, stays_alive
+from .node_lifetime import no_exception, stays_alive
 from .verdict import Earlier, Failed, NotReached, Passed, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform

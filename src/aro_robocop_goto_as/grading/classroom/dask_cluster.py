@@ -1,9 +1,11 @@
 """Distributes tasks to dask workers, local ones or those of an existing scheduler."""
 
 import contextlib
+import logging
 import os
 import tempfile
 import uuid
+import warnings
 from typing import Dict, Iterable, Iterator, Tuple, Union
 
 from distributed import Client, Future, LocalCluster, as_completed
@@ -39,6 +41,9 @@ def connected(place: Place) -> Iterator[Client]:
 
     GradingSetupError if the scheduler does not answer or one of its workers is not able to grade.
     """
+    # Interrupted, these report what they did not finish.
+    logging.getLogger("asyncio").setLevel(logging.CRITICAL)
+    warnings.filterwarnings("ignore", message="resource_tracker")
     with contextlib.ExitStack() as stack:
         if place.scheduler:
             scheduler, security = place.scheduler, _shared_credentials(place)

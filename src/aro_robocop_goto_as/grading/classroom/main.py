@@ -15,19 +15,21 @@ from xml.etree import ElementTree
 from ...errors import GradingSetupError, RobocopError
 from ...hosting.scratch import scratch_folder
 from ...hosting.workspace import exclusive
+from ...process.child_errors import send_child_errors_to
 from ...process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from ..judge import printable_lines
 from ..main import INTERRUPTED
 from ..plan import Plan, load
 from ..report_folder import make_report_folder
 from ..sandbox import expect_private
-from ..scenario_draw import LARGEST_SEED
+from ..scenario_draw import LARGEST_SEED, MIDDLE
 from .hand_ins import HandIn, collect, pack
 from .overview import page
 from .results import Result, Results, one_line, seed_of, table, write_atomically
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
+WORKERS_LOG = ".workers.log"  # in the folder of the results
 WRITING = 0.05  # share of the time in which the table and the overview are written while a class is graded
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
@@ -72,7 +74,7 @@ class Class:
 
 def main() -> None:
     """Exit status 0: everybody is graded; 1: somebody could not be graded; 130: interrupted."""
-    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__)
+    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
     parser.add_argument("folder", metavar="DIR", help="contains a folder (a package), zip or Python file per hand-in")
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
@@ -90,8 +92,7 @@ def main() -> None:
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
         results_folder = Path(args.report) if args.report else state / "classes" / folder.name
-        seed = class_seed(args.seed, results_folder)
-        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", seed)
+        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
         text = plan.path.read_text(encoding="utf-8")
         out = make_report_folder(results_folder)
         if not args.unsafe:
@@ -103,19 +104,26 @@ def main() -> None:
             print(f"ignored: {one_line(name)}, which is not a folder, zip or Python file", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         with scratch_folder(), exclusive(out / ".run"):
+            seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
+            plan = load(plan.path, seed)
             results = Results(out, {"plan": hashlib.sha256(text.encode()).hexdigest(), "seed": seed, "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             print(f"scenarios: seed {seed}", flush=True)
             # Packed when it is their turn, from what is there then.
             tasks = (Task(pack(it.path), text, seed, args.unsafe) for it in list(group.waiting.values()))
+            send_child_errors_to(out / WORKERS_LOG)
             place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
             grade(group, tasks, place)
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+        ignore_all()
+        with contextlib.suppress(OSError):  # the terminal may be closed
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(INTERRUPTED)  # dask's handlers at exit would wait for workers that had not started, and print why not
     finally:
         ignore_all()
     print(f"table: {out / CSV}\noverview: {out / HTML}")
@@ -129,7 +137,7 @@ def class_seed(given: Optional[int], results: Path) -> int:
 
 
 def grade(group: Class, tasks: Iterable[Task], place: Place) -> None:
-    """Grade the remaining hand-ins; if interrupted, write what is done, then exit."""
+    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
     group.write(running=bool(group.waiting))
     try:
         if group.waiting:
@@ -149,6 +157,7 @@ def grade(group: Class, tasks: Iterable[Task], place: Place) -> None:
                 f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",
                 file=sys.stderr,
             )
-        sys.exit(INTERRUPTED)
+        sys.stderr = open(os.devnull, "w")  # for what dask's objects report when they are deleted
+        raise
     finally:
         group.write(running=False)

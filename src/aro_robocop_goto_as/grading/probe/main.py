@@ -16,6 +16,7 @@ from ...process import child
 from ...ros.private_api import shutdown_has_begun
 from .. import record as rec
 from ..plan import BRIDGE_SCENARIOS, load
+from ..viewer import Viewer
 from .bridge import BridgeRun
 from .nodes import Node
 from .run import NODE_LOST, Run
@@ -40,7 +41,7 @@ class Job:
         self.only: List[str] = raw["only"]  # scenarios; empty: all
         self.parameters: Dict[str, Any] = raw["parameters"]
         self.watch: Optional[Watch] = None
-        self.watched: bool = raw["watched"]
+        self.viewer = Viewer(**raw["viewer"]) if raw["viewer"] else None
 
     def launch(self, run: Run) -> Node:
         """Start the node that is graded."""
@@ -51,7 +52,7 @@ class Job:
         return not self.only or name in self.only
 
     def begin(self, name: str, about: str) -> None:
-        """Announce the next scenario to the grader, and in RViz if the run is watched."""
+        """Announce the next scenario to the grader, and in the viewer if the run is watched."""
         print(f"begin {name}", flush=True)
         if self.watch is not None:
             self.watch.begin(f"{self.part}: {name}", about)
@@ -128,8 +129,9 @@ def main() -> None:
     stage.publish_clock()
     status = 0
     try:
-        if job.watched:
-            job.watch = stage.watch = Watch(stage.robot, PARAMS, job.plan, job.out / f"{job.part}-rviz.log")
+        if job.viewer is not None:
+            log = job.out / f"{job.part}-viewer.log"
+            job.watch = stage.watch = Watch(stage.robot, PARAMS, job.plan, job.viewer, log)
             job.watch.open()
         (_server if job.part == "server" else _bridge)(job, stage, grader_pids)
     except GraderLostError as error:

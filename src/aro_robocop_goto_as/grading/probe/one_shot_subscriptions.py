@@ -2,13 +2,16 @@
 
 Such a node waits for a message of its own at each call, so simulated time has to pass before it can answer a tick. But
 none may pass while it subscribes or unsubscribes, or it would miss messages that it gets from a simulator in real time.
+
+The viewer's subscriptions are no part of this: the web page subscribes and unsubscribes as browsers come and go.
 """
 
 from typing import Any, Callable, Dict, List, Sequence
 
 import rospy
 
-from ...ros.private_api import live_connections, messages_sent
+from ...ros.private_api import live_connections, messages_sent, subscriber_of
+from .display import is_shown
 
 
 class OneShotSubscriptions:
@@ -28,7 +31,7 @@ class OneShotSubscriptions:
 
     def forget(self) -> None:
         """Those that exist now are the node's lasting ones."""
-        self._lasting = [connection for topic in self._topics() for connection in live_connections(topic)]
+        self._lasting = self._live()
         self._links = {}
 
     def served(self) -> bool:
@@ -49,8 +52,16 @@ class OneShotSubscriptions:
                 self.lasting_seen = True
 
     def _look(self) -> None:
-        live = {id(connection): connection for topic in self._topics() for connection in live_connections(topic)}
+        live = {id(connection): connection for connection in self._live()}
         self.seen = self.seen or not self._links.keys() <= live.keys()
         for connection in self._lasting:
             live.pop(id(connection), None)
         self._links = live
+
+    def _live(self) -> List[Any]:
+        return [
+            connection
+            for topic in self._topics()
+            for connection in live_connections(topic)
+            if not is_shown(subscriber_of(connection))
+        ]

@@ -2,7 +2,6 @@
 
 from typing import Any, Callable, Dict, List, Set
 
-import rosbag
 import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatusArray
@@ -65,20 +64,13 @@ class Recording:
         """Start a new record, with the robot at the scenario's start."""
         self.parts = {name: [] for name in PARTS}
         self.marks = {}
-        self.close_bag()
-        self.stage.bag = rosbag.Bag(bag, "w") if bag else None
+        self.stage.bag.open(bag)
         self.stage.command(STANDSTILL)
         self.stage.begin(index, odd_scan)
 
-    def close_bag(self) -> None:
-        """Close the scenario's bag, if there is one."""
-        if self.stage.bag is not None:
-            self.stage.bag.close()
-            self.stage.bag = None
-
     def finish(self, name: str, **more: Any) -> Record:
         """The record of the scenario."""
-        self.close_bag()
+        self.stage.bag.close()
         if not rosgraph.is_master_online():
             raise GraderLostError("the ROS master was ended while the submission ran")
         parts: Dict[str, Any] = {name: tuple(entries) for name, entries in self.parts.items()}

@@ -15,6 +15,7 @@ from .. import record as rec
 from ..handout import ACTION
 from ..plan import Plan, Scenario, Step
 from ..record import Record
+from .display import is_shown
 from .nodes import Node
 from .run import SETTLE, Run
 from .stage import Stage, outlines
@@ -43,7 +44,8 @@ class ServerRun:
         """Start the node; the record says whether its action server came up."""
         self.run.begin(0, bag=bag)
         up = self._bring_up()
-        servers, unpublished = graph.action_servers(), graph.unpublished_topics()
+        servers = graph.action_servers()
+        unpublished = [topic for topic in graph.unpublished_topics() if not is_shown(topic)]
         self.run.settle(0.3)
         return self.run.finish(
             "start", up=up, servers=tuple(servers), types=tuple(servers.values()), unpublished=tuple(unpublished)

@@ -6,12 +6,9 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import genpy
 import numpy as np
-import rosbag
 import rospkg
 import rospy
 from rosgraph_msgs.msg import Clock
-from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import MarkerArray
 
 from ...errors import CommandError
 from ...geometry import Pose2D, Twist2D, compose, inverse
@@ -26,15 +23,15 @@ from ...ros.sim.factory import message_config
 from ...ros.sim.robot_topics import RobotTopics
 from ...ros.sim.subscriptions import SubscriptionTable
 from ...ros.sim.transform_topics import TransformTopics
-from ...ros.sim.world_markers import world_markers
 from ...simulation.factory import make_simulator
 from ...simulation.loop import SimulationLoop
 from ...simulation.loop_interface import LoopInterface
 from ...simulation.observations import JOINTS, ODOM, TF, Observations, Subscriptions
 from .. import record as rec
 from ..handout import AHEAD
-from ..plan import FARTHEST, Plan, site, world_of
+from ..plan import Plan, site, world_of
 from ..record import Sample
+from .scenario_bag import ScenarioBag
 from .watch import Watch
 
 # cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
@@ -46,7 +43,6 @@ ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as
 MAX_EXCLUDED = 600.0  # [s, wall]
 REPORT_EVERY = 0.5  # [s, wall]
 MOST_WAITING = 20_000  # messages
-MOST_BAG = 32 * 1024**2  # bytes
 MOST_LISTED = 100  # entries of a message's list
 
 
@@ -80,17 +76,17 @@ class Stage(LoopInterface):
         self._table.set_topics([{k: topic for k, topic in self.robot.by_sensor.items() if k != JOINTS}])
         self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
         self.odd_scan = False
-        self.bag: Optional[rosbag.Bag] = None
+        self.bag = ScenarioBag(self.sim, self.robot, self._transforms, frames)
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.tick_number = 0
         self.before_tick: Callable[[], None] = lambda: None  # called before the clock reaches a control tick
         self.after_publishing: Callable[[], None] = lambda: None  # called after each step with something to publish
-        self.watch: Optional[Watch] = None  # RViz, where the run is shown
+        self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._real_time = True
         self._excluded, self._unreported = 0.0, 0.0  # [s, wall] in total, and of these not yet reported to the grader
 
     def wall(self) -> float:
-        """The wall clock [s] for deadlines: without the time spent for RViz, and without what was excluded."""
+        """The wall clock [s] for deadlines, without the time spent on showing the run and what was excluded."""
         return time.monotonic() - self._excluded - (0.0 if self.watch is None else self.watch.slept)
 
     def exclude_from_deadlines(self, seconds: float) -> None:
@@ -140,7 +136,7 @@ class Stage(LoopInterface):
         self._site = site(index)
         self.loop.reset(PARAMS.seed)
         self.loop.place(site(index))
-        self._keep_scenery()
+        self.bag.write_scenery(self._site)
 
     def teleport(self, index: int, odom_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
@@ -159,7 +155,7 @@ class Stage(LoopInterface):
     def tick(self, real_time: bool = True) -> Sample:
         """Advance by one control tick and publish what is due; returns the true state at its end.
 
-        RViz, where the run is shown, sees it at real time, unless `real_time` is False.
+        A watched run is shown at real time, unless `real_time` is False.
         """
         self.tick_number += 1
         self._real_time = real_time
@@ -173,7 +169,7 @@ class Stage(LoopInterface):
         return [*self.robot.by_sensor.values(), self._transforms.tf]
 
     def subscriptions(self) -> Subscriptions:
-        """The submission's; odometry and transforms always, for the bag; wheel angles for RViz only."""
+        """The submission's; odometry and transforms always, for the bag; wheel angles if the run is shown."""
         always = {ODOM: [0], TF: [0]}
         return {**self._table.current(), **always, **({} if self.watch is None else {JOINTS: [0]})}
 
@@ -182,7 +178,7 @@ class Stage(LoopInterface):
         self.clock.publish(self.stamp)
 
     def publish(self, observations: Observations) -> None:
-        """One step's observations to RViz, the submission and the bag; the clock last."""
+        """One step's observations to the viewer, the submission and the bag; the clock last."""
         stamp = convert.to_time(observations.stamp_ns)
         if self.watch is not None:
             self.watch.observe(observations, self._real_time)
@@ -194,10 +190,9 @@ class Stage(LoopInterface):
         self._outbox.flush()
         if self.watch is not None and 0 in shown.transforms:
             self.watch.publish_transforms(self._transforms.messages(0, shown.transforms[0], stamp))
-        if self.bag is not None:
-            self._write(shown, stamp)
+        self.bag.write_step(shown, stamp)
         if observations.clock:
-            self.keep("/clock", Clock(stamp), stamp)
+            self.bag.write("/clock", Clock(stamp), stamp)
             if observations.control:
                 self.before_tick()
             self.clock.publish(stamp)
@@ -207,66 +202,13 @@ class Stage(LoopInterface):
         transforms = self._transforms.publish_static(self.sim)
         if self.watch is not None:
             self.watch.publish_static(transforms)
-        self._keep_static_frames()
-
-    # -- the scenario's bag: what the submission was sent and answered, and what else a replay shows --
-
-    def _keep_static_frames(self) -> None:
-        """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
-        frames = PARAMS.frames()
-        map_from_odom = compose(inverse(self._site), self.sim.map_from_odom())
-        static = [
-            convert.to_transform(frames.world, frames.map, self._site, self.stamp),
-            convert.to_transform(frames.map, self.robot.odom_frame, map_from_odom, self.stamp),
-        ]
-        self.keep("/tf_static", TFMessage(static))
-
-    def _keep_scenery(self) -> None:
-        """The obstacles of this scenario, and wheels, which the robot's model needs."""
-        near = [
-            marker
-            for marker in world_markers(self.sim.world, PARAMS.world_frame, self.now)
-            if abs(marker.pose.position.x - self._site.x) < FARTHEST
-        ]
-        self.keep("/robocop_sim/world", MarkerArray(near))
-        self.keep("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), self.stamp))
-
-    def _write(self, seen: Observations, stamp: rospy.Time) -> None:
-        if 0 in seen.scans:
-            self.keep(
-                "/scan",
-                convert.to_scan(seen.scans[0], self.sim.lidar.spec, stamp, self.robot.scan_frame),
-                stamp,
-            )
-        if 0 in seen.transforms:
-            self.keep("/tf", TFMessage(self._transforms.messages(0, seen.transforms[0], stamp)), stamp)
-        if 0 in seen.odometry:
-            odometry, truth = seen.odometry[0], self.sim.world_from_footprint()
-            zeros = [0.0] * 36
-            self.keep(
-                "/odom",
-                convert.to_odometry(
-                    odometry.odom_from_footprint,
-                    odometry.twist,
-                    stamp,
-                    self.robot.odom_frame,
-                    self.robot.footprint_frame,
-                    zeros,
-                ),
-                stamp,
-            )
-            self.keep(
-                "/ground_truth_odom",
-                convert.to_odometry(
-                    truth, self.sim.velocity(), stamp, PARAMS.world_frame, self.robot.footprint_frame, zeros
-                ),
-                stamp,
-            )
+        self.bag.write_static_frames(self._site)
 
     def keep(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
-        """Into the scenario's bag."""
-        if self.bag is not None and self.bag.size < MOST_BAG:
-            self.bag.write(topic, message, stamp or max(self.stamp, rospy.Time(0, 1)))
+        """Into the scenario's bag, and to the page where the run is shown."""
+        if self.watch is not None:
+            self.watch.forward(topic, message)
+        self.bag.write(topic, message, stamp)
 
     def odom_from_footprint(self) -> Pose2D:
         """Where the robot truly is in its odom frame."""

@@ -1,133 +1,113 @@
-"""Shows a run in RViz at real time, on separate topics: the submission sees the same topics, frames and log.
-
-RViz and its robot_state_publisher are children of the probe, as only the probe's network has the ROS master. What they
-need beyond /scan, /odom and /clock is published below /robocop_watch: a submission that looks up the lidar's frame in
-TF, which is not there, has to fail whether or not it is watched.
-"""
+"""Shows a run at real time, on separate topics: the submission sees the same topics, connections, frames and log."""
 
 import math
 import textwrap
 import time
 from pathlib import Path
-from typing import List, Optional, Sequence
+from typing import Any, Dict, List, Sequence
 
 import rospkg
 import rospy
-from geometry_msgs.msg import Point, TransformStamped
+from geometry_msgs.msg import Point, TransformStamped, Twist
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
+
 from ...errors import WatchError
 from ...params import SimParams
-from ...process import child
 from ...robot.catalog import load_model
 from ...ros import convert, markers
 from ...ros.publishing import publisher
 from ...ros.sim.robot_topics import RobotTopics
 from ...ros.sim.world_markers import world_markers
-from ...rviz.config import WATCH, Window, grading_watch
 from ...simulation.observations import Observations
 from .. import record as rec
+from ..handout import ACTION
 from ..plan import Plan, world_of
+from ..viewer import Viewer
+from .display import NAMESPACE, SCENE, Display, shown
 
-OPEN_TIMEOUT = 60.0  # [s, wall] for RViz to come up; with a software renderer on a busy machine it takes ten
+PATIENCE = 60.0  # [s, wall] for RViz to come up, ten on a busy machine without a GPU; and for a browser to be opened
+AWAY = 10.0  # [s, wall] without a browser, after which the run continues at full speed; a reload takes one or two
 POLL = 0.05  # [s, wall]
-NAMESPACE = WATCH
-TOPICS = ("tf", "tf_static")
 PATH_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.9)
 PATH_STEP = 0.01  # [m]
 CLICK_COLOR = ColorRGBA(1.0, 0.75, 0.1, 0.9)
 CLICK_RADIUS = 0.2  # [m] wider than the goal's circle, so that both are visible when they coincide
 TEXT_SIZE, TEXT_HEIGHT = 0.08, 1.5  # [m] of the letters, and above the floor, where it hides nothing
-WINDOW = Window(40, 10)
 TEMPORARY = ("path", "goal_circle", "goal_pin", "click")  # namespaces of markers
 TEXT_WIDTH = 44  # characters of a line
-LOG_LINES = 5
+FORWARDED = {
+    "/cmd_vel": Twist,
+    f"{ACTION}/goal": GoToPositionActionGoal,
+    f"{ACTION}/feedback": GoToPositionActionFeedback,
+    f"{ACTION}/result": GoToPositionActionResult,
+}
 
 
 class Watch:
-    """RViz, what it shows, and the pace. When its window is closed the run continues as fast as without it."""
+    """The viewer, what it shows, and the pace. When it is closed the run continues as fast as without it."""
 
-    def __init__(self, robot: RobotTopics, params: SimParams, plan: Plan, log: Path) -> None:
-        self.slept = 0.0  # [s, wall] spent on opening RViz and on keeping to real time
+    def __init__(self, robot: RobotTopics, params: SimParams, plan: Plan, viewer: Viewer, log: Path) -> None:
+        self.slept = 0.0  # [s, wall] spent on opening the viewer and on keeping to real time
         self._reported = 0.0  # [s, wall] of it
         self._robot = robot
-        self._model = params.model
         self._plan = plan
-        self._log = log
         self._period = 1.0 / params.clock_rate
         self._last_tick = 0.0  # [s, wall] of the clock
-        self._processes: List[child.Child[bytes]] = []
-        self._rviz: Optional[child.Child[bytes]] = None
+        self._seen = 0.0  # [s, wall] when a browser was last found to show the page
         self._path: List[Point] = []
         self._tf = publisher(f"{NAMESPACE}/tf", TFMessage)
         self._tf_static = publisher(f"{NAMESPACE}/tf_static", TFMessage, latch=True)
         self._joints = publisher(f"{NAMESPACE}/joint_states", JointState)
-        self._scene = publisher(f"{NAMESPACE}/scene", MarkerArray)
+        self._scene = publisher(SCENE, MarkerArray)
+        self._forwarded: Dict[str, rospy.Publisher] = {}
+        if viewer.is_page:
+            self._forwarded = {topic: publisher(shown(topic), kind) for topic, kind in FORWARDED.items()}
+        share = rospkg.RosPack().get_path("aro_robocop_goto_as")
+        rospy.set_param(f"{NAMESPACE}/robot_description", load_model(params.model, share).urdf)
+        self._display = Display(viewer, share, log)
         self._obstacles = world_markers(world_of(plan), params.world_frame, 0.0)
         self._text = markers.text("scenario", "", robot.footprint_frame)
 
     def open(self) -> None:
-        """Start RViz, and wait until it has subscribed to everything it shows; WatchError if it does not."""
-        share = rospkg.RosPack().get_path("aro_robocop_goto_as")
-        rospy.set_param(f"{NAMESPACE}/robot_description", load_model(self._model, share).urdf)
-        self._start("robot_state_publisher", "robot_state_publisher", "frames")
-        again = f"{share}/launch/restart_after_crash"
-        config = self._log.with_suffix(".rviz")
-        config.write_text(grading_watch(WINDOW))
-        self._rviz = self._start("rviz", "rviz", "rviz", "-d", str(config), prefix=[again])
+        """Start the viewer, and wait until it has subscribed to everything it shows.
+
+        WatchError if it does not. The page does so when a browser is opened, and is waited for no longer than PATIENCE.
+        """
+        self._display.start()
         started = time.monotonic()
         while not all(topic.get_num_connections() for topic in self._shown()):
-            if self._rviz.poll() is not None:
-                raise WatchError(f"RViz ended at its start (status {self._rviz.returncode}): {self._last_lines()}")
-            if time.monotonic() - started > OPEN_TIMEOUT:
-                raise WatchError(f"RViz did not come up within {OPEN_TIMEOUT:g} s: {self._last_lines()}")
+            if not self._display.runs:
+                raise WatchError(self._display.end)
+            if time.monotonic() - started > PATIENCE:
+                if self._display.is_page:
+                    break
+                raise WatchError(f"{self._display.name} did not come up within {PATIENCE:g} s")
             time.sleep(POLL)
         self._count(time.monotonic() - started)
+        self._seen = time.monotonic()
 
     def _shown(self) -> Sequence[rospy.Publisher]:
-        """The topics that RViz subscribes to, and last the one of robot_state_publisher."""
-        return self._robot.scan, self._robot.odom, self._tf, self._tf_static, self._scene, self._joints
-
-    def _start(
-        self, package: str, program: str, name: str, *arguments: str, prefix: Sequence[str] = ()
-    ) -> "child.Child[bytes]":
-        """Start a node in the probe's session, with all topics but the simulator's in this namespace.
-
-        The log too: lines logged by RViz, or its connection to /rosout, must not be taken for the submission's.
-        """
-        renamed = [f"/{topic}:={NAMESPACE}/{topic}" for topic in TOPICS]
-        command = [
-            *prefix,
-            "rosrun",
-            package,
-            program,
-            *arguments,
-            *renamed,
-            f"/rosout:={NAMESPACE}/log",
-            f"__ns:={NAMESPACE}",
-            f"__name:={name}",
-        ]
-        with open(self._log, "ab") as log:
-            process = child.start(command, stdout=log, stderr=log, start_new_session=False)
-        self._processes.append(process)
-        return process
-
-    def _last_lines(self) -> str:
-        lines = self._log.read_text(errors="replace").splitlines()
-        return " | ".join(line.strip() for line in lines[-LOG_LINES:])
+        """The topics that the viewer subscribes to, and last the one of robot_state_publisher."""
+        only_rviz = () if self._display.is_page else (self._robot.odom,)
+        return self._robot.scan, *only_rviz, self._tf, self._tf_static, self._scene, self._joints
 
     @property
     def is_open(self) -> bool:
-        """Whether RViz is running."""
-        return self._rviz is not None and self._rviz.poll() is None
+        """Whether RViz is running, or a browser shows the page."""
+        if not self._display.is_page:
+            return self._display.runs
+        if self._scene.get_num_connections():
+            self._seen = time.monotonic()
+        return time.monotonic() - self._seen < AWAY
 
     def close(self) -> None:
-        """End RViz and robot_state_publisher."""
-        for process in self._processes:
-            child.end(process, None, grace=0.0)  # no cleanup needed
+        """End the viewer."""
+        self._display.close()
 
     # -- called by the stage and the run --
 
@@ -162,6 +142,11 @@ class Watch:
         """Publish static transforms."""
         self._tf_static.publish(transforms)
 
+    def forward(self, topic: str, message: Any) -> None:
+        """Show a message of the submission in the page, which does not subscribe to the submission's topics."""
+        if topic in self._forwarded:
+            self._forwarded[topic].publish(message)
+
     def show(self, sample: rec.Sample, goals: Sequence[rec.Goal], clicks: Sequence[rec.Click]) -> None:
         """Show obstacles, the path so far, the newest goal and the newest click.
 
@@ -173,17 +158,16 @@ class Watch:
             self._path.append(Point(sample.x, sample.y, 0.01))
         path = markers.marker("path", Marker.LINE_STRIP, frame, PATH_COLOR)
         path.scale.x, path.points = 0.02, self._path
-        shown = [*self._obstacles, self._text]
+        present = [*self._obstacles, self._text]
         if len(self._path) > 1:
-            shown.append(path)
+            present.append(path)
         for goal in goals[-1:]:
-            shown += markers.goal(self._plan.limits.reached, goal.x, goal.y, frame)
+            present += markers.goal(self._plan.limits.reached, goal.x, goal.y, frame)
         for click in clicks[-1:]:
-            shown.append(markers.circle("click", CLICK_RADIUS, click.odom_x, click.odom_y, frame, CLICK_COLOR))
-        present = {marker.ns for marker in shown}
-        self._scene.publish(
-            shown + [markers.deletion(namespace) for namespace in TEMPORARY if namespace not in present]
-        )
+            present.append(markers.circle("click", CLICK_RADIUS, click.odom_x, click.odom_y, frame, CLICK_COLOR))
+        namespaces = {marker.ns for marker in present}
+        absent = [namespace for namespace in TEMPORARY if namespace not in namespaces]
+        self._scene.publish(present + [markers.deletion(namespace) for namespace in absent])
 
     def _count(self, seconds: float) -> None:
         """Add time that must not count as the submission's, and report whole seconds to the grader's deadline."""

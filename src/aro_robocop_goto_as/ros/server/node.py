@@ -211,7 +211,7 @@ class GotoServer:
     def _publish_markers(self) -> None:
         if not self.markers.get_num_connections():
             return
-        odom, scan = self.inputs.odom, self.inputs.scan
+        odom, scan, robot = self.inputs.odom, self.inputs.scan, rospy.get_namespace().strip("/")
         self.markers.publish(
             markers.server_markers(
                 self.p,
@@ -219,7 +219,7 @@ class GotoServer:
                 self.inputs.clearance(),
                 "" if scan is None else scan.message.header.frame_id,
                 None if odom is None else odom.message,
-                self.state,
+                f"{robot}: {self.state}" if robot else self.state,  # its text may stand beside another robot
             )
         )
 

@@ -19,14 +19,15 @@ from ...param_loading import from_dict
 from ...params import WebParams
 from ...web import access
 from ...web.dead_man import DeadMan
-from ...web.page import Actions, Page, Replay
+from ...web.page import Actions, Page
+from ...web.replay_panel import Replay
 from ...web.scene import Scene
 from .. import private_api
 from ..node_main import node
 from .commands import Commands, Driver
+from .master_watch import MasterWatch
 from .player import Player
 from .view import View
-from .watch import MasterWatch
 
 NAME = "robocop_web"
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
@@ -36,13 +37,16 @@ MASTER_PERIOD = 0.1  # [s, wall]
 
 
 def load_params(arguments: Sequence[str]) -> WebParams:
-    """Arguments NAME:=VALUE -> parameters, without those of ROS, as __name:=x; ParameterError for what is wrong."""
+    """Arguments NAME:=VALUE -> parameters; ParameterError for what is wrong.
+
+    Those of ROS are left out: __name:=x, and remappings of absolute names, such as /tf:=/x/tf.
+    """
     raw: Dict[str, Any] = {"web_host": access.default_host()}
     for argument in arguments:
         name, given, value = argument.partition(":=")
         if not given:
             raise ParameterError(f"arguments of {NAME}: expected NAME:=VALUE, got {argument!r}")
-        if name.startswith("_") or not value:
+        if name.startswith(("_", "/")) or not value:
             continue
         try:
             raw[name] = value if name in TEXTS else yaml.safe_load(value)
@@ -57,7 +61,11 @@ def start_server(p: WebParams) -> Any:
         import viser
     except ImportError as error:
         raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
-    _require_free(p.web_host, p.web_port)
+    listening = None
+    if access.SOCKET_VARIABLE in os.environ:
+        listening = socket.socket(fileno=int(os.environ[access.SOCKET_VARIABLE]))
+    else:
+        _require_free(p.web_host, p.web_port)
     names, origins = [socket.gethostname(), p.web_host], p.web_origins.split()
 
     def refusal(headers: Any) -> str:
@@ -68,7 +76,7 @@ def start_server(p: WebParams) -> Any:
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "no-referrer",
     }
-    with private_api.checked_requests(refusal, answers):
+    with private_api.checked_requests(refusal, answers, listening):
         with contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
             server = viser.ViserServer(host=p.web_host, port=p.web_port, label="robocop", verbose=False)
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
@@ -93,7 +101,7 @@ def _require_free(host: str, port: int) -> None:
 class WebNode:
     """Connects the page with ROS. Visitors' requests arrive in viser's threads; everything else is done by `run`.
 
-    With a player it shows a recording, to which nobody can send requests.
+    With a player it shows a recording. To a recording, and if `view_only` is set, nobody can send requests.
     """
 
     def __init__(self, server: Any, p: WebParams, player: Optional[Player] = None) -> None:
@@ -102,6 +110,7 @@ class WebNode:
         self._p = p
         self._server = server
         self._player = player
+        self._live = player is None and not p.view_only
         self._wake = threading.Event()
         self._wanted = ""  # the robot that was chosen last
         self._commands = Commands()
@@ -122,17 +131,17 @@ class WebNode:
         replay = None
         if player is not None:
             replay = Replay(player.duration, p.replay_speed, player.play, player.seek, player.set_speed)
-        self._page = Page(server, viser, actions, replay)
+        self._page = Page(server, viser, actions, replay, self._live)
         self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack(), replay is not None)
         if player is not None:
             player.on_seek = self._view.forget
         self._master = MasterWatch(self._page.show_master_problem)
 
     def _with_ros(self, action: Callable[..., None]) -> Callable[..., None]:
-        """The action, ignored while there is no ROS master, which the page says, and where a recording is shown."""
+        """The action, ignored while there is no ROS master, which the page says, and where nobody may send requests."""
 
         def act(*arguments: Any) -> None:
-            if self._master.registered and not self._master.problem and self._player is None:
+            if self._live and self._master.registered and not self._master.problem:
                 action(*arguments)
 
         return act
@@ -181,8 +190,8 @@ class WebNode:
                     view.connect(robots, self._wanted)
                 with self._server.atomic():
                     view.update(robots, self._commands.answer)
-                    if self._player is not None:
-                        self._page.show_replay(self._player.state)
+                    if self._player is not None and self._page.replay_panel is not None:
+                        self._page.replay_panel.show(self._player.state)
                 time.sleep(1.0 / RATE)
             else:
                 if not watch.problem:
@@ -194,8 +203,8 @@ class WebNode:
 
 
 def warn_of_strangers(p: WebParams) -> None:
-    """A page that other machines can reach lets them drive the robot."""
-    if not access.is_loopback(p.web_host):
+    """A page that other machines can reach lets them drive the robot, unless it takes no requests."""
+    if not access.is_loopback(p.web_host) and not p.view_only:
         rospy.logwarn(
             "the page listens on %s:%d without a password: every machine that reaches it can drive the robot",
             p.web_host,

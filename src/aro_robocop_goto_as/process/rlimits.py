@@ -1,4 +1,4 @@
-"""Limits of this process."""
+"""The resource limits of this process (setrlimit)."""
 
 import resource
 

@@ -3,7 +3,7 @@
 import pytest
 
 from aro_robocop_goto_as.errors import MasterError
-from aro_robocop_goto_as.ros.web import watch
+from aro_robocop_goto_as.ros.web import master_watch as watch
 
 NAME = "/robocop_web"
 OURS = [f"{NAME}/get_loggers", [NAME]]
