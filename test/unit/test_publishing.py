@@ -9,14 +9,14 @@ import subprocess
 import sys
 import weakref
 from types import SimpleNamespace
-from typing import Callable, Iterator, List, NamedTuple
+from typing import Callable, Iterator, List
 
 import numpy as np
 import pytest
 import rospy
 from rospy.impl.tcpros_base import TCPROSTransport
-from rospy.impl.tcpros_pubsub import TCPROSPub
 from sensor_msgs.msg import LaserScan
+from subscriber_links import Link
 
 from aro_robocop_goto_as.grading.probe.one_shot_subscriptions import OneShotSubscriptions
 from aro_robocop_goto_as.params import SimParams
@@ -31,13 +31,6 @@ SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
 NAMES = (f"/topic_{i}" for i in itertools.count())
 
 
-class Link(NamedTuple):
-    """rospy's connection to a subscriber, and the subscriber's end of it."""
-
-    connection: TCPROSTransport
-    socket: socket.socket
-
-
 @pytest.fixture(name="topic")
 def _topic() -> Iterator[Callable[[], DirectPublisher]]:
     made: List[DirectPublisher] = []
@@ -49,25 +42,6 @@ def _topic() -> Iterator[Callable[[], DirectPublisher]]:
     yield make
     for topic in made:
         topic.unregister()
-
-
-@pytest.fixture(name="connect")
-def _connect() -> Iterator[Callable[..., Link]]:
-    """Connects one more subscriber to a topic, as rospy's server does after the handshake."""
-    server = socket.create_server(("127.0.0.1", 0))
-    names = (f"/subscriber_{i}" for i in itertools.count())
-    ends = [socket.create_connection(server.getsockname())]
-
-    def connect(topic: DirectPublisher, name: str = "") -> Link:
-        connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
-        connection.set_socket(server.accept()[0], name or next(names))
-        ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number
-        topic.impl.add_connection(connection)
-        return Link(connection, ends[-2])
-
-    yield connect
-    for end in (server, *ends):
-        end.close()
 
 
 def _send(topic: DirectPublisher, message: PackedMessage = SCAN) -> None:

@@ -200,6 +200,18 @@ def ignore_future_cancels(server: actionlib.SimpleActionServer) -> None:
     inner.internal_goal_callback = receive_goal_despite_future_cancel  # start() subscribes with it
 
 
+def keep_results(server: actionlib.SimpleActionServer, count: int) -> None:
+    """Keep this many results for a subscriber that is slow; actionlib keeps 50, and each older one is lost for good.
+
+    The length is otherwise read from a parameter, which would hold for all action servers of the namespace.
+    """
+    topic = server.action_server.result_pub.impl
+    with topic.c_lock:
+        topic.set_queue_size(count)
+        for connection in topic.connections:  # of subscribers that came before
+            connection._queue_size = count
+
+
 def replace_status_timer(
     server: actionlib.SimpleActionServer, start_timer: Callable[[float, Callable[[], None]], rospy.Timer]
 ) -> None:

@@ -10,6 +10,8 @@ from .. import private_api
 from ..action import ACTION
 from ..timer import start_timer
 
+RESULTS_KEPT = 10_000  # for a subscriber that is slow, some 3 MB: a goal without a result keeps its client waiting
+
 
 class GoalServer(actionlib.SimpleActionServer):
     """A SimpleActionServer without an execute callback: its owner accepts goals and ends them."""
@@ -23,6 +25,7 @@ class GoalServer(actionlib.SimpleActionServer):
     def start(self) -> None:
         """Begin to receive goals."""
         super().start()
+        private_api.keep_results(self, RESULTS_KEPT)
         private_api.replace_status_timer(self, start_timer)
 
     def internal_goal_callback(self, goal: Any) -> None:
