@@ -17,6 +17,8 @@ from .record import TERMINAL, Goal, Record, Sample, errors_at, results_of, statu
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
 WIDTH = 6.4  # [inch]
+TOP, BOTTOM, LEFT, RIGHT, BETWEEN = 0.3, 0.42, 0.55, 0.35, 0.42  # [inch] margins
+LEFT_OF_NAMES = 1.7  # [inch]
 STYLE = {
     "svg.fonttype": "none",  # keep text as text: smaller and searchable
     "svg.hashsalt": "robocop",  # reproducible ids
@@ -46,9 +48,12 @@ Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
 Level = Tuple[float, str]
 
 
-def _figure(height: float, rows: int = 1) -> Tuple[Figure, List[Axes]]:
-    figure = Figure(figsize=(WIDTH, height), constrained_layout=True)
+def _figure(height: float, rows: int, left: float) -> Tuple[Figure, List[Axes]]:
+    """Axes below each other, with fixed margins: a constrained layout takes as long as drawing."""
+    figure = Figure(figsize=(WIDTH, height))
     axes = figure.subplots(rows, 1, sharex=True, squeeze=False)
+    row = (height - TOP - BOTTOM - (rows - 1) * BETWEEN) / rows
+    figure.subplots_adjust(left / WIDTH, BOTTOM / height, 1.0 - RIGHT / WIDTH, 1.0 - TOP / height, hspace=BETWEEN / row)
     return figure, [row[0] for row in axes]
 
 
@@ -60,12 +65,12 @@ def _svg(figure: Figure) -> str:
     return NOT_INLINE.sub("", svg[svg.index("<svg") :])
 
 
-def _plot(draw: Callable[..., None], height: float, rows: int = 1) -> "Plot":
+def _plot(draw: Callable[..., None], height: float, rows: int = 1, left: float = LEFT) -> "Plot":
     """Turn a function that draws into axes into one that returns SVG."""
 
     def plot(record: Record, at: Sequence[float]) -> str:
         with matplotlib.rc_context(STYLE):
-            figure, axes = _figure(height, rows)
+            figure, axes = _figure(height, rows, left)
             draw(axes, record, at)
             return _svg(figure)
 
@@ -308,6 +313,6 @@ PLOTS: Dict[str, Plot] = {
     "errors": _plot(_errors, 3.4, 2),
     "distances": _plot(_distances, 2.2),
     "speeds": _plot(_speeds, 2.0),
-    "states": _plot(_states, 1.5),
+    "states": _plot(_states, 1.5, left=LEFT_OF_NAMES),
     "clicks": _plot(_track, 3.6),
 }

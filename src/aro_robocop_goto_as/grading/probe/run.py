@@ -19,6 +19,7 @@ LATER_TIMEOUT = 0.2  # afterwards, for an answer that is due
 UNSURE_TIMEOUT = 0.06  # afterwards, for one that may not be due: a slow loop whose period is not yet known
 MUTE_TIMEOUT = 0.5  # instead of the first, for a node that was silent in a whole scenario; later ticks don't wait
 OTHER_STREAM_TIMEOUT = 0.15  # for the other stream's answer once one has come
+IN_VAIN = 5  # such waits, after which a node that rests with one stream's answer is not waited for again
 SAME_ITERATION = 0.004  # [s, wall] for a command that often comes with a feedback message, but need not
 START_REST = 0.5  # [s, wall] how long time is held while the node starts
 MOST_BUSY = 20.0  # [s, wall] likewise in total, besides the time-out for its start
@@ -41,9 +42,11 @@ class Run(Recording):
         self.one_shot = OneShotSubscriptions(stage.sensor_topics)
         self._rest = NodeRest(stage, lambda: self.node, grader_pids, self.one_shot.waiting)
         stage.before_tick, stage.after_publishing = self._digest, self._serve_one_shot
-        self.punctual = True  # it has not yet rested instead of answering, as a node does that sleeps on the wall clock
+        self.punctual = True  # it has not yet rested before an answer, as a node does that sleeps on the wall clock
+        self.waits_in_vain = 0  # for a second stream, while the node was punctual
         self.lockstep = Lockstep()
         self.awaiting = ""  # id of the active goal
+        self.followed = False  # whether a goal was followed before
         self.heard: Set[str] = set()  # streams, since the last tick
         self.death_recorded = False
         self.accepts_late = False  # this node accepts a goal when time advances, as one driven by a timer does
@@ -100,15 +103,29 @@ class Run(Recording):
             timeout = LATER_TIMEOUT if self.lockstep.patience() >= SURE else UNSURE_TIMEOUT
         deadline = time.monotonic() + timeout
         if self.punctual and not self.drain(done, PUNCTUAL):
-            self.punctual = not self._rest.is_idle()
-        while not self.drain(done, OTHER_STREAM_TIMEOUT if self.heard else 0.05):
-            if self.heard or time.monotonic() >= deadline:
-                self.fell_silent = self.fell_silent or not self.heard
-                self.lockstep.give_up()
+            self.punctual = bool(self.heard) or not self._rest.is_idle()
+        while not self.heard and not self.drain(lambda: done() or bool(self.heard), 0.05):
+            if time.monotonic() >= deadline:
+                self.fell_silent = True
                 break
+        if self.heard and not done():
+            self._await_other_stream(done)
+        if not done():
+            self.lockstep.give_up()
         if not self.punctual and self.awaiting not in self.ended and len(self.heard) < len(STREAMS):
             self.drain(lambda: len(self.heard) == len(STREAMS), SAME_ITERATION)
         self.rest()
+
+    def _await_other_stream(self, done: Callable[[], bool]) -> None:
+        """Wait until the node rests, and longer if it has slept between its two answers, or if that is not known yet."""
+        rested = self.rest()
+        if done() or (rested and self.punctual and self.waits_in_vain >= IN_VAIN):
+            return
+        if self.drain(done, OTHER_STREAM_TIMEOUT):
+            answered = self.awaiting in self.ended or self.heard.issuperset(STREAMS)
+            self.punctual = self.punctual and not (rested and answered)
+        elif self.punctual:
+            self.waits_in_vain += 1
 
     def rest(self, timeout: float = REST_TIMEOUT) -> bool:
         """Hold simulated time until the node is idle; False if it is busy for too long."""
@@ -142,7 +159,9 @@ class Run(Recording):
             lambda: goal in self.known or goal in self.ended, SETTLE if busy or self.accepts_late else FIRST_TIMEOUT
         )
         self.accepts_late = not (soon or busy)
-        self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
+        if not (self.punctual and self.followed):
+            self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
+        self.followed = True
         self.rest()
         for stream in STREAMS:
             self.lockstep.commanded(stream)
