@@ -64,7 +64,7 @@ ROSDEP_KEYS = {
 }
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="pybullet-pip", trimesh="python3-trimesh-pip")
 # Imported on request only: in compat/, in deb-packages/class.txt or grade.txt, in requirements-web.txt.
-OPTIONAL = {"gazebo_msgs", "distributed", "seccomp", "viser", "websockets"}
+OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets"}
 PUBLIC_DESPITE_THEIR_NAMES = ("_exit", "_replace")  # of os and of named tuples: in Python's documentation
 # Undocumented attributes of rospy.Publisher, actionlib.ActionServer, ActionClient and SimpleActionServer.
 INTERNALS = {

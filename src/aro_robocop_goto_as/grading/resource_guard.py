@@ -1,6 +1,7 @@
 """Kill a process tree that exceeds its memory or disk limit, and record why.
 
-The kernel's limits are per process; a limit for many needs a control group, which few machines let users create.
+The kernel's limits are per process. A limit for many of them needs a control group (memory_group.py), which not every
+system lets its users make.
 """
 
 import contextlib
@@ -39,12 +40,17 @@ class Guard:
     def _watch(self) -> None:
         while not self._stopped.wait(PERIOD):
             if _exceeds(self._pid, self._memory):
-                self.reason = f"its processes together took more than {self._memory / 1024**2:g} MB of memory"
+                self.reason = exceeded_memory(self._memory)
             elif self._folder is not None:
                 self.reason = _too_large(self._folder, self._disk)
             if self.reason:
                 kill_tree(self._pid)
                 return
+
+
+def exceeded_memory(limit: int) -> str:
+    """The reason of a process tree that was killed because it took more than `limit` bytes of memory."""
+    return f"its processes together took more than {limit / 1024**2:g} MB of memory"
 
 
 def _exceeds(pid: int, limit: int) -> bool:

@@ -14,9 +14,10 @@ from typing import Callable, Dict, List, Optional, Sequence
 from ..errors import UngradableError
 from ..process import child
 from ..process.ports import free_port
+from . import memory_group
 from . import record as rec
 from .plan import Plan
-from .resource_guard import MAX_MEMORY, Guard
+from .resource_guard import Guard
 from .sandbox import OWN_ENVIRONMENT, Sandbox
 from .sandboxed_build import public
 from .submission import Script, Submission
@@ -28,7 +29,6 @@ Progress = Callable[[str], None]
 BUDGET = 240.0  # [s, wall] for all scenarios of a part
 END_TIMEOUT = 5.0  # [s, wall]
 LOG_LINES = 15
-PROBE_MEMORY = 1024**3  # bytes that the probe may take besides the submission; it takes some 150 MB
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def run(
     )
     probe = [sys.executable, "-m", PROBE, str(job)]
     if sandbox is not None:
-        probe = sandbox.probe_command(probe)
+        probe = [*memory_group.prefix(), *sandbox.probe_command(probe)]
     inherited = viewer.descriptors if viewer is not None else ()
     return _supervise(probe, environment, out, script.part, on_progress, budget, inherited)
 
@@ -133,7 +133,7 @@ def _supervise(
     lines: queue.Queue[Optional[str]] = queue.Queue()
     log = out / f"{part}-probe.log"
     process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
-    guard = Guard(process.pid, memory=MAX_MEMORY + PROBE_MEMORY)
+    guard = Guard(process.pid, memory=memory_group.LIMIT)
     threading.Thread(target=_read, args=(process, lines), daemon=True).start()
     deadline, problem, scenario, grace = time.monotonic() + budget, "", "start", 0.0
     try:

@@ -9,6 +9,7 @@ from typing import IO, Mapping, Optional, Sequence
 from ..errors import GradingError
 from ..hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from ..process import child
+from . import memory_group
 from .resource_guard import Guard
 from .sandbox import OWN_ENVIRONMENT, Sandbox, change_owner, user
 
@@ -36,7 +37,7 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], t
     def run(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
         visible = {**public(environment), "HOME": "/tmp", "ROS_HOME": "/tmp", "ROS_LOG_DIR": "/tmp"}
         change_owner(folder, user())
-        inside = wrapped(command, visible, reads, folder)
+        inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
         guard = Guard(process.pid, folder)
         try:

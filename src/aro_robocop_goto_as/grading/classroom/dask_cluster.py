@@ -8,6 +8,7 @@ import uuid
 import warnings
 from typing import Dict, Iterable, Iterator, Tuple, Union
 
+import dask
 from distributed import Client, Future, LocalCluster, as_completed
 from distributed.security import Security
 
@@ -19,6 +20,8 @@ RETRIES = 1  # of a task that raised an error; tasks of workers that died are al
 # Hand-ins that are with the scheduler at a time: enough for the workers of a large cluster, few enough for its memory.
 MOST_AHEAD = 100
 MOST_BYTES_AHEAD = 256 * 1024**2
+# The scheduler remembers by default the last 100,000 transitions and events; nobody looks at those of a class.
+SHORT_LOGS = {"distributed.scheduler.transition-log-length": 100, "distributed.scheduler.events-log-length": 100}
 START = "start workers with: ./robocop grade-worker"
 
 
@@ -45,6 +48,7 @@ def connected(place: Place) -> Iterator[Client]:
     logging.getLogger("asyncio").setLevel(logging.CRITICAL)
     warnings.filterwarnings("ignore", message="resource_tracker")
     with contextlib.ExitStack() as stack:
+        stack.enter_context(dask.config.set(SHORT_LOGS))
         if place.scheduler:
             scheduler, security = place.scheduler, _shared_credentials(place)
             try:

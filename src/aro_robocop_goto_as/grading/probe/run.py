@@ -6,7 +6,9 @@ from typing import Callable, Optional, Sequence, Set
 from ...errors import GraderLostError
 from ...ros.private_api import shutdown_has_begun
 from ...simulation.lockstep import SURE, Lockstep
+from .. import memory_group
 from .. import record as rec
+from ..resource_guard import exceeded_memory
 from .node_rest import REST_TIMEOUT, NodeRest
 from .nodes import Node
 from .one_shot_subscriptions import OneShotSubscriptions
@@ -117,7 +119,7 @@ class Run(Recording):
         self.rest()
 
     def _await_other_stream(self, done: Callable[[], bool]) -> None:
-        """Wait until the node rests, and longer if it has slept between its two answers, or if that is not known yet."""
+        """Wait until the node rests; longer if it has slept between its two answers, or if that is not known yet."""
         rested = self.rest()
         if done() or (rested and self.punctual and self.waits_in_vain >= IN_VAIN):
             return
@@ -190,6 +192,8 @@ class Run(Recording):
             reason = self.node.guard.reason
             if not reason and status in rec.OUT_OF_TIME:
                 reason = "it used more processor time than a node may"
+            elif not reason and status in rec.KILLED and memory_group.has_killed():
+                reason = exceeded_memory(memory_group.LIMIT)
             self.add("deaths", rec.Death(self.stage.now, status, reason))
 
     def wait_for(self, condition: Callable[[], bool], timeout: float, pace: float = PACE) -> bool:
