@@ -1,5 +1,6 @@
 """The robocop command, as far as it can be tested without installing anything."""
 
+import contextlib
 import os
 import shutil
 import socket
@@ -131,7 +132,9 @@ def test_unreachable_display_counts_as_none():
     assert "rviz:=false" in dry_run("run", DISPLAY=":4711")[0]
 
 
-def test_rviz_is_opened_on_a_working_display():
+@contextlib.contextmanager
+def x_server():
+    """A working X server; yields its DISPLAY."""
     read, write = os.pipe()
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), "-screen", "0", "320x240x24"], pass_fds=[write], stderr=subprocess.DEVNULL
@@ -139,10 +142,23 @@ def test_rviz_is_opened_on_a_working_display():
     try:
         os.close(write)
         with open(read) as display:
-            assert "rviz:=true" in dry_run("run", DISPLAY=f":{display.readline().strip()}")[0]
+            yield f":{display.readline().strip()}"
     finally:
         server.terminate()
         server.wait()
+
+
+def test_rviz_is_opened_on_a_working_display():
+    with x_server() as display:
+        assert "rviz:=true" in dry_run("run", DISPLAY=display)[0]
+
+
+def test_a_watched_grading_sets_up_rviz_on_a_working_display_and_else_the_page():
+    with x_server() as display:
+        assert "would set up: run hosting grade rviz\n" in dry_run("grade", "x.py", "--watch", DISPLAY=display)[2]
+    for unusable in ({"DISPLAY": ":4711"}, {"DISPLAY": "localhost:10.0"}, {}):  # ssh -X: not from inside the sandbox
+        assert "would set up: run hosting grade web\n" in dry_run("grade", "x.py", "--watch", **unusable)[2]
+    assert "would set up: run hosting grade\n" in dry_run("grade", "x.py")[2]
 
 
 @pytest.mark.parametrize("argument", ["rviz:=true", "rviz:=false"])
