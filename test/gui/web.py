@@ -54,18 +54,21 @@ class Web:
         finally:
             connection.close()
 
-    def position(self):
-        """The robot's true x, y [m] in the world."""
-        position = self.ros.latest("/ground_truth_odom")["pose"]["pose"]["position"]
+    def _truth(self, robot):
+        return self.ros.latest(f"/{robot}/ground_truth_odom" if robot else "/ground_truth_odom")
+
+    def position(self, robot=""):
+        """A robot's true x, y [m] in the world."""
+        position = self._truth(robot)["pose"]["pose"]["position"]
         return position["x"], position["y"]
 
-    def turn(self):
-        """The robot's true angular velocity [rad/s]; the tests turn it on the spot, where no wall is in its way."""
-        return self.ros.latest("/ground_truth_odom")["twist"]["twist"]["angular"]["z"]
+    def turn(self, robot=""):
+        """A robot's true angular velocity [rad/s]; the tests turn it on the spot, where no wall is in its way."""
+        return self._truth(robot)["twist"]["twist"]["angular"]["z"]
 
-    def stands(self):
-        """Whether the robot is truly at rest."""
-        twist = self.ros.latest("/ground_truth_odom")["twist"]["twist"]
+    def stands(self, robot=""):
+        """Whether a robot is truly at rest."""
+        twist = self._truth(robot)["twist"]["twist"]
         return abs(twist["linear"]["x"]) < 0.01 and abs(twist["angular"]["z"]) < 0.05
 
     def place(self, x, y):
