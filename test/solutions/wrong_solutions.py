@@ -297,6 +297,12 @@ WRONG = (
         "ran into an obstacle",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[-30:]"),
     ),
+    _server(
+        "obstacle_check_while_aligned",
+        "stops_at_obstacle",
+        "ran into an obstacle",
+        (OBSTACLE, "elif self.min_dist_ahead < 0.3 and abs(angle_error) < 0.05:"),
+    ),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
     _server("obstacle_too_early", "stops_at_obstacle", "not 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
     _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),

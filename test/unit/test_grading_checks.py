@@ -360,7 +360,7 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
             "cancel: expected an earlier goal in the script",
         ),
         ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
-        ("box: [0.9..1.5, 0.0, 0.0, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
+        ("box: [0.9..1.5, 0.3, 0.29, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
     ],
 )
 def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
