@@ -96,7 +96,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
             if part == "server" and not record.goals and not checks:
                 continue
             shown = {PLOT_OF[check.name] for check in checks}
-            rest = [PLOTS[plot](record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
+            rest = [_plot(plot, record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
             bag = folder / f"{part}-{record.name}.bag"
             yield {
                 "part": part,
@@ -104,10 +104,15 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
                 "record": record,
                 "about": about.get(record.name, ""),
                 "panels": list(_panels(record, checks)),
-                "plots": rest,
+                "plots": list(filter(None, rest)),
                 "lines": record.lines[:MOST_LINES],
                 "failed": any(check.outcome is Outcome.FAILED for check in checks),
             }
+
+
+def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
+    """A plot of a scenario with these moments marked [s]; nothing for one that has nothing to show, as the start."""
+    return PLOTS[name](record, moments) if record.goals or record.clicks or record.commands else ""
 
 
 def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
@@ -123,7 +128,7 @@ def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str,
         moments = [] if check.failure is None else [check.failure.time]
         yield {
             "check": check,
-            "svg": PLOTS[plot](record, moments),
+            "svg": _plot(plot, record, moments),
             "also_passed": [other.sentence for other in others] if passed else [],
             "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
             "anchor": f"{check.part}-{check.name}",
