@@ -23,13 +23,22 @@ def _group(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(
-    "limit, kills, blamed", [(OURS, 1, True), (OURS, 0, False), ("max\n", 1, False), ("1073741824\n", 2, False)]
+    "limit, reached, kills, blamed",
+    [
+        (OURS, 1, 1, True),
+        (OURS, 1, 0, False),
+        (OURS, 0, 1, False),  # killed as the machine lacked memory
+        ("max\n", 0, 1, False),
+        ("1073741824\n", 2, 2, False),
+    ],
 )
 def test_only_the_limit_of_its_own_group_is_blamed_on_a_submission(
-    group: Path, limit: str, kills: int, blamed: bool
+    group: Path, limit: str, reached: int, kills: int, blamed: bool
 ) -> None:
     (group / "memory.max").write_text(limit)
-    (group / "memory.events").write_text(f"low 0\nhigh 0\nmax 1530\noom 1\noom_kill {kills}\noom_group_kill 0\n")
+    (group / "memory.events").write_text(
+        f"low 0\nhigh 0\nmax 1530\noom {reached}\noom_kill {kills}\noom_group_kill 0\n"
+    )
     assert memory_group.has_killed() is blamed
 
 

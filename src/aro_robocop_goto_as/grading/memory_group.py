@@ -8,6 +8,7 @@ import functools
 import os
 import subprocess
 from pathlib import Path
+from subprocess import DEVNULL
 from typing import Tuple
 
 from .resource_guard import MAX_MEMORY
@@ -25,11 +26,18 @@ def prefix() -> Tuple[str, ...]:
     """
     properties = (f"MemoryMax={LIMIT}", "MemorySwapMax=0", "Delegate=yes")
     manager = ("env", f"XDG_RUNTIME_DIR=/run/user/{os.getuid()}") if os.getuid() else ()
-    scope = ("systemd-run", "--scope", "--quiet", "--collect", *(("--user",) if os.getuid() else ()))
+    scope = (
+        "systemd-run",
+        "--scope",
+        "--quiet",
+        "--collect",
+        "--description=robocop",
+        *(("--user",) if os.getuid() else ()),
+    )
     command = (*manager, *scope, *(word for it in properties for word in ("--property", it)), "--")
     read = ("/bin/sh", "-c", f"cat {GROUPS}$(sed -n s/^0:://p {OWN})/memory.max")
     try:
-        trial = subprocess.run([*command, *read], capture_output=True, text=True, timeout=TRIAL_TIME)
+        trial = subprocess.run([*command, *read], stdin=DEVNULL, capture_output=True, text=True, timeout=TRIAL_TIME)
     except (OSError, subprocess.TimeoutExpired):
         return ()
     return command if trial.stdout.strip() == str(LIMIT) else ()
@@ -43,6 +51,6 @@ def has_killed() -> bool:
         if (group / "memory.max").read_text().strip() != str(LIMIT):
             return False  # the group of a container or a session: what it lacks is not the submission's fault
         events = dict(line.split() for line in (group / "memory.events").read_text().splitlines())
-        return int(events["oom_kill"]) > 0
+        return int(events["oom"]) > 0 and int(events["oom_kill"]) > 0  # the latter also counts the machine's own lack
     except (OSError, ValueError, KeyError):
         return False

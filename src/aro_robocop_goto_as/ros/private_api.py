@@ -201,11 +201,13 @@ def ignore_future_cancels(server: actionlib.SimpleActionServer) -> None:
 
 
 def keep_results(server: actionlib.SimpleActionServer, count: int) -> None:
-    """Keep this many results for a subscriber that is slow; actionlib keeps 50, and each older one is lost for good.
+    """Keep at least this many results for a slow subscriber; actionlib keeps 50, and each older one is lost for good.
 
     The length is otherwise read from a parameter, which would hold for all action servers of the namespace.
     """
     topic = server.action_server.result_pub.impl
+    if topic.queue_size == 0 or topic.queue_size > count:  # 0: all
+        return
     with topic.c_lock:
         topic.set_queue_size(count)
         for connection in topic.connections:  # of subscribers that came before

@@ -46,6 +46,7 @@ class Run(Recording):
         stage.before_tick, stage.after_publishing = self._digest, self._serve_one_shot
         self.punctual = True  # it has not yet rested before an answer, as a node does that sleeps on the wall clock
         self.waits_in_vain = 0  # for a second stream, while the node was punctual
+        self.sends_both = False  # it has sent both streams in one tick, before it rested
         self.lockstep = Lockstep()
         self.awaiting = ""  # id of the active goal
         self.followed = False  # whether a goal was followed before
@@ -106,6 +107,7 @@ class Run(Recording):
         deadline = time.monotonic() + timeout
         if self.punctual and not self.drain(done, PUNCTUAL):
             self.punctual = bool(self.heard) or not self._rest.is_idle()
+        self.sends_both = self.sends_both or self.heard.issuperset(STREAMS)
         while not self.heard and not self.drain(lambda: done() or bool(self.heard), 0.05):
             if time.monotonic() >= deadline:
                 self.fell_silent = True
@@ -119,14 +121,19 @@ class Run(Recording):
         self.rest()
 
     def _await_other_stream(self, done: Callable[[], bool]) -> None:
-        """Wait until the node rests; longer if it has slept between its two answers, or if that is not known yet."""
+        """Wait until the node rests; longer if it has slept between its two answers, or if that is not known yet.
+
+        It is known of a node whose answers came together, and whose second one then did not come later either. One
+        that sends it from a thread that sleeps on the wall clock is heard while it is waited for.
+        """
         rested = self.rest()
+        self.sends_both = self.sends_both or self.heard.issuperset(STREAMS)
         if done() or (rested and self.punctual and self.waits_in_vain >= IN_VAIN):
             return
         if self.drain(done, OTHER_STREAM_TIMEOUT):
             answered = self.awaiting in self.ended or self.heard.issuperset(STREAMS)
             self.punctual = self.punctual and not (rested and answered)
-        elif self.punctual:
+        elif self.punctual and self.sends_both:
             self.waits_in_vain += 1
 
     def rest(self, timeout: float = REST_TIMEOUT) -> bool:
