@@ -24,23 +24,16 @@ def prefix() -> Tuple[str, ...]:
 
     Delegate=yes: after the kernel has killed a process, systemd leaves the others alone.
     """
-    properties = (f"MemoryMax={LIMIT}", "MemorySwapMax=0", "Delegate=yes")
-    manager = ("env", f"XDG_RUNTIME_DIR=/run/user/{os.getuid()}") if os.getuid() else ()
-    scope = (
-        "systemd-run",
-        "--scope",
-        "--quiet",
-        "--collect",
-        "--description=robocop",
-        *(("--user",) if os.getuid() else ()),
-    )
-    command = (*manager, *scope, *(word for it in properties for word in ("--property", it)), "--")
+    command = ["systemd-run", "--scope", "--quiet", "--collect", "--description=robocop"]
+    command += [f"--property=MemoryMax={LIMIT}", "--property=MemorySwapMax=0", "--property=Delegate=yes", "--"]
+    if os.getuid():
+        command = ["env", f"XDG_RUNTIME_DIR=/run/user/{os.getuid()}", command[0], "--user", *command[1:]]
     read = ("/bin/sh", "-c", f"cat {GROUPS}$(sed -n s/^0:://p {OWN})/memory.max")
     try:
         trial = subprocess.run([*command, *read], stdin=DEVNULL, capture_output=True, text=True, timeout=TRIAL_TIME)
     except (OSError, subprocess.TimeoutExpired):
         return ()
-    return command if trial.stdout.strip() == str(LIMIT) else ()
+    return tuple(command) if trial.stdout.strip() == str(LIMIT) else ()
 
 
 def has_killed() -> bool:
