@@ -79,9 +79,11 @@ def test_only_requests_of_its_own_page_are_answered(web):
 def test_feedback_is_shown_while_a_goal_is_executed(web, tab):
     tab.page.evaluate(RECORD_TEXT, "position error")
     web.set_factor(0.2)  # a goal takes half a minute: a browser on a busy machine may draw nothing for seconds
-    tab.click_floor(*((-0.5, 0.0) if web.position()[0] > -0.25 else (0.0, 0.0)))
-    wait_for(lambda: tab.page.evaluate("window.recorded"), "feedback on the page")
-    web.set_factor(1.0)
+    try:
+        tab.click_floor(*((-0.5, 0.0) if web.position()[0] > -0.25 else (0.0, 0.0)))
+        wait_for(lambda: tab.page.evaluate("window.recorded"), "feedback on the page")
+    finally:
+        web.set_factor(1.0)
 
 
 @pytest.mark.slow

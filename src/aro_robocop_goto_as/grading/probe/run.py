@@ -63,6 +63,11 @@ class Run(Recording):
         if self.awaiting:
             self.lockstep.commanded(stream)
 
+    @property
+    def _heard_both(self) -> bool:
+        """Whether both streams have been heard since the last tick."""
+        return self.heard.issuperset(STREAMS)
+
     def drain(self, until: Callable[[], bool], timeout: float) -> bool:
         """Process messages until a condition holds, for at most `timeout` [s, wall]; whether it holds."""
         return self.stage.loop.run_jobs_until(until, timeout)
@@ -107,7 +112,7 @@ class Run(Recording):
         deadline = time.monotonic() + timeout
         if self.punctual and not self.drain(done, PUNCTUAL):
             self.punctual = bool(self.heard) or not self._rest.is_idle()
-        self.sends_both = self.sends_both or self.heard.issuperset(STREAMS)
+        self.sends_both = self.sends_both or self._heard_both
         while not self.heard and not self.drain(lambda: done() or bool(self.heard), 0.05):
             if time.monotonic() >= deadline:
                 self.fell_silent = True
@@ -116,8 +121,8 @@ class Run(Recording):
             self._await_other_stream(done)
         if not done():
             self.lockstep.give_up()
-        if not self.punctual and self.awaiting not in self.ended and len(self.heard) < len(STREAMS):
-            self.drain(lambda: len(self.heard) == len(STREAMS), SAME_ITERATION)
+        if not self.punctual and self.awaiting not in self.ended and not self._heard_both:
+            self.drain(lambda: self._heard_both, SAME_ITERATION)
         self.rest()
 
     def _await_other_stream(self, done: Callable[[], bool]) -> None:
@@ -127,11 +132,11 @@ class Run(Recording):
         that sends it from a thread that sleeps on the wall clock is heard while it is waited for.
         """
         rested = self.rest()
-        self.sends_both = self.sends_both or self.heard.issuperset(STREAMS)
+        self.sends_both = self.sends_both or self._heard_both
         if done() or (rested and self.punctual and self.waits_in_vain >= IN_VAIN):
             return
         if self.drain(done, OTHER_STREAM_TIMEOUT):
-            answered = self.awaiting in self.ended or self.heard.issuperset(STREAMS)
+            answered = self.awaiting in self.ended or self._heard_both
             self.punctual = self.punctual and not (rested and answered)
         elif self.punctual and self.sends_both:
             self.waits_in_vain += 1
@@ -169,7 +174,7 @@ class Run(Recording):
         )
         self.accepts_late = not (soon or busy)
         if not (self.punctual and self.followed):
-            self.drain(lambda: self.heard.issuperset(STREAMS) or goal in self.ended, SETTLE)
+            self.drain(lambda: self._heard_both or goal in self.ended, SETTLE)
         self.followed = True
         self.rest()
         for stream in STREAMS:
