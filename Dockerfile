@@ -8,7 +8,7 @@ FROM debian:12-slim AS packages
 ARG PARTS
 ENV LANG=C.UTF-8
 COPY deb-packages /tmp/deb-packages
-# PyPI has wheels of pybullet for amd64 only; elsewhere one is built. tini passes signals on and reaps orphans, which
+# PyPI has no wheels of pybullet for Linux on ARM, so there it is built. tini passes signals on and reaps orphans, which
 # the first process of a container has to do. Removed at the end, 0.3 GB: what other packages bring along and nobody here
 # uses, that is static libraries, tests, and what fontTools, which matplotlib needs, has for rare functions.
 RUN set -eu; \
@@ -30,14 +30,7 @@ RUN install -d -o robocop -g robocop /home/robocop/aro_robocop_goto_as; \
 USER robocop
 WORKDIR /home/robocop/aro_robocop_goto_as
 COPY --chown=robocop:robocop . .
-# Of pybullet only its module is used, without the examples' data and debugging symbols.
-RUN set -eu; \
-    ./robocop setup $PARTS; \
-    .robocop/venv/bin/python -m compileall -q src; \
-    cd .robocop; \
-    rm -rf venv/lib/python3*/site-packages/pybullet_* venv/lib/python3*/site-packages/eglRenderer*; \
-    find venv -name '*.so' -exec strip --strip-debug {} +; \
-    rm -rf log/* ~/.cache
+RUN ./robocop setup $PARTS && rm -rf .robocop/log/* ~/.cache
 WORKDIR /home/robocop
 
 # The page listens on all of the container's addresses, because its loopback can't be published. Who reaches it is decided

@@ -7,6 +7,6 @@ setup(
     **generate_distutils_setup(
         packages=find_packages("src"),
         package_dir={"": "src"},
-        package_data={"aro_robocop_goto_as.grading": ["templates/*.html"]},
+        package_data={"robocop_grading.report": ["templates/*.html"]},
     )
 )

@@ -1,7 +1,10 @@
-"""For all tests: the slow ones run only with --all, and SIGINT ends what they start."""
+"""For all tests: the slow ones run only with --all, SIGINT ends what they start, --busy N runs them beside a load."""
 
+import os
 import signal
 
+import processes
+import waiting
 from hypothesis import settings
 
 # A shell without job control starts background jobs with SIGINT ignored, and ignored signals are inherited.
@@ -13,14 +16,26 @@ settings.register_profile("selection", settings.get_profile("all"), max_examples
 
 
 def pytest_addoption(parser):
-    """./robocop test --all --faults N --episode NAME --soak SECONDS"""
+    """./robocop test --all --faults N --episode NAME --soak SECONDS --select REGEX --busy N"""
     parser.addoption("--all", action="store_true", help="also the tests marked slow, and more examples of properties")
-    parser.addoption("--faults", type=int, metavar="N", help="goals of the fault campaign, in all its configurations")
+    parser.addoption("--faults", type=int, metavar="N", help="goals of the fault campaign, in each configuration")
     parser.addoption("--soak", type=float, default=60.0, metavar="SECONDS", help="[s, wall] of the soak test")
     parser.addoption("--episode", metavar="NAME", help="only this episode of the fault campaign, named by a violation")
+    parser.addoption(
+        "--select", default="", metavar="REGEX", help="only faults with such a name; (?!a|b) leaves two out"
+    )
+    parser.addoption(
+        "--busy", type=int, default=0, metavar="N", help="run beside N endless loops, with longer deadlines"
+    )
 
 
 def pytest_configure(config):
+    count = config.getoption("--busy")
+    if count and not hasattr(config, "workerinput"):  # the workers of pytest-xdist inherit the environment
+        os.environ[waiting.PATIENCE] = str(1.0 + count / (os.cpu_count() or 1))
+        load = processes.busy_processes(count)
+        load.__enter__()
+        config.add_cleanup(lambda: load.__exit__(None, None, None))
     settings.load_profile("all" if config.getoption("--all") else "selection")
 
 

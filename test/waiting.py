@@ -1,7 +1,9 @@
 """Waiting for a condition, with a deadline that only a failure reaches."""
 
+import os
 import time
 
+PATIENCE = "ROBOCOP_TEST_PATIENCE"  # environment variable: a factor on all deadlines, for tests beside a load
 DEADLINE = 120.0  # [s, wall] for any one condition, long enough for a busy machine
 POLL = 0.05  # [s, wall]
 
@@ -11,6 +13,7 @@ def wait_for(condition, what, deadline=DEADLINE, poll=POLL, error=AssertionError
 
     After `deadline` [s], or once `given_up` is true, `error` with `what`, which may be callable.
     """
+    deadline *= float(os.environ.get(PATIENCE, "1"))
     until = time.monotonic() + deadline
     while True:
         value = condition()

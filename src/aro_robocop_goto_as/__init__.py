@@ -2,16 +2,18 @@
 
 From a velocity command to odometry, scan, tf and clock:
 
-    ros.sim.robot_inputs          cmd_vel -> ros.sim.node, which posts a job to the loop
-    simulation.controllers        applies it, in lockstep at the end of the control tick
-    simulation.loop               makes the steps
-    simulation.simulator          one step: advance, then measure what is due and subscribed to
-        robot.base_controller     command -> limits, command timeout -> wheel speeds
-        physics.engine            wheel speeds + world -> robot states, by bullet or kinematic
-        sensors                   states, distances -> measurements
-    simulation.observations       what the step yielded
-    ros.sim.node                  -> robot_topics, transform_topics, moving obstacles, and the clock last
-        ros.outbox                all messages of the step in one call of sender.c
+    ros.sim.robot_inputs          cmd_vel -> a job for the thread that owns the simulation
+    simulation.controllers        applies it, in lockstep at the end of the control tick -> robot.fleet
+    physics.engine                runs base controllers and motion up to the next step on which something is due
+        base_controller.c         command -> limits, command timeout -> wheel speeds
+        kinematic.c, bullet       wheel speeds + world -> poses, velocities, wheel angles of the fleet
+    simulation.simulator          measures what is due and subscribed to -> Observations
+        sensors                   models of odometry, scanner, IMU, magnetometer and camera
+    ros.sim.node                  the loop
+        ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
+        ros.outbox                the batch: sender.c writes the measurements into packed messages and sends them
+
+    What is published seldom (bumper, battery, magnetic field, camera) is serialized by rospy.
 
 From a goal to its result:
 
@@ -34,17 +36,29 @@ From a world file to a scan:
 
 From the system to a browser and back, by viser:
 
-    ros.web.topics                topics, tf -> ros.web.view -> web.scene, web.page
-    web.page                      clicks, buttons, keys -> ros.web.node -> ros.web.commands -> topics, services
+    ros.web.node                  the loop: messages -> the parts of the page, updated one after the other
+        ros.web.part              what a part is: its topics, its elements of the panel, its shapes in web.scene
+    ros.web.goals, teleop, ...    clicks, buttons, keys -> ros.web.requests -> topics, services
+    web.state                     what the parts share, such as the robots, which of them is selected and its pose
 
-From the running system to RViz:
+From ./robocop COMMAND to the program that does the work:
 
-    ros.cli.rviz_scene            topics, tf_static, the world's markers -> rviz.config.Scene
-    rviz.config                   + rviz.camera, rviz.displays -> the configuration file that ros.cli.rviz opens
+    robocop                       the shell script: a state folder, a clean environment
+    ros.cli.commands              checks the arguments and chooses the program
+        ros.cli.program           has the script install and build what that program needs, then becomes it
+    ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
+        ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 
-Only `ros`, `bench` and `grading.probe` import rospy. `params` has one frozen dataclass per node; each component of
-the simulator gets its own small set from `component_params`. Limits and timeouts are parameters first: look for them
-there and in `config/` before the code. `compiled` loads the libraries that CMake makes of caster.c and sender.c,
-`process` is about operating system processes, `bootstrap` needs nothing installed, `hosting` builds and runs other
-people's packages, `grading` judges them, `bench` measures the simulator.
+Only `ros` and `bench` import rospy. `params` declares each of the simulator's parameters once, in a group for the
+component that reads it; limits and timeouts are parameters first, so look for them there and in `config/` before the
+code. `robot.fleet` holds the state of all robots as arrays, which the C files beside the Python modules work on, and
+`compiled` loads the libraries that CMake builds from these. `reading` is what all readers of user-written files share,
+`process` is about operating system processes, `bootstrap` runs before anything is installed, and `bench` measures the
+simulator. The package `robocop_grading` beside this one builds, runs and judges other people's packages.
 """
+
+from pkgutil import extend_path
+
+# catkin keeps the generated messages in a folder of their own. Its devel space joins the two when this package is
+# imported by way of it, but not when `robocop_grading`, which lies beside it, was imported first.
+__path__ = extend_path(__path__, __name__)

@@ -2,7 +2,9 @@
 
 import ctypes
 import os
-from typing import Optional, Sequence
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy as np
 
 from . import __path__ as package_folders
 from .errors import InstallationError
@@ -29,7 +31,7 @@ def find(name: str, folders: Optional[Sequence[str]] = None) -> str:
 
 
 def load(name: str, version: int, path: Optional[str] = None) -> ctypes.PyDLL:
-    """A library, which holds the GIL during its calls, so that one thread at a time runs in it.
+    """Load a library. Its calls hold the GIL, so only one thread at a time runs in it.
 
     InstallationError when it is missing, can't be loaded, or was built from other sources: their version differs.
     """
@@ -42,3 +44,25 @@ def load(name: str, version: int, path: Optional[str] = None) -> ctypes.PyDLL:
     if built != version:
         raise InstallationError(f"{path} has version {built}, these sources need version {version}: {BUILD}")
     return library
+
+
+def members(kind: Any, names: str) -> List[Tuple[str, Any]]:
+    """Members of one type for the `_fields_` of a ctypes.Structure."""
+    return [(name, kind) for name in names.split()]
+
+
+def address(name: str, array: np.ndarray, shape: Tuple[Optional[int], ...], dtype: type = np.float64) -> int:
+    """The address of an array's data for C; None in `shape`: any length.
+
+    ValueError unless it is a contiguous array of exactly this type and shape, as C could read beyond it.
+    """
+    kind = array.dtype if isinstance(array, np.ndarray) else None
+    if kind is None or kind.type is not dtype or not kind.isnative or not array.flags.c_contiguous:
+        got = type(array).__name__ if kind is None else f"{kind}, strides {array.strides}"
+        raise ValueError(f"{name}: expected a C-contiguous array of {np.dtype(dtype)}, got {got}")
+    if array.shape != shape and (
+        len(array.shape) != len(shape) or any(size not in (None, have) for size, have in zip(shape, array.shape))
+    ):
+        expected: List[object] = ["any" if size is None else size for size in shape]
+        raise ValueError(f"{name}: expected shape {tuple(expected)}, got {array.shape}")
+    return int(array.__array_interface__["data"][0])

@@ -126,5 +126,9 @@ class UngradableError(GradingError):
     """The grader could not start its part of a run, or the run was ended from outside twice; it can be repeated."""
 
 
+class NoTimeError(UngradableError):
+    """The machine has no time for a run; it can be repeated when the machine is less busy."""
+
+
 class GraderLostError(GradingError):
     """The submission ended the ROS master or the grader's node, so nothing that follows can be judged."""

@@ -6,8 +6,10 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
+from .limits import FARTHEST as FARTHEST
+
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
-FARTHEST = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
+UPRIGHT = 1e-9  # largest |qx| + |qy| of an orientation without roll and pitch
 
 Vector3 = Tuple[float, float, float]
 Quaternion = Tuple[float, float, float, float]  # x, y, z, w, as in geometry_msgs
@@ -40,7 +42,7 @@ STANDSTILL = Twist2D()
 
 
 def compose(a_from_b: Pose2D, b_from_c: Pose2D) -> Pose2D:
-    """a_from_c, the pose of c in a."""
+    """Chain two poses: a_from_b and b_from_c give a_from_c."""
     c, s = math.cos(a_from_b.yaw), math.sin(a_from_b.yaw)
     return Pose2D(
         a_from_b.x + c * b_from_c.x - s * b_from_c.y,
@@ -50,7 +52,7 @@ def compose(a_from_b: Pose2D, b_from_c: Pose2D) -> Pose2D:
 
 
 def inverse(a_from_b: Pose2D) -> Pose2D:
-    """b_from_a."""
+    """The inverse pose: b_from_a."""
     c, s = math.cos(a_from_b.yaw), math.sin(a_from_b.yaw)
     return Pose2D(
         -c * a_from_b.x - s * a_from_b.y,
@@ -121,13 +123,17 @@ class Pose3D:
         """The pose of SDF's and URDF's six numbers: position [m], then roll, pitch, yaw [rad]."""
         return Pose3D(xyz, quaternion_from_rpy(*rpy))
 
+    def is_upright(self) -> bool:
+        """Whether the z axis is vertical: the pose has neither roll nor pitch."""
+        return abs(self.orientation[0]) + abs(self.orientation[1]) <= UPRIGHT
+
     def on_plane(self) -> Pose2D:
         """The pose without height, roll and pitch."""
         return Pose2D(self.position[0], self.position[1], yaw_of(self.orientation))
 
 
 def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
-    """a_from_c in space."""
+    """Chain two poses in space: a_from_b and b_from_c give a_from_c."""
     x, y, z = rotation_matrix(a_from_b.orientation) @ np.array(b_from_c.position)
     ax, ay, az = a_from_b.position
     return Pose3D(
@@ -137,7 +143,7 @@ def compose3(a_from_b: Pose3D, b_from_c: Pose3D) -> Pose3D:
 
 
 def inverse3(a_from_b: Pose3D) -> Pose3D:
-    """b_from_a in space."""
+    """The inverse pose in space: b_from_a."""
     x, y, z, w = a_from_b.orientation
     back = (-x, -y, -z, w)
     bx, by, bz = rotation_matrix(back) @ np.array(a_from_b.position)

@@ -8,8 +8,7 @@ from typing import Optional, Sequence, Union
 import numpy as np
 
 from .geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
-from .params import GotoParams
-from .robot.base_controller import approach
+from .goto_params import GotoParams
 
 
 class Outcome(enum.Enum):
@@ -61,7 +60,7 @@ class MoveForward:
 
 @dataclass(frozen=True)
 class End:
-    """The goal ends here."""
+    """End the goal with this outcome."""
 
     errors: Errors
     outcome: Outcome
@@ -102,6 +101,12 @@ def _clamp(speed: float, low: float, high: float) -> float:
     return max(low, min(high, speed))
 
 
+def approach(value: float, target: float, step: float) -> float:
+    """The value moved towards the target by at most `step`."""
+    change = target - value
+    return target if abs(change) <= step else value + math.copysign(step, change)
+
+
 def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
     """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular."""
     if isinstance(decision, End):
@@ -133,15 +138,18 @@ def clearance_ahead(
 ) -> Optional[float]:
     """Nearest obstacle [m] within half_angle [rad] of straight ahead, in the scanner's frame; +inf for none.
 
-    `ranges` (n_beams,) [m], counter-clockwise from angle_min for a positive increment [rad]; 0 to 2 pi as Gazebo's,
-    -pi to pi, or part of a turn. A return counts where range_min < range < range_max, the handout's rule. -inf means
-    "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that there is nothing to return the
-    beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a scanner that sends only zeros
-    can't be told from one in an open space.
-    None when no beam points ahead. NaN when no beam ahead is valid: all are NaN (REP-117), or the range limits are, or
-    they are not in order, so that no return could count.
+    `ranges` (n_beams,) [m], counter-clockwise from angle_min for a positive increment [rad], clockwise for a negative
+    one; 0 to 2 pi as Gazebo's, -pi to pi, or part of a turn. A return counts where range_min < range < range_max, the
+    handout's rule. -inf means "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that
+    there is nothing to return the beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a
+    scanner that sends only zeros can't be told from one in an open space.
+    None when no beam points ahead, or it can't be said which ones do: angles are no numbers, several beams have one
+    direction, or they go round more than one and a half times, as angles in degrees would. NaN when no beam ahead is
+    valid: all are NaN (REP-117), or the range limits are, or they are not in order, so that no return could count.
     """
     distances = np.asarray(ranges, dtype=float)
+    if len(distances) > 1 and not 0.0 < abs(increment) * (len(distances) - 1) <= 3.0 * math.pi:  # true for NaN
+        return None
     with np.errstate(invalid="ignore", over="ignore"):  # angles that are not numbers do not point ahead
         angles = angle_min + increment * np.arange(len(distances))
         ahead = np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) <= half_angle + 1e-9

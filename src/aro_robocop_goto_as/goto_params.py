@@ -59,7 +59,7 @@ def differences(old: GotoParams, new: GotoParams) -> List[str]:
 
 
 def clamped_values(changes: Mapping[str, Any]) -> List[str]:
-    """What dynamic_reconfigure sets each number beyond its parameter's bounds to, in words."""
+    """For each number beyond a bound, the bound that dynamic_reconfigure sets instead, in words."""
     notes = []
     for spec in fields(GotoParams):
         value, low, high = changes.get(spec.name), spec.metadata["low"], spec.metadata["high"]

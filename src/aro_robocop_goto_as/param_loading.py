@@ -1,11 +1,11 @@
 """Plain values -> a frozen parameter dataclass; whatever does not fit is an error that names source, key and value."""
 
-import difflib
 import math
 from dataclasses import MISSING, Field, field, fields
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar, cast, get_args, get_type_hints
 
 from .errors import ParameterError
+from .suggestions import did_you_mean
 
 T = TypeVar("T")
 
@@ -19,7 +19,7 @@ def parameter(
 ) -> Any:
     """A dataclass field with its inclusive bounds or its choices; without a default the key is required.
 
-    `otherwise` says, for a default of None, what holds when the key is left out.
+    `otherwise` says, for a default of None, what is used when the key is omitted.
     """
     metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise}
     return field(default=default, metadata=metadata)
@@ -30,14 +30,27 @@ def positive(default: Any = MISSING, high: float = 1e6, otherwise: str = "") -> 
     return parameter(default, low=1e-9, high=high, otherwise=otherwise)
 
 
+def group(cls: Type[T]) -> T:
+    """A dataclass field that holds a group of parameters: another such dataclass, whose keys are not prefixed."""
+    return field(default=cls(), metadata={"group": cls})
+
+
+def declared(cls: Type[Any]) -> Dict[str, "Field[Any]"]:
+    """The parameters of a dataclass and of its groups, by their names."""
+    specs: Dict[str, Field[Any]] = {}
+    for spec in fields(cast(Any, cls)):
+        inner = spec.metadata.get("group")
+        specs.update(declared(inner) if inner else {spec.name: spec})
+    return specs
+
+
 def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     """A parameter dataclass from plain values; absent keys keep their defaults.
 
     Raises ParameterError naming `source` (a file or a parameter namespace) and every key that is unknown, missing, of
     the wrong type or out of bounds, with its value and what was expected.
     """
-    specs = {spec.name: spec for spec in fields(cast(Any, cls))}
-    types = {name: _without_none(hint) for name, hint in get_type_hints(cls).items()}
+    specs, types = declared(cls), _types(cls)
     problems = [
         f"{name}: missing, expected {types[name].__name__}"
         for name, spec in specs.items()
@@ -46,9 +59,8 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     values: Dict[str, Any] = {}
     for key, value in raw.items():
         if key not in specs:
-            close = difflib.get_close_matches(key, specs, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else "known are: {}".format(", ".join(sorted(specs)))
-            problems.append(f"{key}: unknown parameter; {hint}")
+            hint = did_you_mean(key, specs, "'{}'") or "; known are: {}".format(", ".join(sorted(specs)))
+            problems.append(f"{key}: unknown parameter{hint}")
             continue
         if types[key] is float and type(value) is int:
             value = _to_float(value)
@@ -57,11 +69,33 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
             problems.append(f"{key}: {problem}")
         values[key] = value
     if not problems:
-        params = cls(**values)
+        params = _made(cls, values)
         problems = list(getattr(params, "conflicts", lambda: [])())
     if problems:
         raise ParameterError("{}: {}".format(source, "; ".join(problems)))
     return params
+
+
+def _types(cls: Type[Any]) -> Dict[str, Type[Any]]:
+    """The type of each parameter's value."""
+    types: Dict[str, Type[Any]] = {}
+    hints = get_type_hints(cls)
+    for spec in fields(cast(Any, cls)):
+        inner = spec.metadata.get("group")
+        types.update(_types(inner) if inner else {spec.name: _without_none(hints[spec.name])})
+    return types
+
+
+def _made(cls: Type[T], values: Mapping[str, Any]) -> T:
+    """The dataclass with these values; each group takes its own."""
+    given = {}
+    for spec in fields(cast(Any, cls)):
+        inner = spec.metadata.get("group")
+        if inner:
+            given[spec.name] = _made(inner, values)
+        elif spec.name in values:
+            given[spec.name] = values[spec.name]
+    return cls(**given)
 
 
 def _without_none(hint: Any) -> Type[Any]:
@@ -83,7 +117,7 @@ def _problem(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
     if expected is None:
         return None
     otherwise = spec.metadata.get("otherwise")
-    return f"expected {expected}" + (f"; leave the key out for {otherwise}" if otherwise else "")
+    return f"expected {expected}" + (f"; omit it to use {otherwise}" if otherwise else "")
 
 
 def _expectation(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:

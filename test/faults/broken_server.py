@@ -13,10 +13,10 @@ def second_result():
     end = node.GotoServer._end
 
     def end_twice(server, ending):
-        handle = server.server.current_goal
+        handle = server.server.current
         end(server, ending)
         state = handle.get_goal_status()
-        server.server.action_server.publish_result(state, node.GoToPositionResult(False, ending.message))
+        server.server.publish_result(state, node.GoToPositionResult(False, ending.message))
 
     node.GotoServer._end = end_twice
 

@@ -15,11 +15,15 @@ import argparse
 import collections
 import json
 import random
+import re
+import statistics
 import sys
 import time
 from pathlib import Path
 
-import data_faults  # noqa: F401  registers its faults
+import data_faults  # noqa: F401  these three register their faults
+import neighbour_faults  # noqa: F401
+import process_faults  # noqa: F401
 import rospy
 from client import Client
 from faults import FAULTS
@@ -36,15 +40,17 @@ FREE = {"sync": "free", "real_time_factor": 3.0}  # a busy machine has to send a
 TWO = {"robots": "left 0 3; right 0 -3"}
 WORLD = {"world": "empty", "seed": 1}
 CONFIGURATIONS = {
-    f"{mode}-{drive}-{robots}": {**WORLD, **COARSE, **how, **engine, **fleet}
+    f"{mode}-{drive}-{place}": {**WORLD, **COARSE, **how, **engine, **where}
     for mode, how in (("lockstep", LOCKSTEP), ("free", FREE))
     for drive, engine in (("kinematic", KINEMATIC), ("wheels", BULLET))
-    for robots, fleet in (("one", {}), ("two", TWO))
+    for place, where in (("one", {}), ("two", TWO), ("pillars", {"world": "world"}), ("maze", {"world": "maze_1"}))
 }
 MESSAGES = "messages"  # the configuration without a simulator
+IN_THE_WAY = ("OBSTACLE", "STUCK")  # how any goal may end in a world with obstacles, but not the one after the fault
 WARM_UP = 5  # episodes before usage is noted
 GROWTH = {"RSS [MiB]": 40.0, "threads": 6, "file descriptors": 12}  # that is no leak in a few hundred goals
 SOAK_ROWS = 12  # of the table of a soak test
+SOAK_GROWTH = {"RSS [MiB]": 4.0, "threads": 1, "file descriptors": 2}  # from its second third to its last one
 COSTLY_SHARE = 0.05  # of the episodes, after each fault had its turn
 
 
@@ -62,7 +68,7 @@ class Episode:
 class Campaign:
     """Episodes in one configuration."""
 
-    def __init__(self, configuration, seed, full, verbose, system):
+    def __init__(self, configuration, seed, full, verbose, select, system):
         simulator = None if configuration == MESSAGES else CONFIGURATIONS[configuration]
         robots = ["left", "right"] if simulator and "robots" in simulator else [""]
         self.configuration, self.seed, self.full, self.verbose = configuration, seed, full, verbose
@@ -70,11 +76,15 @@ class Campaign:
         self.system = system
         system.start_nodes(robots, simulator)
         rospy.init_node(CLIENT[1:], disable_rostime=True, disable_signals=True)
-        self.clients = [Client(self.system, robot) for robot in robots]
+        lockstep = simulator is not None and simulator["sync"] == "lockstep"
+        self.obstacles = simulator is not None and simulator["world"] != WORLD["world"]
+        self.clients = [Client(self.system, robot, self.obstacles, lockstep) for robot in robots]
         self.stage = (SimulatedStage if simulator else MessageStage)(self.system, self.clients)
-        kinds = ("", "simulator" if simulator else "messages")
-        self.faults = [fault for fault in FAULTS if fault.needs in kinds]
-        self.last = [fault for fault in FAULTS if fault.needs == "last"]
+        kinds = ["", "simulator" if simulator else "messages"]
+        if robots == [""]:
+            kinds += ["bridge", "lab"] if simulator else ["bridge"]
+        self.faults = [fault for fault in FAULTS if fault.needs in kinds and re.match(select, fault.name)]
+        self.last = [fault for fault in FAULTS if fault.needs == "last" and re.match(select, fault.name)]
         self.table = collections.defaultdict(collections.Counter)
         self.violations = []
         self.baseline = None
@@ -85,13 +95,13 @@ class Campaign:
             return random.Random(f"{self.seed}/{self.configuration}").sample(self.faults, len(self.faults))[number]
         rng = random.Random(f"{self.seed}/{self.configuration}/fault {number}")
         costly = rng.random() < COSTLY_SHARE
-        return rng.choice([fault for fault in self.faults if fault.costly == costly])
+        return rng.choice([fault for fault in self.faults if fault.costly == costly] or self.faults)
 
     def run(self, goals):
         """Each fault once, then episodes until so many goals have been sent; then the last ones."""
         self.stage.prepare()
         number = 0
-        while (self.goals_sent < goals or number < len(self.faults)) and not self.violations:
+        while (self.goals_sent - self.goals_flooded < goals or number < len(self.faults)) and not self.violations:
             fault = self.fault_of(number)
             if self.full or not fault.costly or number >= len(self.faults):
                 self.run_episode(number, fault)
@@ -117,12 +127,19 @@ class Campaign:
                 noted.append((elapsed, self.goals_sent, self.system.usage()))
                 self.baseline = noted[0][2]
                 self._guard("usage", self.require_level_usage)
+        if not self.violations:
+            self._guard("usage", lambda: _require_no_slope([used for _, _, used in noted]))
         return noted
 
     @property
     def goals_sent(self):
         """How many goals have been sent so far."""
         return sum(client.sent for client in self.clients)
+
+    @property
+    def goals_flooded(self):
+        """How many of them were part of a flood, one of which has more goals than hundreds of episodes."""
+        return sum(client.flooded for client in self.clients)
 
     def run_episode(self, number, fault=None):
         """One episode, with its invariants."""
@@ -153,7 +170,7 @@ class Campaign:
                     continue
                 word = client.word(goal)
                 row[word] += 1
-                if words is not None and word not in words:
+                if words is not None and word not in (*words, *(IN_THE_WAY if self.obstacles else ())):
                     raise Violation(f"goal {goal} ended {client.results[goal][0].result.message!r}, expected {words}")
         for client in self.clients:
             probe = self._probe(episode, client)
@@ -169,6 +186,8 @@ class Campaign:
 
     def _probe(self, episode, client):
         """A goal nearby that nothing disturbs, once it has ended."""
+        if client.place_near(episode.rng, 0.3, free=True) is None:
+            self.stage.send_home()
         probe = client.send_near(episode.rng, 0.3)
         self.stage.wait_for(client.all_ended, "the end of the goal after it")
         client.require_one_ending_each()
@@ -189,6 +208,20 @@ class Campaign:
             for (what, limit), old, new in zip(GROWTH.items(), before, now):
                 if pid == now_pid and new - old > limit:
                     raise Violation(f"{name}: {what} grew from {old:g} to {new:g}")
+
+
+def _require_no_slope(noted):
+    """Violation if a process uses more in the last third of a soak test than in the second one, by their medians.
+
+    In the first third memory may still grow to the size that is needed.
+    """
+    third = len(noted) // 3
+    for name in noted[0]:
+        middle, last = ([used[name][1:] for used in part] for part in (noted[third:-third], noted[-third:]))
+        for (what, limit), before, after in zip(SOAK_GROWTH.items(), zip(*middle), zip(*last)):
+            old, new = statistics.median(before), statistics.median(after)
+            if new - old > limit:
+                raise Violation(f"{name}: {what} is still growing after a third of the time, from {old:g} to {new:g}")
 
 
 def _missing(client):
@@ -224,6 +257,7 @@ def main():
     parser.add_argument("--configuration", choices=[*CONFIGURATIONS, MESSAGES], default=MESSAGES)
     parser.add_argument("--goals", type=int, default=100, help="how many goals at least")
     parser.add_argument("--seed", default="1")
+    parser.add_argument("--select", default="", help="a regular expression that the names of the faults have to match")
     parser.add_argument("--full", action="store_true", help="also the faults that take seconds, and whole bursts")
     parser.add_argument("--episode", type=int, help="only this episode")
     parser.add_argument("--soak", type=float, help="instead of faults, goals for so many seconds")
@@ -235,7 +269,7 @@ def main():
     started = time.monotonic()
     system = System(options.folder, options.mistake)
     try:
-        campaign = Campaign(options.configuration, options.seed, options.full, options.verbose, system)
+        campaign = Campaign(options.configuration, options.seed, options.full, options.verbose, options.select, system)
         if options.soak is not None:
             noted = campaign.soak(options.soak)
             print(usage_text(noted) if noted else "ended before the first look at the processes")

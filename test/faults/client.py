@@ -9,7 +9,8 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
-from system import BRIDGE, SERVER, SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
+from sensor_msgs.msg import LaserScan
+from system import BRIDGE, CLIENT, SERVER, SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
 
 TERMINAL = {
     GoalStatus.PREEMPTED: "PREEMPTED",
@@ -26,7 +27,21 @@ STATES_OF = {  # the terminal states that belong to the first word of a result
     ),
 }
 FORGOTTEN = GoalStatus.RECALLING  # of a goal that is cancelled so late that actionlib has forgotten it
+WALL_TIME = 1e9  # [s] the stamps of a server on wall time are later, simulated ones earlier
 SLOWEST = 0.003, 0.02  # [m/s], [rad/s] at rest
+
+ATTEMPTS = 100  # to find a place that the robot can drive to
+NEAR = 1.2  # [m] farther returns are in no goal's way
+CLEAR_AHEAD, CLEAR_ASIDE, CLEAR_AROUND = 0.45, 0.25, 0.2  # [m] more than the server's cone and the robot need
+
+
+def _is_free(returns, turn, distance):
+    """Whether the robot can turn by an angle [rad] and drive so far [m] without an obstacle, by (angle, distance)."""
+    for angle, far in returns:
+        ahead, aside = far * math.cos(angle - turn), far * math.sin(angle - turn)
+        if far < CLEAR_AROUND or (0.0 < ahead < distance + CLEAR_AHEAD and abs(aside) < CLEAR_ASIDE):
+            return False
+    return True
 
 
 class _Lists(dict):
@@ -43,14 +58,15 @@ class _Lists(dict):
 class Client:
     """One robot: sends goals to its server, records what is said about them and how the robot moves."""
 
-    def __init__(self, system, namespace=""):
+    def __init__(self, system, namespace="", obstacles=False, lockstep=False):
+        """`obstacles`: whether to look for free places, by the scan. `lockstep`: the simulator's mode."""
         prefix = f"/{namespace}" if namespace else ""
-        self._system = system
+        self._system, self._lockstep = system, lockstep
         self.namespace = namespace
         self.action = f"{prefix}/robocop_goto_as"
         self.server = f"{prefix}/{SERVER}"
         self.numbers = itertools.count(1)
-        self.sent = 0
+        self.sent = self.flooded = 0  # goals; those of floods
         self.odom = self.position = None
         self.ended_at = 0.0  # [s] simulated, of the last result
         self.truth = collections.deque(maxlen=3000)  # (stamp [s], v [m/s], w [rad/s])
@@ -65,6 +81,9 @@ class Client:
         rospy.Subscriber(f"{self.action}/goal", GoToPositionActionGoal, self._on_goal)
         rospy.Subscriber(f"{prefix}/cmd_vel", Twist, self.commands.append)
         rospy.Subscriber(f"{prefix}/odom", Odometry, self._on_odom)
+        self._scan = None
+        if obstacles:
+            rospy.Subscriber(f"{prefix}/scan", rospy.AnyMsg, self._on_scan)
         rospy.Subscriber(f"{prefix}/ground_truth_odom", Odometry, self._on_truth)
 
     def last_command_of(self, node):
@@ -76,13 +95,14 @@ class Client:
         """Forget all goals."""
         self.expected = []  # ids of the goals that must have an ending
         self.lost = set()  # ids of those whose server was ended before they were
-        self.clicked = []  # ids of goals of the bridge
+        self.clicked = {}  # by id: goals of the bridge
         self.results, self.states, self.feedback = _Lists(), _Lists(), _Lists()
 
     # -- what arrives --
 
     def _on_result(self, message):
-        self.ended_at = message.header.stamp.to_sec()
+        if message.header.stamp.to_sec() < WALL_TIME:
+            self.ended_at = message.header.stamp.to_sec()
         self.results.add(message.status.goal_id.id, message)
 
     def _on_status(self, message):
@@ -95,10 +115,13 @@ class Client:
 
     def _on_goal(self, message):
         if BRIDGE in message.goal_id.id:
-            self.clicked.append(message.goal_id.id)
+            self.clicked[message.goal_id.id] = message.goal
 
     def _on_odom(self, message):
         self.odom = message
+
+    def _on_scan(self, message):
+        self._scan = message  # not read before it is needed, because that takes longer than to receive it
 
     def _on_truth(self, message):
         twist, self.position = message.twist.twist, message.pose.pose.position
@@ -119,15 +142,23 @@ class Client:
         wait_for(lambda: wanted <= connections_from(self._system, self.server), f"{self.server} sends its topics")
 
     def wait_for_simulator(self):
-        """Wait until the simulator that runs now sends this robot's topics here, and its server has them too."""
-        prefix = f"/{self.namespace}" if self.namespace else ""
-        wanted = {f"{prefix}/{topic}" for topic in ("odom", "ground_truth_odom")}
-        wait_for(lambda: wanted <= connections_from(self._system, "/" + SIMULATOR), "the simulator sends its topics")
+        """Wait until the simulator that runs now sends this robot's topics here, and is connected to its server."""
+        simulator, prefix = "/" + SIMULATOR, f"/{self.namespace}" if self.namespace else ""
+        commands = {f"{prefix}/cmd_vel", f"{prefix}/tick_answer"} if self._lockstep else {f"{prefix}/cmd_vel"}
+        for sender, receiver, wanted in (
+            (simulator, CLIENT, {"/clock", f"{prefix}/odom", f"{prefix}/ground_truth_odom"}),
+            (simulator, self.server, {"/clock", f"{prefix}/odom", f"{prefix}/scan"}),
+            (self.server, simulator, commands),
+        ):
+            wait_for(
+                lambda by=sender, to=receiver, topics=wanted: topics <= connections_from(self._system, by, to),
+                f"{sender} sends {wanted} to {receiver}",
+            )
 
     # -- goals --
 
-    def send(self, x, y, z=0.0, goal_id=None, stamp=None, expected=True):
-        """Send a goal in odom [m]; its id."""
+    def send(self, x, y, z=0.0, goal_id=None, stamp=None, expected=True, flood=False):
+        """Send a goal in odom [m], which may be one of a flood; its id."""
         message = GoToPositionActionGoal()
         name = f"{rospy.get_name()}-{next(self.numbers)}" if goal_id is None else goal_id
         message.goal_id = GoalID(rospy.Time() if stamp is None else stamp, name)
@@ -135,6 +166,7 @@ class Client:
         if expected and name not in self.expected:
             self.expected.append(name)
             self.sent += 1
+            self.flooded += flood
         self.goal_topic.publish(message)
         return name
 
@@ -142,13 +174,32 @@ class Client:
         """Send a goal at a random place near the robot."""
         return self.send(*self.place_near(rng, farthest))
 
-    def place_near(self, rng, farthest=0.5):
-        """A random place near the robot, in odom [m]."""
+    def place_near(self, rng, farthest=0.5, free=False):
+        """A random place near the robot, in odom [m]; in a world with obstacles one that the robot can drive to.
+
+        If none is found, any place, or None if it has to be `free`.
+        """
         here, q = self.odom.pose.pose.position, self.odom.pose.pose.orientation
-        widest = math.pi if rng.random() < 0.1 else 0.5  # to turn around takes longer than to drive there
-        angle = 2.0 * math.atan2(q.z, q.w) + rng.uniform(-widest, widest)
-        distance = rng.uniform(0.15, farthest)
+        returns = self._returns()
+        for attempt in range(ATTEMPTS):
+            # To turn around takes longer than to drive there.
+            widest = math.pi if rng.random() < 0.1 or attempt > ATTEMPTS / 10 else 0.5
+            turn, distance = rng.uniform(-widest, widest), rng.uniform(0.15, farthest)
+            if _is_free(returns, turn, distance):
+                break
+        else:
+            if free:
+                return None
+        angle = 2.0 * math.atan2(q.z, q.w) + turn
         return here.x + distance * math.cos(angle), here.y + distance * math.sin(angle)
+
+    def _returns(self):
+        """The newest scan's returns as (angle [rad], distance [m]); none in a world without obstacles."""
+        if self._scan is None:
+            return []
+        scan = LaserScan().deserialize(self._scan._buff)
+        angles = (scan.angle_min + number * scan.angle_increment for number in range(len(scan.ranges)))
+        return [(angle, distance) for angle, distance in zip(angles, scan.ranges) if distance < NEAR]
 
     def cancel(self, goal_id="", stamp=None):
         """Cancel one goal, those up to a stamp, or all."""

@@ -78,6 +78,34 @@ def scan_of_wrong_length(e):
 
 
 @fault("data", needs="messages")
+def scan_without_directions(e):
+    """A scan whose beams have no direction: all the same angle, none that is a number, or against angle_max."""
+    change = e.rng.choice(
+        (
+            lambda scan: setattr(scan, "angle_increment", 0.0),
+            lambda scan: setattr(scan, "angle_increment", math.nan),
+            lambda scan: setattr(scan, "angle_min", math.inf),
+            lambda scan: setattr(scan, "angle_increment", -scan.angle_increment),
+        )
+    )
+
+    def changed(message):
+        change(message)
+        return message
+
+    here = e.client.odom.pose.pose.position
+    e.client.send(here.x + 5.0, here.y)
+    e.stage.change_scan = changed
+    try:
+        for _ in range(20):
+            e.stage.tick()
+    finally:
+        e.stage.change_scan = lambda message: message
+    e.client.cancel()  # a goal that is still driving would end PREEMPTED
+    return ("ERROR", "NO_SCAN")
+
+
+@fault("data", needs="messages")
 def odom_impossible(e):
     """Odometry with a pose that no robot can have."""
     value = e.rng.choice((math.nan, math.inf, 1e300, -1e300, 1e40))
@@ -139,6 +167,23 @@ def clock_set_back(e):
     drive(e)
     e.stage.set_time(e.stage.now - e.rng.choice((0.1, 1.0, 20.0, 1e9)))
     return (*STOPPED, "NO_ODOM", "NO_SCAN")
+
+
+@fault("clock", needs="messages")
+def clock_set_back_by_10_s(e):
+    """The clock is set back by 10 s during a goal."""
+    e.stage.set_time(max(e.stage.now, 20.0))
+    drive(e)
+    e.stage.set_time(e.stage.now - 10.0)
+    return (*STOPPED, "NO_ODOM", "NO_SCAN")
+
+
+@fault("clock", needs="messages")
+def clock_set_forward_by_an_hour(e):
+    """The clock is set forward by an hour during a goal."""
+    drive(e)
+    e.stage.set_time(e.stage.now + 3600.0)
+    return (*STOPPED, "NO_ODOM", "NO_SCAN", "STUCK")
 
 
 @fault("clock", needs="messages")

@@ -1,30 +1,28 @@
-"""The faults, by kind. Each is a function of an episode; the words that its goals may end with are its return value.
+"""The faults of goals, time and world.
+
+Each is a function of an episode; the words that its goals may end with are its return value.
 
 A fault does its harm, undoes what would last, and returns: the campaign then waits for the ends of all goals, checks
 the invariants and sends a goal that has to be reached.
 """
 
-import contextlib
 import math
 import signal
-import socket
-import subprocess
-import sys
-import time
-import urllib.parse
 
 import rospy
 from aro_robocop_goto_as.srv import DeleteModel, MoveModel, SpawnModel
 from dynamic_reconfigure.srv import Reconfigure
-from geometry_msgs.msg import Pose, PoseStamped, Twist
-from stage import STRAY, TICK
-from system import BRIDGE, SIMULATOR, is_connected, publisher, wait_for
+from geometry_msgs.msg import Pose
+from stage import STRAY
+from system import SIMULATOR, wait_for
 
 ANY = None  # any ending
 BAD = ("BAD_GOAL",)
 DONE = ("REACHED",)
 STOPPED = ("PREEMPTED", "REACHED")  # who cancels may be too late
 BURST = 200
+FLOOD = 3000
+FLOOD_ANSWER = 10.0  # [s, wall] from the last of these goals to an answer; a fraction of it on an idle machine
 BOX = """<sdf version="1.6"><model name="block"><link name="link"><collision name="c"><geometry><box><size>
 0.2 0.2 0.5</size></box></geometry></collision></link></model></sdf>"""
 
@@ -42,7 +40,11 @@ FAULTS = []
 
 
 def fault(group, needs="", costly=False):
-    """Register a fault. needs: "simulator" or "messages"; empty: either. costly: takes seconds of wall time."""
+    """Register a fault. `costly`: it takes seconds of wall time.
+
+    `needs`: "simulator" or "messages", "bridge" (one robot), "lab" (a simulator with one robot), "last" (nothing goes
+    on after it); empty: nothing.
+    """
 
     def register(run):
         FAULTS.append(Fault(run, group, needs, costly))
@@ -148,6 +150,20 @@ def goals_in_a_burst(e):
         bad = e.rng.random() < 0.1
         e.client.send(*((math.nan, 0.0) if bad else e.client.place_near(e.rng)))
     return (*STOPPED, *BAD)
+
+
+@fault("goal", costly=True)
+def goals_in_a_flood(e):
+    """Thousands of goals at once: the newest supersedes them all, and is accepted at once."""
+    for _ in range(FLOOD):
+        e.client.send(*e.client.place_near(e.rng), flood=True)
+    last = e.client.send_near(e.rng)
+    e.stage.wait_for(
+        lambda: e.client.feedback[last] or e.client.results[last],
+        f"an answer to a goal after {FLOOD} others",
+        FLOOD_ANSWER,
+    )
+    return STOPPED
 
 
 @fault("goal")
@@ -305,180 +321,6 @@ def obstacle_appears(e):
     for number in range(4):
         delete(f"block_{number}")
     return ("REACHED", "OBSTACLE", "STUCK")
-
-
-# -- processes --
-
-
-@fault("process")
-def server_frozen(e):
-    """SIGSTOP, then SIGCONT, of the server during a goal."""
-    goal = drive(e)
-    e.system.send_signal(e.client.server, signal.SIGSTOP)
-    try:
-        if e.rng.random() < 0.5:
-            e.client.cancel(goal)
-        time.sleep(e.rng.uniform(0.0, 0.05))
-    finally:
-        e.system.send_signal(e.client.server, signal.SIGCONT)
-    return (*STOPPED, "NO_ODOM", "NO_SCAN")
-
-
-@fault("process", costly=True)
-def server_killed(e):
-    """SIGKILL of the server during a goal."""
-    drive(e)
-    e.client.lose_goals()
-    _replace_server(e, signal.SIGKILL)
-    return (*STOPPED, "OBSTACLE")
-
-
-@fault("process", costly=True)
-def server_told_to_end(e):
-    """SIGTERM of the server during a goal."""
-    goal = drive(e)
-    _end(e, e.client.server, signal.SIGTERM)
-    wait_for(lambda: e.client.results[goal], "the result SHUTDOWN of a server that ends")
-    _replace_server(e, None)
-    return ("REACHED", "SHUTDOWN")
-
-
-def _end(e, node, number):
-    e.system.end(node, number)
-
-
-def _replace_server(e, number):
-    server = e.client.server
-    if number is not None:
-        _end(e, server, number)
-    e.stage.require_rest_without_server()
-    e.system.restart(server)
-    e.stage.prepare()
-
-
-@fault("process", needs="simulator")
-def simulator_frozen(e):
-    """SIGSTOP, then SIGCONT, of the simulator during a goal."""
-    drive(e)
-    e.system.send_signal("/" + SIMULATOR, signal.SIGSTOP)
-    time.sleep(e.rng.uniform(0.0, 0.1))
-    e.system.send_signal("/" + SIMULATOR, signal.SIGCONT)
-    return (*STOPPED, "NO_ODOM", "NO_SCAN")
-
-
-@fault("process", needs="simulator", costly=True)
-def simulator_ended(e):
-    """SIGKILL or SIGTERM of the simulator during a goal, which goes on with the next one."""
-    drive(e)
-    _end(e, "/" + SIMULATOR, e.rng.choice((signal.SIGKILL, signal.SIGTERM)))
-    for client in e.clients:
-        client.odom = None
-    e.system.restart("/" + SIMULATOR)
-    e.stage.prepare()
-    for client in e.clients:
-        client.restart_time()
-    return ANY
-
-
-@fault("process", costly=True)
-def bridge_ended(e):
-    """SIGKILL or SIGTERM of the bridge during a goal."""
-    drive(e)
-    bridge = "/" + BRIDGE
-    if bridge in e.system.processes:
-        _end(e, bridge, e.rng.choice((signal.SIGKILL, signal.SIGTERM)))
-        e.system.restart(bridge)
-    return DONE
-
-
-# -- surroundings --
-
-
-@fault("surroundings")
-def second_publisher(e):
-    """Somebody else publishes velocity commands during a goal, also impossible ones."""
-    prefix = f"/{e.client.namespace}" if e.client.namespace else ""
-    topic = publisher(f"{prefix}/cmd_vel", Twist)
-    with contextlib.closing(_Closing(topic)):
-        wait_for(lambda: is_connected(topic, rospy.get_name()), "the client receives the other commands, too")
-        drive(e)
-        twist = Twist()
-        for _ in range(20):
-            twist.linear.x, twist.angular.z = e.rng.choice((0.1, -0.1, 5.0, math.nan)), e.rng.choice((0.0, 1.0, 1e300))
-            topic.publish(twist)
-            e.stage.pass_time(TICK)
-        topic.publish(Twist())
-        e.stage.wait_for(lambda: e.client.last_command_of(rospy.get_name()) == Twist(), "the last of these commands")
-    return ANY
-
-
-class _Closing:
-    def __init__(self, topic):
-        self.close = topic.unregister
-
-
-@fault("surroundings", needs="simulator", costly=True)
-def hanging_subscriber(e):
-    """A subscriber of everything that stops reading."""
-    code = (
-        "import rospy\nrospy.init_node('hanging', anonymous=True, disable_rostime=True)\n"
-        "for name, _ in rospy.get_published_topics(): rospy.Subscriber(name, rospy.AnyMsg, lambda message: None)\n"
-        "print(flush=True)\nrospy.spin()"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    try:
-        process.stdout.readline()
-        process.send_signal(signal.SIGSTOP)
-        drive(e)
-        e.stage.pass_time(200.0)  # which fills the buffers to it, at some megabytes
-        e.stage.wait_for(e.client.all_ended, "the goal's end beside a subscriber that hangs")
-    finally:
-        process.kill()
-        process.wait()
-        process.stdout.close()
-    return DONE
-
-
-@fault("surroundings", costly=True)
-def garbage_on_ports(e):
-    """A hundred connections with garbage to the ports of a node."""
-    goal = drive(e)
-    node = e.rng.choice([name for name in e.system.processes if name.startswith("/")])
-    address = urllib.parse.urlparse(e.system.master.lookupNode(node))
-    for number in range(100):
-        with contextlib.suppress(OSError), socket.create_connection((address.hostname, address.port), 5.0) as link:
-            link.sendall(bytes(e.rng.randrange(256) for _ in range(number)))
-    with contextlib.suppress(Exception):
-        _, _, (protocol, host, port) = e.system.api(node).requestTopic("/garbage", "/rosout", [["TCPROS"]])
-        for number in range(100):
-            with contextlib.suppress(OSError), socket.create_connection((host, port), 5.0) as link:
-                link.sendall(bytes(e.rng.randrange(256) for _ in range(number)))
-    e.client.cancel(goal)
-    return STOPPED
-
-
-@fault("surroundings")
-def clicks_without_transform(e):
-    """Clicks in RViz in a frame without a transform, without a frame and impossible ones."""
-    if "/" + BRIDGE not in e.system.processes:
-        return valid_goals(e)
-    bridge = f"/{BRIDGE}"
-    wait_for(lambda: is_connected(e.client.click_topic, bridge), "the bridge listens")
-    for frame, x in (("nowhere", 0.1), ("odom", math.nan), ("a b/", 1e300)):
-        e.client.click_topic.publish(_click(frame, x, 0.0))
-    known = set(e.client.clicked)
-    e.client.click_topic.publish(_click("odom", *e.client.place_near(e.rng)))
-    made = e.stage.wait_for(lambda: [goal for goal in e.client.clicked if goal not in known], "the click's goal")
-    e.client.expected += made
-    e.client.sent += len(made)
-    return DONE
-
-
-def _click(frame, x, y):
-    pose = PoseStamped()
-    pose.header.frame_id = frame
-    pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w = x, y, 1.0
-    return pose
 
 
 @fault("process", needs="last", costly=True)

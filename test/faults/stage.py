@@ -1,6 +1,7 @@
 """What time and motion come from: a simulator that runs by itself, or a robot that the campaign makes of messages."""
 
 import math
+import time
 
 import rospy
 from aro_robocop_goto_as.msg import TickAnswer
@@ -32,22 +33,33 @@ class SimulatedStage:
         rospy.Subscriber("/clock", Clock, self._on_clock)
 
     def _on_clock(self, message):
-        self.now = message.clock.to_sec()
+        if message._connection_header["callerid"] == "/" + SIMULATOR:  # a fault may publish another clock
+            self.now = message.clock.to_sec()
 
     def prepare(self):
         """Wait for everything to be connected, and for the first odometry."""
+        self.wait_for_server()
         for client in self.clients:
             client.wait_for_simulator()
-            client.wait_for_server()
         self.wait_for(lambda: all(client.odom for client in self.clients), "odometry")
         # Not again after the simulator was restarted: the newest position may be from before.
         self.homes = self.homes or {client: (at.x, at.y) for client in self.clients for at in [self.truth_of(client)]}
 
+    def wait_for_server(self):
+        """Wait until all servers are connected."""
+        for client in self.clients:
+            client.wait_for_server()
+
     def begin_episode(self):
         """Put the robots back where they started, if one of them is far from there."""
         if any(self._distance_from_home(client) > STRAY for client in self.clients):
-            self.reset()
-            self.wait_for(lambda: all(map(self._is_home, self.clients)), self._away_from_home)
+            self.send_home()
+
+    def send_home(self):
+        """Put the robots back where they started."""
+        self.reset()
+        self.wait_for(lambda: all(map(self._is_home, self.clients)), self._away_from_home)
+        self.pass_time(REST)  # a scan from there arrives
 
     def _away_from_home(self):
         at = {client.namespace: (self.truth_of(client), client.odom.pose.pose.position) for client in self.clients}
@@ -61,9 +73,13 @@ class SimulatedStage:
         at, (x, y) = self.truth_of(client), self.homes[client]
         return math.hypot(at.x - x, at.y - y)
 
-    def wait_for(self, condition, what):
+    def wait_for(self, condition, what, deadline=DEADLINE):
         """The first true value of a condition."""
-        return wait_for(condition, what)
+        return wait_for(condition, what, deadline)
+
+    def pass_wall_time(self, seconds):
+        """Let time on the wall pass [s], while simulated time goes on as it can."""
+        time.sleep(seconds)
 
     def pass_time(self, seconds):
         """Let simulated time pass [s]."""
@@ -151,15 +167,19 @@ class MessageStage:
 
     def prepare(self):
         """Wait for everything to be connected, then let a second pass."""
+        self.wait_for_server()
+        for _ in range(10):
+            self.tick()
+        wait_for(lambda: self.client.odom, "odometry")
+
+    def wait_for_server(self):
+        """Wait until the server and this stage are connected."""
         server = self.client.server
         for topic in (self._clock, self._odom, self._scan):
             wait_for(lambda topic=topic: is_connected(topic, server), f"{server} subscribes to {topic.name}")
         self.client.wait_for_server()
         wanted = {"/tick_answer", "/cmd_vel"}
         wait_for(lambda: wanted <= connections_from(self.system, server), f"{server} sends its commands")
-        for _ in range(10):
-            self.tick()
-        wait_for(lambda: self.client.odom, "odometry")
 
     def begin_episode(self):
         """Nothing is in this robot's way, wherever it is."""
@@ -208,7 +228,7 @@ class MessageStage:
         message.header.stamp, message.header.frame_id = self.stamp, "base_scan"
         return message
 
-    def wait_for(self, condition, what):
+    def wait_for(self, condition, what, deadline=DEADLINE):
         """Tick until a condition holds; its value."""
 
         def ticked():
@@ -217,7 +237,13 @@ class MessageStage:
                 self.tick()
             return value
 
-        return wait_for(ticked, what)
+        return wait_for(ticked, what, deadline)
+
+    def pass_wall_time(self, seconds):
+        """Tick until so much time on the wall has passed [s]."""
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            self.tick()
 
     def pass_time(self, seconds):
         """Let simulated time pass [s]."""

@@ -5,6 +5,7 @@ Whatever ends is started again by `restart`, and only that: everything else has 
 
 import contextlib
 import os
+import resource
 import signal
 import socket
 import subprocess
@@ -29,7 +30,7 @@ SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py", BRIDGE: "r
 BROKEN_SERVER = Path(__file__).with_name("broken_server.py")
 DEADLINE = 60.0  # [s, wall] which only a failure reaches
 POLL = 0.002  # [s, wall]
-CONNECTING = 0.2  # [s, wall] between two looks at the connections of a node that starts
+CONNECTING = 0.2  # [s, wall] between two checks of the connections of a node that starts
 CLIENT = "/fault_campaign"
 
 
@@ -76,21 +77,43 @@ class System:
 
     # -- processes --
 
-    def _start(self, name, *command):
+    def _start(self, name, *command, output=None):
         log = self.folder / (name.strip("/").replace("/", "-") + ".log")
         self.log_offsets.setdefault(log, 0)
-        with open(log, "ab") as output:
+        with open(output or log, "ab") as file:
             self.processes[name] = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True
+                command, stdin=subprocess.DEVNULL, stdout=file, stderr=file, start_new_session=True
             )
 
-    def start(self, node):
-        """Start a node by its full name."""
+    def start(self, node, *arguments, output=None):
+        """Start a node by its full name; `output`: a file for its standard output instead of its log."""
         namespace, _, name = node.rpartition("/")
         command = [roslib.packages.find_node(PACKAGE, SCRIPTS[name])[0]]
         if self.mistake is not None and name == SERVER:
             command = [sys.executable, str(BROKEN_SERVER), self.mistake]
-        self._start(node, *command, f"__name:={name}", f"__ns:={namespace or '/'}")
+        self._start(node, *command, f"__name:={name}", f"__ns:={namespace or '/'}", *arguments, output=output)
+
+    def take_over(self, node):
+        """Start a second node of this name, upon which the first one has to end by itself."""
+        first = self.processes[node]
+        self.start(node)
+        try:
+            first.wait(DEADLINE)
+        except subprocess.TimeoutExpired:
+            first.kill()
+            first.wait()
+            raise Violation(f"{node} still runs {DEADLINE:g} s after another one took its name") from None
+
+    def limit_files(self, node, size):
+        """Have a node write no file beyond this size [bytes]: an error, as on a full disk; None: no limit."""
+        pid = self.processes[node].pid
+        _, hard = resource.prlimit(pid, resource.RLIMIT_FSIZE)
+        resource.prlimit(pid, resource.RLIMIT_FSIZE, (hard if size is None else size, hard))
+
+    def kill(self, node):
+        """SIGKILL, if it still runs."""
+        self.processes[node].kill()
+        self.processes[node].wait()
 
     def send_signal(self, node, number):
         """Send a signal to a process."""
@@ -153,10 +176,10 @@ class System:
         return xmlrpc.client.ServerProxy(self.master.lookupNode(node))
 
 
-def connections_from(system, node):
-    """Topics that a node sends to this one, as the node itself says; empty while it does not answer."""
+def connections_from(system, node, to=CLIENT):
+    """Topics that a node sends to another, or to this one, as it says itself; empty while it does not answer."""
     try:
-        return {link[4] for link in system.api(node).getBusInfo(CLIENT)[2] if link[1:3] == [CLIENT, "o"]}
+        return {link[4] for link in system.api(node).getBusInfo(CLIENT)[2] if link[1:3] == [to, "o"]}
     except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
         return set()
 

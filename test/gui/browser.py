@@ -90,6 +90,10 @@ class Tab:
         """Click a button at once; otherwise playwright waits for frames, of which a busy machine draws few."""
         self.button(label).click(force=True)
 
+    def open(self, label):
+        """Open a tab of the panel."""
+        self.page.get_by_role("tab", name=label).click(force=True)
+
     def slider(self, label):
         """The slider of the row with this label."""
         find = """label => document.getElementById(

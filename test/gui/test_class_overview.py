@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from browser import chromium
 
-from aro_robocop_goto_as.grading.classroom.overview import SHOWN, page
-from aro_robocop_goto_as.grading.classroom.results import Check, Result
-from aro_robocop_goto_as.grading.plan import load
+from robocop_grading.classroom.overview import SHOWN, page
+from robocop_grading.classroom.results import Check, Result
+from robocop_grading.plan import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
 COUNT = SHOWN + 100

@@ -5,7 +5,8 @@ import pytest
 from desktop import Desktop, Master, Ros
 from waiting import wait_for
 
-from aro_robocop_goto_as.rviz.config import Scene, Window, robocop
+from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
+from aro_robocop_goto_as.ros.names import absolute
 
 pytestmark = pytest.mark.slow
 TIMES = 10
@@ -58,9 +59,8 @@ def environment_of(namespace):
 @CASES
 @pytest.mark.timeout(1200)
 def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, arguments, namespace, parts):
-    scene = Scene(model=not namespace, axes=("map", f"{namespace}/odom".lstrip("/")), window=Window(0, 0, 1280, 860))
     config = tmp_path / "robocop.rviz"
-    config.write_text(robocop(scene))
+    config.write_text(adapted(Observed(robot=namespace)))
     with Desktop(tmp_path) as desktop:
         for number in range(TIMES):
             folder = tmp_path / f"early_{number}"
@@ -76,9 +76,9 @@ def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, ar
 @pytest.mark.timeout(1200)
 def test_rviz_that_is_opened_late_shows_everything(tmp_path, arguments, namespace, parts):
     with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", *arguments) as ros:
-        wait_for(lambda: ros.subscriber(f"/{namespace}/scan".replace("//", "/"), "/"), "the server")
+        wait_for(lambda: ros.subscriber(absolute(namespace, "scan"), "/"), "the server")
         for number in range(TIMES):
-            rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--server", "--wait", "60"]
+            rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
             ros.start(f"rviz_{number}", *environment_of(namespace), *rviz)
             wait_for(lambda: complete(desktop, parts), f"opening {number} of {TIMES}: {parts}", DRAWN)
             desktop.quit_by_menu(desktop.window(TITLE))

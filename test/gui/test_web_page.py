@@ -11,7 +11,7 @@ from playwright.sync_api import Error as PlaywrightError
 from waiting import wait_for
 from web import REACHED, READY, Web
 
-from aro_robocop_goto_as.web.page import PLACE_ROBOT, SEND_GOAL
+from aro_robocop_goto_as.ros.web.goals import PLACE_ROBOT, SEND_GOAL
 
 pytestmark = [pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
 
@@ -88,7 +88,7 @@ def test_feedback_is_shown_while_a_goal_is_executed(web, tab):
 
 @pytest.mark.slow
 def test_the_robot_turns_while_a_button_is_held_and_stops_when_it_is_released(web, tab):
-    with tab.held("Turn right (L)"):
+    with tab.held("Right (L)"):
         wait_for(lambda: web.turn() < -0.5, "the robot turns right")
     wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")
 
@@ -111,7 +111,7 @@ def test_the_robot_turns_while_a_key_is_repeated_and_stops_when_it_is_released(w
 def test_the_robot_stops_when_the_page_that_drives_it_is_closed(web, browser):
     tab = Tab(browser, web.url)
     tab.wait_for_text(READY)
-    with contextlib.suppress(PlaywrightError), tab.held("Turn right (L)"):
+    with contextlib.suppress(PlaywrightError), tab.held("Right (L)"):
         wait_for(lambda: web.turn() < -0.5, "the robot turns right")
         tab.close()
         wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")
@@ -201,7 +201,81 @@ def test_a_click_places_the_robot_where_that_mode_is_chosen(web, tab):
 @pytest.mark.slow
 def test_on_a_phone_nothing_is_wider_than_the_screen(web, browser):
     tab = Tab(browser, web.url, (390, 844))
-    tab.wait_for_text("robocop")
+    tab.wait_for_text(READY)
     assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
     assert tab.errors == []
     tab.close()
+
+
+@pytest.mark.slow
+def test_a_phone_shows_the_panel_below_the_scene_and_as_wide_as_the_screen(web, browser):
+    tab = Tab(browser, web.url, (390, 844))
+    tab.wait_for_text(READY)
+    box = tab.button("Cancel goal").bounding_box()
+    assert box["x"] < 20 and box["x"] + box["width"] > 370 and box["y"] > 844 / 2
+    tab.close()
+
+
+@pytest.mark.slow
+def test_the_buttons_that_drive_form_a_cross(web, tab):
+    boxes = {label: tab.button(label).bounding_box() for label in ("Forward (I)", "Left (J)", "Right (L)", "Back (K)")}
+    left, right = boxes["Left (J)"], boxes["Right (L)"]
+    assert left["y"] == right["y"] and left["x"] < boxes["Forward (I)"]["x"] < right["x"]
+    assert boxes["Forward (I)"]["x"] == boxes["Back (K)"]["x"]
+    assert boxes["Forward (I)"]["y"] < left["y"] < boxes["Back (K)"]["y"]
+
+
+@pytest.mark.slow
+def test_a_topic_is_shown_with_its_rate_and_its_newest_message(web, tab):
+    tab.open("Topics")
+    tab.wait_for_text("/odom nav_msgs/Odometry|/odom\\s+nav_msgs/Odometry")
+    tab.choose("/cmd_vel", "/robocop_sim/status")
+    tab.wait_for_text(r"1\.\d Hz\s+(.*\n)*world: \"?stage_4")
+
+
+@pytest.mark.slow
+def test_the_log_has_what_nodes_said_before_the_page_was_opened(web, browser):
+    web.place(*SPAWN)
+    tab = Tab(browser, web.url)
+    tab.wait_for_text(READY)
+    tab.click_floor(-0.5, 0.0)
+    tab.wait_for_text("REACHED")
+    tab.close()
+    tab = Tab(browser, web.url)
+    tab.wait_for_text(READY)
+    tab.open("Plots")
+    tab.wait_for_text("aro_robocop_goto_as_node REACHED")
+    tab.close()
+
+
+@pytest.mark.slow
+def test_the_labs_sections_can_be_ticked_off_and_every_page_shows_it(web, tab, browser):
+    tab.open("Lab")
+    tab.page.get_by_text("4. A client").click(force=True)
+    tab.wait_for_text(r"You will see the robot drive one metre[\s\S]*client.wait_for_result")
+    tab.page.locator("input[type=checkbox]:visible").first.evaluate("box => box.click()")  # the folder still unfolds
+    tab.wait_for_text("✓ 4. A client")
+    other = Tab(browser, web.url)
+    other.wait_for_text(READY)
+    other.open("Lab")
+    other.wait_for_text("✓ 4. A client")
+    other.close()
+
+
+BRIGHTNESS = """() => {  // of the scene's picture, from 0 to 255, and how much of it the browser shows
+    const scene = document.querySelector('canvas[data-engine]'), copy = document.createElement('canvas');
+    copy.width = copy.height = 64;
+    const context = copy.getContext('2d');
+    context.drawImage(scene, 0, 0, 64, 64);
+    const pixels = context.getImageData(0, 0, 64, 64).data;
+    return pixels.reduce((sum, value) => sum + value, 0) / pixels.length * getComputedStyle(scene).opacity;
+}"""
+
+
+@pytest.mark.slow
+def test_the_scene_is_light_and_can_be_made_dark(web, tab):
+    wait_for(lambda: tab.page.evaluate(BRIGHTNESS) > 200, "a light scene")
+    tab.open("View")
+    for bright in (False, True):
+        tab.page.get_by_label("Dark colours").first.click(force=True)
+        wait_for(lambda b=bright: (tab.page.evaluate(BRIGHTNESS) > 200) == b, f"a scene that is light: {bright}")

@@ -1,5 +1,6 @@
 """./robocop replay in a real Chromium: pause, time and speed of a recording that has a robot drive straight ahead."""
 
+import json
 from dataclasses import dataclass
 
 import pytest
@@ -17,9 +18,11 @@ from web import NoDesktop
 
 from aro_robocop_goto_as.process.ports import free_port
 from aro_robocop_goto_as.ros.web.player import LEAD
+from aro_robocop_goto_as.ros.web.replay import BEFORE
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
 
+FAILED = 30.0  # [s]
 DURATION, RATE, SPEED = 60.0, 20, 0.1  # [s], [Hz], [m/s]
 FARTHEST = DURATION * SPEED  # [m]
 START = 1_700_000_000.0  # [s]
@@ -70,9 +73,12 @@ class Shown:
 
 @pytest.fixture
 def shown(tmp_path):
-    write_bag(tmp_path / "drive.bag")
+    write_bag(tmp_path / "server-drive.bag")
+    failure = {"cause": "It was too slow.", "expected": "1 m/s", "seen": "0.1 m/s", "time": FAILED}
+    check = {"name": "drives", "part": "server", "scenario": "drive", "failure": failure}
+    (tmp_path / "report.json").write_text(json.dumps({"checks": [check]}))
     port = free_port()
-    arguments = [f"bag:={tmp_path / 'drive.bag'}", f"web_port:={port}", "rate:=0.1"]
+    arguments = [f"bag:={tmp_path / 'server-drive.bag'}", f"web_port:={port}", "rate:=0.1"]
     with Replay(tmp_path, NoDesktop(), *arguments) as ros, chromium() as browser:
         wait_for(lambda: ros.subscriber("/robocop_goto_as/result", "/replay"), "the page's node is registered")
         tab = Tab(browser, f"http://localhost:{port}")
@@ -101,3 +107,8 @@ def test_a_recording_is_paused_played_from_any_moment_and_at_any_speed(shown):
     tab.wait_for_text("60 of 60 s, paused")
     tab.wait_for_text("✓ goal: REACHED: recorded")
     assert not tab.button("Cancel goal").is_visible()
+    tab.click("Pause")
+    tab.wait_for_text("drives, failed at 30.0 s[\\s\\S]*It was too slow. Expected 1 m/s, got 0.1 m/s.")
+    tab.click("Show the moment")
+    tab.wait_for_text("29 of 60 s, paused")
+    assert shown.x() == pytest.approx((FAILED - BEFORE - LEAD) * SPEED, abs=2.0 * SPEED / RATE)

@@ -1,3 +1,3 @@
-"""The files below run inside rostest, which has a master for them; pytest runs them only through test_rostests.py."""
+"""What is in nodes/ runs inside rostest, which has a master for it; pytest runs it only through test_rostests.py."""
 
-collect_ignore_glob = ["*_test.py"]
+collect_ignore = ["nodes"]

@@ -56,8 +56,6 @@ ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
             for word, signals in [
                 ("robocop_launch.py", ONCE),
                 ("robocop_launch.py", TWICE),
-                ("rosmaster", ONCE),
-                ("rosmaster", TWICE),
                 ("robocop_sim.py", TWICE),
             ]
         ),

@@ -30,6 +30,7 @@ def has_child(process, word):
     "command, word",
     [
         (["run", "rviz:=false"], "sys.version_info"),
+        (["run", "rviz:=false"], "_set_up"),
         (["run", "rviz:=false"], "_setup_util.py"),
         (["run", "rviz:=false"], "robocop_launch.py"),
         (["run", "rviz:=false"], "rosversion"),
@@ -63,3 +64,18 @@ def test_interrupted_while_it_starts_it_ends_without_a_traceback(tmp_path, comma
     finally:
         for pid in processes_with(b"ROS_HOME=" + os.fsencode(tmp_path)):
             os.kill(pid, signal.SIGKILL)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_ended_while_the_workspace_is_set_up_it_leaves_no_temporary_file(tmp_path, number):
+    environment = {**os.environ, "TMPDIR": str(tmp_path), "ROS_HOME": str(tmp_path / "ros")}
+    started = subprocess.Popen([ROOT / "robocop", "_start", "sleep", "600"], env=environment, start_new_session=True)
+    try:
+        end = time.monotonic() + DEADLINE
+        while not list(tmp_path.glob("*/setup.sh.*")):
+            assert started.poll() is None and time.monotonic() < end, "no temporary file of catkin"
+        started.send_signal(number)
+        assert started.wait(DEADLINE) == -number
+        assert list(tmp_path.glob("robocop.*")) == []
+    finally:
+        started.kill()

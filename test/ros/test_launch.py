@@ -1,6 +1,5 @@
 """Names, namespaces and parameters of the nodes in the launch files, for one robot and for many; nothing is started."""
 
-import dataclasses
 import os
 from pathlib import Path
 from xml.etree import ElementTree
@@ -11,7 +10,7 @@ import roslaunch.xmlloader
 import yaml
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.param_loading import from_dict
+from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.params import BridgeParams, GotoParams, SimParams
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -49,8 +48,8 @@ def test_single_robot_has_no_namespace_or_prefix():
     assert set(launch.nodes) == LONE
     assert launch.named("tf_prefix") == {}
     assert from_dict(BridgeParams, launch.given(BRIDGE), BRIDGE).goal_frame == "odom"
-    assert from_dict(SimParams, launch.given(SIM), SIM).robots == ""
-    assert launch.nodes["/rviz"].args == "--server --wait 60 --frame 'map' --config ''"
+    assert from_dict(SimParams, launch.given(SIM), SIM).robots.robots == ""
+    assert launch.nodes["/rviz"].args == "--wait 60 --frame 'map' --config ''"
 
 
 @pytest.mark.parametrize("file", ["robocop_goto_as.launch", "robocop_sim.launch"])
@@ -121,14 +120,14 @@ def test_simulator_bridges_and_rviz_can_be_left_out():
     ],
 )
 def test_rviz_of_many_robots_runs_in_the_namespace_of_the_displayed_robot(arguments, node):
-    rviz = {name: it.args for name, it in Launch(*arguments).nodes.items() if name.endswith("rviz")}
+    rviz = {name: node.args for name, node in Launch(*arguments).nodes.items() if name.endswith("rviz")}
     assert set(rviz) == {node}
     assert "--frame 'map'" in rviz[node]
 
 
 def test_rviz_waits_only_for_a_simulator_that_is_started_and_takes_a_frame_and_a_file_of_its_users():
     rviz = Launch("sim:=false", "rviz_frame:=odom", "rviz_config:=/home/me/my view.rviz").nodes["/rviz"]
-    assert rviz.args == "--server --wait 0 --frame 'odom' --config '/home/me/my view.rviz'"
+    assert rviz.args == "--wait 0 --frame 'odom' --config '/home/me/my view.rviz'"
 
 
 def arguments_of(file):
@@ -148,7 +147,7 @@ def layered(field, layer):
 
 
 def written(path, cls, layer):
-    path.write_text(yaml.safe_dump({field.name: layered(field, layer) for field in dataclasses.fields(cls)}))
+    path.write_text(yaml.safe_dump({field.name: layered(field, layer) for field in declared(cls).values()}))
     return path
 
 
@@ -160,7 +159,7 @@ def test_every_simulator_parameter_comes_from_argument_else_profile_else_config_
     def texts(layer, names):
         return [f"{field.name}:={layered(field, layer)}" for field in fields if field.name in names]
 
-    fields = dataclasses.fields(SimParams)
+    fields = declared(SimParams).values()
     values = [{field.name: layered(field, layer) for field in fields} for layer in (1, 2, 3)]
     arguments = arguments_of("robocop_sim.launch") & {field.name for field in fields}
     assert len(arguments) == 18
@@ -261,7 +260,7 @@ def without_a_model_in_the_environment(monkeypatch):
 def test_profile_overrides_the_default_and_arguments_override_both():
     def loaded(*arguments):
         p = from_dict(SimParams, Launch(*arguments, file="robocop_sim.launch").given(SIM), SIM)
-        return p.cmd_vel_timeout, p.scan_profile
+        return p.limits.cmd_vel_timeout, p.scan.scan_profile
 
     assert loaded() == (None, "gazebo")
     assert loaded("profile:=gazebo") == (0.0, "gazebo")

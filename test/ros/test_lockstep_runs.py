@@ -18,8 +18,8 @@ from processes import busy_processes
 
 from aro_robocop_goto_as.process.ports import free_port
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
+ROOT = Path(__file__).resolve().parents[2]
+NODES = ROOT / "test" / "ros" / "nodes"
 DEADLINE = 120.0  # [s, wall] for any one condition; only a failure takes this long
 SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
 pytestmark = pytest.mark.xdist_group("lockstep")  # for the master and the reference run that the tests share
@@ -62,7 +62,7 @@ class Ros:
         return self.start("rosrun", "aro_robocop_goto_as", script, *arguments)
 
     def script(self, name, *arguments, **streams):
-        return self.start(sys.executable, str(HERE / name), *map(str, arguments), **streams)
+        return self.start(sys.executable, str(NODES / name), *map(str, arguments), **streams)
 
     def set_parameters(self, node, values):
         """Replace all parameters of a node."""

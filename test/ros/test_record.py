@@ -88,7 +88,7 @@ def test_a_recorded_goal_is_played_again(robocop):
     wait_for(robocop.master.is_online, "a master")
     listener = robocop.run(sys.executable, "-c", LISTENER)  # before the replay, or it could miss the result
     wait_for(lambda: robocop.subscribes("/robocop_goto_as/result", "/listener"), "the listener")
-    replay = robocop.start("replay", "run.bag", "rate:=5", f"web_port:={free_port()}")
+    replay = robocop.start("replay", "run.bag", "rate:=5", "waits:=false", f"web_port:={free_port()}")
     assert "REACHED" in listener.communicate(timeout=120)[0]
     assert robocop.end(replay) == 0
 

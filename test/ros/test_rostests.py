@@ -1,4 +1,4 @@
-"""Runs every test/ros/*.test by rostest, each with its own master, port, logs and results."""
+"""Runs every .test file of test/ros/nodes and test/neighbours by rostest, each with its own master and logs."""
 
 import os
 import signal
@@ -12,13 +12,14 @@ from processes import processes_with
 
 DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
-HERE = Path(__file__).resolve().parent
+TEST = Path(__file__).resolve().parents[1]
+FILES = {path.stem: path for folder in ("ros/nodes", "neighbours") for path in (TEST / folder).glob("*.test")}
 LONG = ("lab", "simulator", "simulator_services", "two_robots")
 # Most of these is also tested without processes, with two robots (many_robots), in a system of its own (goto_fails), or
 # with a fake robot and through the bridge (preempt).
 SLOW = (
-    *("camera", "documented_commands", "goto_fails", "localization_truth", "many_robots", "parameters", "preempt"),
-    *("real_robot", "real_time_factor", "teleop"),
+    *("camera", "documented_commands", "goto_fails", "localization_truth", "many_robots", "navigation_fast"),
+    *("navigation_lockstep", "parameters", "preempt", "real_robot", "real_time_factor", "teleop"),
 )
 
 
@@ -77,13 +78,13 @@ def logs(directory):
 
 def rostests():
     """The longest first, so that the workers finish at about the same time."""
-    names = sorted((path.stem for path in HERE.glob("*.test")), key=lambda name: (name not in LONG, name))
+    names = sorted(FILES, key=lambda name: (name not in LONG, name))
     return [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in names]
 
 
 @pytest.mark.parametrize("name", rostests())
 def test_rostest(name, tmp_path):
-    status, output = run_rostest(HERE / f"{name}.test", tmp_path)
+    status, output = run_rostest(FILES[name], tmp_path)
     # rostest-*.xml holds the <test> tags, each other file the test cases of one test node.
     results = {path: cases_in(path) for path in tmp_path.glob("results/*/*.xml")}
     problems = [problem for cases in results.values() for case in cases for problem in problems_of(case)]

@@ -14,7 +14,7 @@ from students import contents, copy_of
 
 from aro_robocop_goto_as.process.ports import free_port
 
-HERE = Path(__file__).resolve().parent
+NODES = Path(__file__).resolve().parent / "nodes"
 DEADLINE = 150.0  # [s, wall] for a build and a start on a busy machine
 pytestmark = pytest.mark.xdist_group("hosting")  # the first test builds the workspace that all of them extend
 
@@ -85,7 +85,7 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
     assert "world         empty, moving:=true\nrobot         burger\nsend a goal" in system.output
     types = Path(os.environ["ROBOCOP_STATE"], "compat", "devel", "lib", "python3", "dist-packages")
     output = system.call(
-        sys.executable, str(HERE / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
+        sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
     ).stdout
     answers = json.loads(output.splitlines()[-1])
     assert answers.pop("models") == ["ground_plane", "turtlebot3_burger"]
@@ -115,6 +115,28 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
         "moved by itself": True,
         "unknown set": False,
         "time": True,
+    }
+    output = system.call(
+        sys.executable, str(NODES / "gazebo_other_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
+    ).stdout
+    answers = json.loads(output.splitlines()[-1])
+    assert set(map(tuple, answers.pop("refused").values())) == {(False, True)}
+    assert answers == {
+        "urdf": True,
+        "urdf of a robot": False,
+        "sdf": True,
+        "pole": [True, 2.0, 1.0, 0.0],
+        "pole from the robot": [True, 2.0, 1.0, 0.0],
+        "wheel": [True, 0.0, 0.08, 0.033],
+        "no link": [False, 0.0, 0.0, 0.0],
+        "robot's": ["base_footprint", ["wheel_left_joint", "wheel_right_joint"], False, True],
+        "pole's": [["pole"], ["collision_0"], True, True],
+        "nobody's": False,
+        "joint": [True, 1, 1],
+        "no joint": False,
+        "physics": [True, False, 1.0, True],
+        "set": [True, False, False, False],
+        "factor": 2.0,
     }
 
 

@@ -149,17 +149,42 @@ except OSError as error:
 SYSTEM_V = """
 import ctypes, os
 libc = ctypes.CDLL(None, use_errno=True)
-libc.shmat.restype = ctypes.c_void_p
-for _ in range(60):
-    segment = libc.shmget(0, 60 * 2 ** 20, 0o1600)
-    if segment < 0:
-        print('refused', os.strerror(ctypes.get_errno()))
-        break
-    address = libc.shmat(segment, None, 0)
-    ctypes.memset(address, 1, 60 * 2 ** 20)
-    libc.shmdt(ctypes.c_void_p(address))
-else:
-    print('SUCCESS System V shared memory')
+for name, make in (('shared memory', lambda: libc.shmget(0, 2 ** 20, 0o1600)),
+                   ('semaphores', lambda: libc.semget(0, 30_000, 0o1600)),
+                   ('messages', lambda: libc.msgget(0, 0o1600))):
+    for _ in range(10):
+        if make() < 0:
+            print('refused', name, os.strerror(ctypes.get_errno()))
+            break
+    else:
+        print('SUCCESS System V', name)
+"""
+OTHER_CALLS = """
+import ctypes, os, platform, socket
+libc = ctypes.CDLL(None, use_errno=True)
+ARM = platform.machine() == 'aarch64'
+for name, call in (('io_uring', lambda: libc.syscall(425, 8, ctypes.byref((ctypes.c_char * 120)()))),
+                   ('add_key', lambda: libc.syscall(217 if ARM else 248, b'user', b'name', bytes(20000), 20000, -2)),
+                   ('AF_VSOCK', lambda: libc.socket(40, 1, 0)),
+                   ('AF_ALG', lambda: libc.socket(38, 5, 0)),
+                   ('vmsplice', lambda: libc.vmsplice(os.pipe()[1], None, 0, 0))):
+    if call() < 0:
+        print('refused', name, os.strerror(ctypes.get_errno()))
+    else:
+        print('SUCCESS', name)
+"""
+SHARED_WITHOUT_FILE = """
+import ctypes, mmap, os
+libc = ctypes.CDLL(None, use_errno=True)
+DONTNEED = 4
+for make in (lambda size: mmap.mmap(-1, size), lambda size: mmap.mmap(os.open('/dev/zero', os.O_RDWR), size)):
+    try:
+        memory = make(400 * 2 ** 20)
+        ctypes.memset(ctypes.addressof(ctypes.c_char.from_buffer(memory)), 1, len(memory))
+        libc.madvise(ctypes.c_void_p(ctypes.addressof(ctypes.c_char.from_buffer(memory))), len(memory), DONTNEED)
+        print('SUCCESS kept', memory[:3])
+    except OSError as error:
+        print('refused', error)
 """
 NAMESPACE = """
 import ctypes, os, subprocess
@@ -193,6 +218,28 @@ try:
             break
 except OSError as error:
     print('refused', parked, error)
+"""
+PARKED_BY_MANY = """
+import os, socket, time
+for _ in range(40):
+    if os.fork() == 0:
+        os.closerange(3, 256)
+        kept = []
+        try:
+            while True:
+                kept.append(socket.socketpair())
+                for one in kept[-1]:
+                    one.setblocking(False)
+                    try:
+                        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 2 ** 22)
+                        while True:
+                            one.send(bytes(2 ** 16))
+                    except BlockingIOError:
+                        pass
+        except OSError:
+            time.sleep(60.0)
+            os._exit(0)
+os.wait()
 """
 FLOOD = """
 import threading

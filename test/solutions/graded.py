@@ -6,15 +6,16 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Dict, Sequence
+from typing import Callable, Dict, Sequence
 
 from wrong_solutions import WRONG, Wrong
 
-from aro_robocop_goto_as.grading import judge, runner
-from aro_robocop_goto_as.grading.judge import Grade
-from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.sandbox import Sandbox, open_sandbox
-from aro_robocop_goto_as.grading.submission import prepare_submission
+from robocop_grading import judge
+from robocop_grading.judge import Grade
+from robocop_grading.plan import load
+from robocop_grading.runner import BUDGET, Recorded, Runner
+from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox
+from robocop_grading.submission import prepare_submission
 
 HERE = Path(__file__).resolve().parent
 STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
@@ -35,18 +36,19 @@ def sandbox() -> Sandbox:
 def recorded(
     text: str,
     folder: Path,
-    only: Sequence[str] = (),
-    budget: float = runner.BUDGET,
+    only: Sequence[str] = (),  # checks
+    budget: float = BUDGET,
     seed: int = 0,
-    on_progress: runner.Progress = lambda _scenario: None,
-) -> runner.Recorded:
+    on_progress: Callable[[str], None] = lambda _scenario: None,
+) -> Recorded:
     """A solution driven through the scenarios of its part, or some of them, in the sandbox."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
     opened = sandbox()
     submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
-    script, plan = submission.scripts[0], load(PLAN, seed)
-    return runner.run(submission, script, plan, folder / "out", STATE, opened, only, on_progress, budget)
+    script, plan = submission.scripts[0], load(PLAN, seed).restricted(only)
+    chosen = Runner(plan, STATE, opened, None, lambda _part, scenario: on_progress(scenario), budget)
+    return chosen.run(submission, script, folder / "out")
 
 
 def graded(name: str, text: str, folder: Path, seed: int = 0) -> Grade:

@@ -8,7 +8,11 @@ package, built each time. The log holds a JSON object per grading; with an exist
     ... --whole --load 4
 
 grades wrong solutions by all checks, too, beside four processes that keep a processor busy. Reports of one solution,
-also those that the log has from other loads, that differ in the outcome or the cause of a check are listed.
+also those that the log has from other conditions, that differ in an outcome, a cause or the points are listed.
+
+    ... --proof --jobs 1 --log FILE; ... --proof --jobs 8 --log FILE; ... --proof --jobs 1 --load 60 --log FILE
+
+grades all in right/ and twelve wrong ones by all checks once in each condition; the last table compares them.
 
     ... --drawn --times 200 base_server
 
@@ -29,16 +33,25 @@ from typing import Any, Dict, List, Tuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
-from graded import PLAN, RIGHT, SHARE, STATE, graded, recorded, sandbox
+from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded, recorded, sandbox
 from processes import busy_processes
 from wrong_solutions import WRONG, Wrong
 
-from aro_robocop_goto_as.grading import judge
-from aro_robocop_goto_as.grading.grade_submission import grade_submission
-from aro_robocop_goto_as.grading.judge import Grade, Outcome
-from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.submission import prepare_submission
+from aro_robocop_goto_as.errors import NoTimeError
+from robocop_grading import judge
+from robocop_grading.grader import Grader
+from robocop_grading.judge import Grade, Outcome
+from robocop_grading.plan import load
+from robocop_grading.runner import Runner
+from robocop_grading.submission import prepare_submission
 
+# One for each kind of mistake: feedback, motion, endings, obstacles, preemption, exceptions, pace; and of bridges.
+PROOF_WRONG = (
+    *("degrees", "direction_calculated_once", "moves_first", "done_never_cleared", "unpaced_loop", "slow_loop"),
+    *("scan_read_once", "exits_after_goal", "exception_in_scan", "feedback_of_the_last_iteration"),
+    *("bridge_never_cancels", "bridge_pending_is_stopped"),
+)
+PROOF = [*(path.name[: -len(".py.in")] for path in sorted((HERE / "right").glob("*.py.in"))), *PROOF_WRONG]
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 REFERENCE = "reference"
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -46,37 +59,42 @@ NUMBER = re.compile(r"-?\d+(\.\d+)?")
 Entry = Dict[str, Any]
 
 
-Job = Tuple[str, int, int, bool, int]  # name, load, number, by all checks, seed of the scenarios
+Job = Tuple[str, str, int, bool, int]  # name, condition, number, by all checks, seed of the scenarios
 
 
 def once(job: Job) -> Entry:
     """Grade a solution once."""
-    name, load_beside, number, whole, seed = job
+    name, condition, number, whole, seed = job
     started = time.monotonic()
+    words, points, checks = [], None, ()  # type: List[str], Optional[float], Sequence[CheckResult]
     with tempfile.TemporaryDirectory() as folder:
-        if name in BY_NAME:
-            words, grade = _wrong(BY_NAME[name], Path(folder), whole, seed)
-        else:
-            words, grade = _right(name, Path(folder), seed)
+        try:
+            if name in BY_NAME:
+                words, grade = _wrong(BY_NAME[name], Path(folder), whole, seed)
+            else:
+                words, grade = _right(name, Path(folder), seed)
+            points, checks = grade.points, grade.checks
+        except NoTimeError as error:
+            words = [f"no grade: {error}"]
     return {
         "name": name,
-        "load": load_beside,
+        "condition": condition,
         "number": number,
         "seed": seed,
         "seconds": round(time.monotonic() - started, 1),
         "right": not words,
         "words": words,
-        "report": {check.name: [check.outcome.value, check.failure and check.failure.cause] for check in grade.checks},
+        "points": points,
+        "report": {check.name: [check.outcome.value, check.failure and check.failure.cause] for check in checks},
     }
 
 
 def _wrong(wrong: Wrong, folder: Path, whole: bool, seed: int) -> Tuple[List[str], Grade]:
     """The explanation of the intended check, if it is not the expected one; the grade."""
-    plan = load(PLAN, seed)
-    check = next(check for check in plan.checks if check.name == wrong.check)
-    only = [] if whole else [name for name in check.scenarios if name != "start"] or ["no other"]
-    run = recorded(wrong.text(), folder, only, seed=seed)
-    grade = judge.judge(wrong.name, plan, {check.part: run.records}, {check.part: run.problem})
+    plan = load(PLAN, seed).restricted([] if whole else [wrong.check])
+    part = next(check.part for check in plan.checks if check.name == wrong.check)
+    run = recorded(wrong.text(), folder, [] if whole else [wrong.check], seed=seed)
+    grade = judge.judge(wrong.name, plan, {part: run.records}, {part: run.problem})
     result = next(result for result in grade.checks if result.name == wrong.check)
     expected = result.outcome is Outcome.FAILED and wrong.words in result.explanation()
     return ([] if expected else [result.explanation()]), grade
@@ -87,7 +105,7 @@ def _right(name: str, folder: Path, seed: int) -> Tuple[List[str], Grade]:
     if name == REFERENCE:
         opened = sandbox()
         submission = prepare_submission(str(SHARE), SHARE, STATE, folder, opened)
-        grade = grade_submission(submission, load(PLAN, seed), folder / "report", STATE, opened)
+        grade = Grader(Runner(load(PLAN, seed), STATE, opened)).grade(submission, folder / "report")
     else:
         grade = graded(name, RIGHT[name].read_text(), folder, seed)
     return [check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED], grade
@@ -100,6 +118,7 @@ def differences(entries: List[Entry]) -> List[str]:
     """
     seen: Dict[Tuple[str, str], Counter[str]] = {}
     for entry in entries:
+        seen.setdefault((entry["name"], "points"), Counter())[str(entry["points"])] += 1
         for check, (outcome, cause) in entry["report"].items():
             seen.setdefault((entry["name"], check), Counter())[NUMBER.sub("#", f"{outcome}: {cause}")] += 1
     return [f"{name}: {check}: {dict(found)}" for (name, check), found in sorted(seen.items()) if len(found) > 1]
@@ -122,6 +141,21 @@ def table(entries: List[Entry]) -> str:
     return "\n".join([*rows, "", f"{good} of {len(entries)} as expected"])
 
 
+def comparison(entries: List[Entry]) -> str:
+    """The points and seconds of each solution in each condition, as a table."""
+    conditions = list(dict.fromkeys(entry["condition"] for entry in entries))
+    found = {(entry["name"], entry["condition"]): entry for entry in entries}
+    rows = [f"| solution | {' | '.join(conditions)} |", f"| --- |{' --- |' * len(conditions)}"]
+    for name in dict.fromkeys(entry["name"] for entry in entries):
+        cells = []
+        for condition in conditions:
+            entry = found.get((name, condition))
+            points = "no grade" if entry is None or entry["points"] is None else f"{entry['points']:g} points"
+            cells.append("" if entry is None else f"{points}, {entry['seconds']:.0f} s")
+        rows.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
 def repeat() -> None:
     """Run the gradings that the log does not have, then print the table; exit status 1 if one was not as expected."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -131,16 +165,20 @@ def repeat() -> None:
     parser.add_argument("--log", type=Path, required=True)
     parser.add_argument("--whole", action="store_true", help="grade wrong solutions by all checks")
     parser.add_argument("--drawn", action="store_true", help="draw the scenarios with another seed each time")
+    parser.add_argument("--proof", action="store_true", help="grade all right and twelve wrong ones once by all checks")
     parser.add_argument("--load", type=int, default=0, help="processes that keep a processor busy meanwhile")
     args = parser.parse_args()
-    names = args.names or list(BY_NAME)
+    names = args.names or (PROOF if args.proof else list(BY_NAME))
+    if args.proof:
+        args.whole, args.times = True, 1
+    condition = f"{'alone' if args.jobs == 1 else f'{args.jobs} at once'}, {args.load} busy loops"
     done = [json.loads(line) for line in args.log.read_text().splitlines()] if args.log.exists() else []
-    known = {(entry["name"], entry["load"], entry["number"]) for entry in done}
+    known = {(entry["name"], entry["condition"], entry["number"]) for entry in done}
     jobs = [
-        (name, args.load, number, args.whole, number + 1 if args.drawn else 0)
+        (name, condition, number, args.whole, number + 1 if args.drawn else 0)
         for number in range(args.times)
         for name in names
-        if (name, args.load, number) not in known
+        if (name, condition, number) not in known
     ]
     context = multiprocessing.get_context("spawn")  # a fresh process for each grading
     busy = busy_processes(args.load) if args.load else contextlib.nullcontext()
@@ -151,7 +189,7 @@ def repeat() -> None:
             if not entry["right"]:
                 print(f"NOT as expected: {entry}", file=sys.stderr, flush=True)
     mine = [entry for entry in done if entry["name"] in names]
-    print(table(mine))
+    print(comparison(mine) if args.proof else table(mine))
     different = differences(mine)
     print("\n".join(["reports that differ:", *different] if different else ["no two reports of one solution differ"]))
     sys.exit(0 if all(entry["right"] for entry in mine) and not different else 1)

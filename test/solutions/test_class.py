@@ -18,8 +18,8 @@ from graded import RIGHT
 from processes import busy_processes, processes_mentioning
 from waiting import wait_for
 
-from aro_robocop_goto_as.grading.classroom.dask_cluster import connected
-from aro_robocop_goto_as.grading.classroom.worker import Place
+from robocop_grading.classroom.dask_cluster import connected
+from robocop_grading.classroom.worker import Place
 
 PATIENCE = 120.0  # [s, wall]
 PLAN = """
@@ -181,7 +181,7 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
 
         def busy_worker():
             """The workers with a task, once there are some results."""
-            known = {it["id"]: worker for worker, it in client.scheduler_info()["workers"].items()}
+            known = {info["id"]: worker for worker, info in client.scheduler_info()["workers"].items()}
             processing = client.processing()
             busy = [name for name in workers if processing.get(known.get(name))]
             return busy if len(stamps(group)) >= count // 4 else None
@@ -192,7 +192,8 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
     assert grading.returncode == 0, output
     expect_everybody_once(group, count, output)
     assert len(stamps(group)) == count
-    assert {it["worker"].split(":")[1] for it in stamps(group).values()} <= {str(it.pid) for it in workers.values()}
+    used = {stamp["worker"].split(":")[1] for stamp in stamps(group).values()}
+    assert used <= {str(worker.pid) for worker in workers.values()}
 
 
 @pytest.mark.timeout(900)

@@ -1,52 +1,24 @@
 """10,000 hand-ins pass through packing, scheduler, results, CSV and overview; a stub stands for the grading."""
 
 import csv
-import functools
-import json
 import os
 import time
 
 import psutil
 import pytest
 from graded import PLAN, RIGHT
+from stub_worker import graded_at_once
 
-from aro_robocop_goto_as.grading.classroom import dask_cluster
-from aro_robocop_goto_as.grading.classroom.hand_ins import collect, pack
-from aro_robocop_goto_as.grading.classroom.main import CSV, HTML, Class, grade
-from aro_robocop_goto_as.grading.classroom.results import Results
-from aro_robocop_goto_as.grading.classroom.worker import Done, Place, Task
-from aro_robocop_goto_as.grading.plan import load
+from robocop_grading.classroom import dask_cluster
+from robocop_grading.classroom.hand_ins import collect, pack
+from robocop_grading.classroom.main import CSV, HTML, Class, grade
+from robocop_grading.classroom.results import Results
+from robocop_grading.classroom.worker import Place, Task
+from robocop_grading.plan import load
 
 COUNT = 10_000
 MOST_SECONDS = 0.02  # for each hand-in; of this process, whatever else the machine does
 MOST_GROWTH = 10_000  # bytes of memory for each hand-in: its row with its causes and dask's log, not its report
-
-
-@functools.lru_cache(maxsize=None)
-def graded_report(right):
-    """The checks of a report that is all right or all wrong; the cause lacks a figure."""
-    failure = {"cause": "The robot stopped @ m away"}
-    return json.dumps(
-        [
-            {
-                "name": check.name,
-                "part": check.part,
-                "outcome": "passed" if right else "failed",
-                "points": check.points if right else 0.0,
-                "failure": None if right else failure,
-            }
-            for check in load(PLAN).checks
-        ]
-    )
-
-
-def graded_at_once(task):
-    """Stands for worker.work: every third hand-in fails each check, with a figure of its own."""
-    number = int(task.hand_in.name[1:6])
-    checks = graded_report(number % 3 != 0).replace("@", str(number / 1000))
-    report = f'{{"name": "{task.hand_in.name}", "checks": {checks}, "problems": []}}'
-    files = {"report.json": report.encode(), "report.html": b"<html>" * 5_000}
-    return Done(task.hand_in.name, task.hand_in.digest, files, 0.0, "stub")
 
 
 @pytest.mark.slow

@@ -14,10 +14,10 @@ from processes import busy_processes, processes_mentioning
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import GradingError
-from aro_robocop_goto_as.grading import sandbox
-from aro_robocop_goto_as.grading.judge import Outcome
-from aro_robocop_goto_as.grading.main import INTERRUPTED
-from aro_robocop_goto_as.grading.plan import load
+from robocop_grading.cli import INTERRUPTED
+from robocop_grading.judge import Outcome
+from robocop_grading.plan import load
+from robocop_grading.sandbox import bubblewrap as sandbox
 
 SOME_RIGHT = ("base_server",)
 SOME_WRONG = ("misspelt_name", "bridge_never_cancels")
@@ -45,6 +45,8 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
     check = next(check for check in grade.checks if check.name == wrong.check)
     assert check.outcome is Outcome.FAILED, check.explanation()
     assert wrong.words in check.explanation()
+    if wrong.alone:
+        assert [mistake.check.name for mistake in grade.mistakes] == [wrong.check]
 
 
 @pytest.mark.slow
@@ -66,7 +68,7 @@ def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
 
 @pytest.mark.slow
 def test_server_that_knows_where_the_walls_are_passes_only_where_it_knows_them(tmp_path):
-    looks, knows = "self.min_dist_ahead < 0.3", "x > {2.2: 0.9, 2.0: 0.7}.get(goal.position.x, 9.0)"
+    looks, knows = "self.min_dist_ahead < 0.3", "x > {2.2: 0.9, 2.0: 0.7, 1.6: -9.0}.get(goal.position.x, 9.0)"
     text = RIGHT["base_server"].read_text()
     assert looks in text
     text = text.replace(looks, knows)
@@ -149,8 +151,9 @@ def test_what_can_not_work_is_refused_before_anything_starts(program, arguments,
     (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"].read_text())
     of_class = program == "robocop_grade_class.py"
     path = {"SOLUTION": str(tmp_path if of_class else tmp_path / "robocop_goto_as.py")}
+    path.update({"/usr/bin/env": "/usr/bin"} if of_class else {})
     words = words.replace("/usr/bin/env", "/usr/bin") if of_class else words
-    arguments = ["/usr/bin" if of_class and it == "/usr/bin/env" else path.get(it, it) for it in arguments]
+    arguments = [path.get(argument, argument) for argument in arguments]
     done = command(program, *arguments)
     assert done.returncode == 1
     assert words in done.stderr and done.stderr.count("\n") == 1

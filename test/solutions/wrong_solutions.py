@@ -10,13 +10,17 @@ SERVER, BRIDGE = "base_server.py.in", "base_bridge.py.in"
 
 @dataclass(frozen=True)
 class Wrong:
-    """A solution with one mistake; `check` has to fail with `words` in its explanation."""
+    """A solution with one mistake; `check` has to fail with `words` in its explanation.
+
+    If `alone`, every other failure has to follow from this one.
+    """
 
     name: str
     check: str
     words: str
     changes: Tuple[Tuple[str, str], ...]
     base: str = SERVER
+    alone: bool = False
 
     def text(self) -> str:
         """The source with the mistake in it."""
@@ -27,12 +31,12 @@ class Wrong:
         return text
 
 
-def _server(name: str, check: str, words: str, *changes: Tuple[str, str]) -> Wrong:
-    return Wrong(name, check, words, changes)
+def _server(name: str, check: str, words: str, *changes: Tuple[str, str], alone: bool = False) -> Wrong:
+    return Wrong(name, check, words, changes, alone=alone)
 
 
-def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str]) -> Wrong:
-    return Wrong(name, check, words, changes, BRIDGE)
+def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str], alone: bool = False) -> Wrong:
+    return Wrong(name, check, words, changes, BRIDGE, alone)
 
 
 CONDITION = "if abs(angle_error) > 0.1:"
@@ -47,6 +51,13 @@ PREEMPTION = """            if self.server.is_preempt_requested():
                 return
 """
 VALID = "ahead[(ahead > msg.range_min) & (ahead < msg.range_max)]"
+
+BEGIN = "        success = False\n        while"
+SLEEP = "            rate.sleep()\n"
+RATE = "        rate = rospy.Rate(10)\n"
+REQUESTED = "            if self.server.is_preempt_requested():"
+AHEAD = "valid.min() if len(valid) else float('inf')"
+STATE = "GoalStatus.to_string(self.client.get_state())"
 
 # The velocity in force, for solutions that forget half of it when they stop.
 W = ("        msg.angular.z = w\n", "        msg.angular.z = self.w = w\n")
@@ -98,7 +109,7 @@ WRONG = (
     _server(
         "unsigned_angle",
         "feedback_angle",
-        "sign of angle_error is wrong",
+        "angle_error has no sign",
         (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))"),
     ),
     _server(
@@ -249,6 +260,7 @@ WRONG = (
             "        rate = rospy.Rate(10)\n",
             "        rate = rospy.Rate(10)\n        self.drive(0.2, 0.0)\n        rospy.sleep(1.0)\n",
         ),
+        alone=True,
     ),
     _server(
         "goal_from_where_the_robot_was",
@@ -387,7 +399,7 @@ WRONG = (
     _server(
         "preempted_only_while_driving",
         "cancel",
-        "is_preempt_requested",
+        "when the robot has turned",
         (
             "            if self.server.is_preempt_requested():",
             "            if self.pose_error < 0.1 and self.server.is_preempt_requested():",
@@ -415,11 +427,12 @@ WRONG = (
     ),
     _server(
         "done_never_cleared",
-        "reaches_goal",
+        "next_goal",
         "not reset when a goal begins",
         ("        success = False\n        while", "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
+        alone=True,
     ),
     _server(
         "exception_in_scan",
@@ -449,7 +462,7 @@ WRONG = (
     _bridge(
         "bridge_misspelt",
         "forwards_goal",
-        "name right",
+        "looks for robocop_goto; the handout says robocop_goto_as",
         ("SimpleActionClient('robocop_goto_as'", "SimpleActionClient('robocop_goto'"),
     ),
     _bridge(
@@ -535,5 +548,152 @@ WRONG = (
         "goal_frame",
         "as if they were in odom",
         ("pose = self.buffer.transform(msg, 'odom', rospy.Duration(1.0))", "pose = msg"),
+    ),
+    _server(
+        "turns_only_once",
+        "turns_to_goal",
+        "without turning again",
+        (BEGIN, BEGIN.replace("success = False", "success, turned = False, False")),
+        (CONDITION, "turned = turned or abs(angle_error) <= 0.1\n            if not turned:"),
+        alone=True,
+    ),
+    _server(
+        "turns_again_only_beyond_half_a_radian",
+        "turns_to_goal",
+        "without turning again",
+        (BEGIN, BEGIN.replace("success = False", "success, turned = False, False")),
+        (CONDITION, "turned = abs(angle_error) <= (0.5 if turned else 0.1)\n            if not turned:"),
+        alone=True,
+    ),
+    _server(
+        "direction_calculated_once",
+        "feedback_angle",
+        "from where the robot is when the goal comes",
+        (
+            RATE,
+            f"{RATE}        x, y, _ = self.pose\n"
+            "        direction = math.atan2(goal.position.y - y, goal.position.x - x)\n",
+        ),
+        (ERROR, "angle_error = wrap(direction - yaw)"),
+        alone=True,
+    ),
+    _server(
+        "feedback_of_the_last_iteration",
+        "feedback_position",
+        "an iteration old",
+        (PUBLISH, f"            self.old, feedback = feedback, getattr(self, 'old', feedback)\n{PUBLISH}"),
+        alone=True,
+    ),
+    _server(
+        "feedback_after_the_sleep",
+        "feedback_position",
+        "an iteration old",
+        (PUBLISH, ""),
+        (SLEEP, SLEEP + PUBLISH),
+        alone=True,
+    ),
+    _server(
+        "only_the_angle_is_old",
+        "feedback_angle",
+        "an iteration old",
+        (
+            "feedback.angle_error = angle_error",
+            "self.old, feedback.angle_error = angle_error, getattr(self, 'old', angle_error)",
+        ),
+        alone=True,
+    ),
+    _server(
+        "obstacle_at_a_fifth_of_a_metre",
+        "stops_at_obstacle",
+        "less than 0.3 m",
+        (OBSTACLE, "elif self.min_dist_ahead < 0.2:"),
+        alone=True,
+    ),
+    _server(
+        "obstacle_at_half_a_metre",
+        "stops_at_obstacle",
+        "not 0.3 m: the goal was aborted farther from the obstacle. Expected",
+        (OBSTACLE, "elif self.min_dist_ahead < 0.5:"),
+        alone=True,
+    ),
+    _server(
+        "minimum_never_reset",
+        "next_goal",
+        "although nothing is in the way any more",
+        (AHEAD, f"min(self.min_dist_ahead, {AHEAD})"),
+        alone=True,
+    ),
+    _server(
+        "feedback_too_small",
+        "feedback_position",
+        "always 0.10 m too small",
+        ("feedback.position_error = position_error", "feedback.position_error = position_error - 0.1"),
+        alone=True,
+    ),
+    _server(
+        "preempted_three_seconds_later",
+        "cancel",
+        "is noticed only 3",
+        (REQUESTED, "            self.count += self.server.is_preempt_requested()\n            if self.count > 30:"),
+        ("self.server.set_preempted(", "self.count = 0\n                self.server.set_preempted("),
+        alone=True,
+    ),
+    _server(
+        "quaternion_with_w_first",
+        "feedback_angle",
+        "whose order is x, y, z, w",
+        (YAW, "yaw = math.atan2(2 * (q.z * q.y + q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y))"),
+    ),
+    _server(
+        "success_as_text",
+        "no_exception",
+        "field result.success is not a bool (solution.py, line",
+        ("result.success = success", "result.success = str(success)"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_always_active",
+        "reports_status",
+        "reports ACTIVE while the goal is PENDING",
+        (STATE, "'ACTIVE'"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_states_shifted",
+        "reports_status",
+        "names of the states are shifted",
+        (STATE, "'ACTIVE PREEMPTED SUCCEEDED ABORTED'.split()[self.client.get_state() % 4]"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_numbers_shifted",
+        "reports_status",
+        "names of the states are shifted",
+        ("'server: %s', " + STATE, "'state %d', self.client.get_state() + 1"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_pending_is_active",
+        "reports_status",
+        "reports ACTIVE while the goal is PENDING",
+        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_x_and_y_swapped",
+        "forwards_goal",
+        "x and y are swapped",
+        (
+            "goal.position = pose.pose.position",
+            "goal.position.x, goal.position.y = pose.pose.position.y, pose.pose.position.x",
+        ),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_wrong_sign",
+        "forwards_goal",
+        "sign of y is wrong",
+        ("goal.position = pose.pose.position", "goal.position = pose.pose.position\n        goal.position.y *= -1"),
+        alone=True,
     ),
 )

@@ -1,68 +1,16 @@
-"""A fake engine without physics, and a fake wall clock that advances only while the loop waits."""
+"""A wall clock that advances only while somebody waits, and an owner of a simulation without ROS."""
 
 import queue
-from typing import Callable, List, Sequence, Tuple
+from typing import AbstractSet, Callable, List, Set, Tuple
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
-from aro_robocop_goto_as.robot.model import BodyState, Pair, RobotModel, RobotState
-from aro_robocop_goto_as.simulation.wall_clock import Job, Jobs
-from aro_robocop_goto_as.world.model import World
+from support import ORIGIN, kept, model_named, world_named
 
-
-class FakeEngine:
-    """Robots move along x only, by the mean of their wheel speeds, and never touch anything."""
-
-    def __init__(self, rate: int) -> None:
-        self.rate = rate
-        self.calls: List[str] = []
-        self.models: List[RobotModel] = []
-        self.poses: List[Pose2D] = []
-        self.speeds: List[Pair] = []
-
-    def add_robot(self, model: RobotModel, world_from_footprint: Pose2D) -> int:
-        self.models.append(model)
-        self.poses.append(world_from_footprint)
-        self.speeds.append((0.0, 0.0))
-        return len(self.poses) - 1
-
-    def set_wheel_speeds(self, robot: int, wheel_speeds: Pair) -> None:
-        self.calls.append("set_wheel_speeds")
-        self.speeds[robot] = wheel_speeds
-
-    def step(self) -> None:
-        self.calls.append("step")
-        self.poses = [
-            Pose2D(pose.x + sum(speeds) / 2.0 * model.wheel_radius / self.rate, pose.y, pose.yaw)
-            for pose, speeds, model in zip(self.poses, self.speeds, self.models)
-        ]
-
-    def move_obstacles(self, time: float) -> None:
-        self.calls.append(f"move_obstacles {time:.6f}")
-
-    def state(self, robot: int) -> RobotState:
-        return RobotState(self.poses[robot], Twist2D(), (0.0, 0.0), self.speeds[robot])
-
-    def body(self, robot: int) -> BodyState:
-        self.calls.append("body")
-        return BodyState(Pose3D((self.poses[robot].x, 0.0, 0.0)), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-    def touching(self, robot: int) -> bool:
-        return False
-
-    def place(self, robot: int, world_from_footprint: Pose2D) -> None:
-        self.poses[robot] = world_from_footprint
-        self.speeds[robot] = (0.0, 0.0)
-
-    def reset(self, poses: Sequence[Pose2D]) -> None:
-        self.calls.append("reset")
-        self.poses = list(poses)
-        self.speeds = [(0.0, 0.0) for _ in poses]
-
-    def change_world(self, world: World, time: float) -> None:
-        self.calls.append("change_world")
-
-    def close(self) -> None:
-        self.calls.append("close")
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.jobs import Job, Queue
+from aro_robocop_goto_as.simulation.observations import Observations
+from aro_robocop_goto_as.simulation.simulation import Simulation
 
 
 class FakeClock:
@@ -80,7 +28,7 @@ class FakeClock:
     def now(self) -> float:
         return self.time
 
-    def get(self, jobs: "Jobs[Job]", timeout: float) -> Job:
+    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
         deadline = self.time + max(0.0, timeout)
         while jobs.empty():
             if not self._scheduled or self._scheduled[0][0] > deadline:
@@ -89,3 +37,66 @@ class FakeClock:
             self.time, action = self._scheduled.pop(0)
             action()
         return jobs.get_nowait()
+
+    def sleep(self, seconds: float) -> None:
+        """Nothing is scheduled while the owner sleeps."""
+        self.time += seconds
+
+
+class Owner:
+    """Runs one robot in the empty world with the loop of ros/sim/node.py, by a fake clock."""
+
+    def __init__(self, end: float = 1.0, **params: object) -> None:
+        """Stops at a simulated time [s]; `params` are the simulator's."""
+        p = SimParams.of(drive="kinematic", cmd_vel_timeout=0.0, **params)
+        self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
+        self.clock, self.end = FakeClock(), end
+        self.nodes: Set[str] = set()  # that are connected; names with /answering answer control ticks
+        self.observed: List[Observations] = []
+        self.events: List[object] = []
+        self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
+        self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
+        self.simulation = Simulation(self.simulator, self.clock, lambda: self.is_stopped())
+
+    def post(self, delay: float, job: Job) -> None:
+        """Have another thread post a job after a delay [s, wall]."""
+        self.clock.at(delay, lambda: self.simulation.jobs.post(job))
+
+    def run(self) -> None:
+        simulator, time, controllers = self.simulator, self.simulation.time, self.simulation.controllers
+        time.restart(simulator.steps)
+        self._pace()
+        while not self.is_stopped():
+            seen = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
+            if seen is not None:
+                self.observed.append(kept(seen))
+                if seen.due.control:
+                    self.on_tick(seen.stamp_ns)
+                if seen.due.control and controllers.in_lockstep:
+                    controllers.begin_tick(self._answering)
+                    self._hold(lambda: controllers.hold(self._connected))
+                    report = controllers.end_tick()
+                    self.events += [("late", report.late)] if report.late else []
+                    self.events += [("gone", controller) for controller in report.gone]
+            if time.end_span(simulator.steps) or (seen is not None and seen.due.clock):
+                self._pace()
+
+    def _pace(self) -> None:
+        self.events += map(str, self.simulation.controllers.take_refused())
+        self.simulation.jobs.run_queued()
+        self._hold(lambda: self.simulation.time.hold(self.simulator.steps))
+
+    def _hold(self, hold: Callable[[], float]) -> None:
+        wait = hold()
+        while wait > 0.0 and not self.is_stopped():
+            self.simulation.jobs.run_next(wait)
+            if self.simulation.time.repetition_due():
+                self.events.append("clock repeated")
+                self.simulation.controllers.enroll(self._answering)
+            wait = hold()
+
+    def _connected(self, _robot: int) -> AbstractSet[str]:
+        return self.nodes
+
+    def _answering(self, _robot: int) -> AbstractSet[str]:
+        return {node for node in self.nodes if node.startswith("/answering")}

@@ -1,18 +1,20 @@
 """Shared by the unit tests: the package's folders, a ready simulator, an analytic ray cast."""
 
+import functools
 import math
 import os
-from typing import Callable, Dict, Iterator, List, Sequence
+from dataclasses import replace
+from typing import Callable, Dict, Iterable, Iterator, List, Sequence
 
 import numpy as np
 import pytest
 
-from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import SENSORS
+from aro_robocop_goto_as.simulation.observations import SENSORS, Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import Box, Cylinder, World
@@ -26,6 +28,7 @@ def burger() -> RobotModel:
     return model_named("burger")
 
 
+@functools.lru_cache(maxsize=None)
 def model_named(name: str) -> RobotModel:
     return load_model(name, ROOT)
 
@@ -40,19 +43,38 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
     made: List[Simulator] = []
 
     def make(world: str = "empty", *spawns: Pose2D, **params: object) -> Simulator:
-        p = SimParams(**params)  # type: ignore[arg-type]
-        robots = [RobotSpec(f"robot_{i}", model_named(p.model), spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
+        p = SimParams.of(**params)
+        model = model_named(p.robots.model)
+        robots = [RobotSpec(f"robot_{i}", model, spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
         made.append(make_simulator(p, world_named(world), robots))
         return made[-1]
 
     yield make
-    for it in made:
-        it.close()
+    for one in made:
+        one.close()
 
 
 def everything(robots: int) -> Dict[str, Sequence[int]]:
     """Subscriptions to all sensors of so many robots."""
     return {sensor: range(robots) for sensor in SENSORS}
+
+
+def drive(
+    sim: Simulator, twist: Twist2D, seconds: float, sensors: Iterable[str] = (), robot: int = 0
+) -> List[Observations]:
+    """Command a robot's velocity at each step for a time [s]; what was observed by these sensors of all robots."""
+    subscriptions = {sensor: range(len(sim.robots)) for sensor in sensors}
+    seen: List[Observations] = []
+    for _ in range(round(seconds * sim.rate)):
+        sim.command(twist, robot)
+        observed = sim.step(subscriptions)
+        seen += [] if observed is None else [kept(observed)]
+    return seen
+
+
+def kept(observed: Observations) -> Observations:
+    """A copy of what the simulator changes in place with its next step, but for its fleet and its odometry."""
+    return replace(observed, scans=observed.scans.copy(), imus=observed.imus.copy())
 
 
 def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:

@@ -15,11 +15,12 @@ import yaml
 from documentation import PAGES
 
 from aro_robocop_goto_as.errors import GradingError, GradingSetupError
-from aro_robocop_goto_as.grading import sandbox, skeleton
-from aro_robocop_goto_as.grading.checks import Failed
-from aro_robocop_goto_as.grading.judge import CheckResult, Grade, Outcome
-from aro_robocop_goto_as.grading.plan import load
-from aro_robocop_goto_as.grading.report import write
+from robocop_grading import skeleton
+from robocop_grading.checks import Failed
+from robocop_grading.judge import CheckResult, Grade, Outcome
+from robocop_grading.plan import load
+from robocop_grading.report.write import write
+from robocop_grading.sandbox import bubblewrap as sandbox
 
 ROOT = Path(__file__).resolve().parents[2]
 IMAGE = "my-course/robocop:1"

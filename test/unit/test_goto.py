@@ -181,6 +181,15 @@ def test_beams_without_a_direction_do_not_point_ahead(layout: "tuple[float, floa
     assert clearance_ahead([0.5] * 10, *layout, 0.12, 10.0, math.pi / 6) is None
 
 
+@pytest.mark.parametrize("increment", [0.0, -0.0, math.radians(540.0) / 358, math.radians(-540.0) / 358, 1.0, -1e30])
+def test_beams_in_one_direction_or_round_and_round_do_not_point_ahead(increment: float) -> None:
+    assert clearance_ahead([0.5] * 360, 0.0, increment, 0.12, 10.0, math.pi / 6) is None
+
+
+def test_a_single_beam_needs_no_increment() -> None:
+    assert clearance_ahead([0.5], 0.0, 0.0, 0.12, 10.0, math.pi / 6) == 0.5
+
+
 def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:
     assert clearance_ahead([1.0] * 10, 1.0, 0.1, 0.12, 10.0, math.pi / 6) is None
     assert clearance_ahead([], 0.0, 0.1, 0.12, 10.0, math.pi / 6) is None

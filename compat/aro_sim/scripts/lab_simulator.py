@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Replaces itself by a program of the simulator's package: its roslaunch, or its RViz.
+"""Replaces itself by a program of the simulator's package: its roslaunch, its RViz, or its web page.
 
 Arguments: `robocop_launch.py`, arguments of the simulator's launch file, `--`, arguments of Gazebo's spawn_model;
-or `robocop_rviz.py` and its arguments.
+or `robocop_rviz.py` or `robocop_web.py` and its arguments.
 
 A package in this workspace may have the same name as the simulator's package. If ROBOCOP_WS names the workspace in
 which the simulator was built, the program runs in that workspace's environment, otherwise in this one's.

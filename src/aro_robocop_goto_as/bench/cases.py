@@ -2,32 +2,42 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Sequence, Tuple
 
 from ..errors import BenchError
 
 PHYSICS_RATES = {"wheels": 240, "kinematic": 30}  # [Hz]
-COUNTS = (1, 10, 50)  # robots
-LEFT_OUT = {"wheels:50": "Bullet alone is hardly faster than real time; --cases wheels:50 measures it"}
+DEFAULT_ROBOTS = {"wheels": (1, 10), "kinematic": (1, 10, 50)}  # with 50 Bullet alone is hardly faster than real time
 # [Hz], beams, [Hz]: rates used in published measurements of other simulators
 SCAN_RATE, SCAN_SAMPLES, ODOM_RATE = 5, 360, 30
 LINEAR, ANGULAR = 0.1, 0.5  # [m/s], [rad/s] of every robot: circles of 0.2 m radius to its left
 CONTROLLERS = ("rospy", "server")  # of lockstep cases: a plain rospy loop at 10 Hz, this package's action server
-PITCH, EDGE = 3, 4  # [m] bench.sdf: obstacles at multiples of PITCH, robots at whole metres up to EDGE
+WORLDS = ("moving", "map")  # other worlds than worlds/bench.sdf, see worlds.py
+OBSTACLES = [(x, y) for x in (-3, 0, 3) for y in (-3, 0, 3)]  # [m] in worlds/bench.sdf
+CLEAR = 0.7  # [m] between the centre of a robot's circle and that of an obstacle
 
 
 @dataclass(frozen=True)
 class Case:
-    """A value of the parameter `drive` with a number of robots, or with one robot in lockstep with its controller."""
+    """A value of the parameter `drive` with a number of robots, or with one robot in a special situation."""
 
     drive: str
-    robots: int
-    controller: str = ""  # of CONTROLLERS; empty: constant velocity commands, no lockstep
+    kind: str = "1"  # a number of robots; or of CONTROLLERS, in lockstep with it; or of WORLDS
 
     @property
     def name(self) -> str:
-        """As on the command line."""
-        return f"{self.drive}:{self.controller or self.robots}"
+        """The case as it is written on the command line."""
+        return f"{self.drive}:{self.kind}"
+
+    @property
+    def robots(self) -> int:
+        """Number of robots."""
+        return int(self.kind) if self.kind.isdigit() else 1
+
+    @property
+    def lockstep(self) -> bool:
+        """Whether it runs in lockstep with a controller; other cases have constant velocity commands."""
+        return self.kind in CONTROLLERS
 
     @property
     def physics_rate(self) -> int:
@@ -44,16 +54,17 @@ class Case:
         rates = {"odom": ODOM_RATE, "scan": SCAN_RATE}
         return {robot + topic: rate for robot in self.namespaces for topic, rate in rates.items()}
 
-    def params(self, factor: float) -> Dict[str, Any]:
-        """Parameters of robocop_sim for a real-time factor; 0: as fast as possible."""
+    def params(self, factor: float, world: str = "bench") -> Dict[str, Any]:
+        """Parameters of robocop_sim for a real-time factor (0: as fast as possible) in a world (name or path)."""
         robots = "; ".join(f"{name.strip('/')} {x} {y} 0" for name, (x, y) in zip(self.namespaces, positions()))
         x, y = positions()[0]
         return {
-            "world": "bench",
+            "world": world,
+            "moving": self.kind == "moving",
             "drive": self.drive,
             "physics_rate": self.physics_rate,
             "real_time_factor": factor,
-            **({"sync": "lockstep"} if self.controller else {}),
+            **({"sync": "lockstep"} if self.lockstep else {}),
             "robots": robots if self.robots > 1 else "",
             "spawn": f"{x} {y} 0",
             "cmd_vel_timeout": 0.0,
@@ -66,22 +77,26 @@ class Case:
         }
 
 
-def positions() -> List[Sequence[int]]:
-    """Start positions [m] from the middle outwards, a metre from each other and from every obstacle's centre."""
-    axis = range(-EDGE, EDGE + 1)
-    free = [(x, y) for x in axis for y in axis if x % PITCH or y % PITCH]
-    return sorted(free, key=lambda p: (math.hypot(*p), -p[0], -p[1]))
+def positions() -> List[Tuple[float, float]]:
+    """Start positions [m]: a metre apart from the middle outwards, then half a metre apart, clear of all obstacles."""
+    halves = [i / 2 for i in range(-8, 9)]
+    radius = LINEAR / ANGULAR  # the centre of the circle is to the left
+
+    def free(x: float, y: float) -> bool:
+        return all(math.hypot(x - a, y + radius - b) > CLEAR for a, b in OBSTACLES)
+
+    places = [(x, y) for x in halves for y in halves if free(x, y)]
+    return sorted(places, key=lambda p: (any(v % 1 for v in p), math.hypot(*p), -p[0], -p[1]))
 
 
 def default_cases() -> List[Case]:
-    """Both drives with each number of robots, except LEFT_OUT."""
-    every = [Case(drive, robots) for drive in PHYSICS_RATES for robots in COUNTS]
-    return [case for case in every if case.name not in LEFT_OUT]
+    """Both drives with each number of robots."""
+    return [Case(drive, str(robots)) for drive, numbers in DEFAULT_ROBOTS.items() for robots in numbers]
 
 
 def lockstep_cases() -> List[Case]:
     """Both drives with each controller."""
-    return [Case(drive, 1, controller) for drive in PHYSICS_RATES for controller in CONTROLLERS]
+    return [Case(drive, controller) for drive in PHYSICS_RATES for controller in CONTROLLERS]
 
 
 def parse_cases(words: Sequence[str]) -> List[Case]:
@@ -89,26 +104,15 @@ def parse_cases(words: Sequence[str]) -> List[Case]:
 
     Without words the default cases. BenchError names a word that is not a case.
     """
+    kinds = [*(str(robots) for robots in range(1, len(positions()) + 1)), *CONTROLLERS, *WORLDS]
+    known = {f"{drive}:{kind}": [Case(drive, kind)] for drive in PHYSICS_RATES for kind in kinds}
+    known.update({drive: [case for case in default_cases() if case.drive == drive] for drive in PHYSICS_RATES})
     chosen: List[Case] = []
-    for word in ",".join(words).split(","):
-        if word.strip():
-            chosen += _parse(word.strip())
+    for word in filter(None, map(str.strip, ",".join(words).split(","))):
+        if word not in known:
+            raise BenchError(
+                f"case {word!r}: expected DRIVE or DRIVE:ROBOTS with a drive of {', '.join(PHYSICS_RATES)} and 1 to "
+                f"{len(positions())} robots, such as wheels:10, or DRIVE:{', DRIVE:'.join((*CONTROLLERS, *WORLDS))}"
+            )
+        chosen += known[word]
     return list(dict.fromkeys(chosen)) or default_cases()
-
-
-def _parse(word: str) -> List[Case]:
-    drive, colon, robots = word.partition(":")
-    if drive not in PHYSICS_RATES or (colon and not robots.isdigit() and robots not in CONTROLLERS):
-        raise BenchError(
-            f"case {word!r}: expected DRIVE or DRIVE:ROBOTS with a drive of "
-            f"{', '.join(PHYSICS_RATES)}, such as wheels:10, or in lockstep DRIVE:{' or DRIVE:'.join(CONTROLLERS)}"
-        )
-    if robots in CONTROLLERS:
-        return [Case(drive, 1, robots)]
-    if not colon:
-        return [case for case in default_cases() if case.drive == drive]
-    if not 1 <= int(robots) <= len(positions()):
-        raise BenchError(
-            f"case {word!r}: expected 1 to {len(positions())} robots, as many as fit into worlds/bench.sdf"
-        )
-    return [Case(drive, int(robots))]

@@ -1,122 +1,101 @@
 """The command: measures every case, repeat by repeat, and prints the report."""
 
 import argparse
+import itertools
 import signal
 import sys
 from pathlib import Path
-from typing import Any, List
+from typing import List, Sequence
 
-import rospy
-
-from ..errors import BenchError
-from . import against, cases, report
-from .measure import measure_floor, simulate
+from ..errors import BenchError, RobocopError
+from . import cases, report
+from .baseline import measure_baseline
+from .checkout import Checkout, other_checkout, this_checkout
+from .measure import simulate
 from .processes import own_ros
-from .results import Measured
+from .report import Measured
+from .worlds import world_of
 
-SECONDS, REPEATS = 5.0, 3
-QUICK_SECONDS, QUICK_REPEATS = 1.5, 1
-FAST, PACED = 0.0, 1.0  # real-time factors
+USUAL, QUICK = (5.0, 3), (1.5, 1)  # [s] a measurement, repeats
+FACTORS = (0.0, 1.0)  # real-time factors: as fast as possible, paced
 
 
 def _arguments(argv: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="robocop bench",
-        description="Measure the speed of the simulator, its cost, and its floor.",
+        description="Measure the speed of the simulator, its cost, and its baseline: the same simulator without ROS.",
         epilog="Exit status 1 when a case failed, 2 when nothing was measured. A run takes about "
         "(3 SECONDS + 6) x REPEATS for each case; make sure that the machine is idle.",
     )
     parser.add_argument("--json", action="store_true", help="as JSON, with every single run")
-    parser.add_argument(
-        "--quick",
-        action="store_true",
-        help=f"{QUICK_SECONDS:g} s a measurement, {QUICK_REPEATS} repeat, unless given",
-    )
-    parser.add_argument("--seconds", type=_seconds, help=f"wall time of each measurement (default {SECONDS:g})")
-    parser.add_argument("--repeats", type=_repeats, help=f"the table shows medians (default {REPEATS})")
+    quick = "{:g} s a measurement, {} repeat, unless given".format(*QUICK)
+    parser.add_argument("--quick", action="store_true", help=quick)
+    parser.add_argument("--seconds", type=float, help=f"wall time of each measurement (default {USUAL[0]:g})")
+    parser.add_argument("--repeats", type=int, help=f"the table shows medians (default {USUAL[1]})")
     parser.add_argument(
         "--cases",
         nargs="+",
         default=[],
         metavar="DRIVE[:ROBOTS]",
-        help="such as wheels:1 kinematic, in lockstep wheels:rospy; default: "
-        + " ".join(case.name for case in cases.default_cases()),
+        help="such as wheels:1 kinematic, in lockstep wheels:rospy, with moving obstacles kinematic:moving, in a large "
+        "map kinematic:map; default: " + " ".join(case.name for case in cases.default_cases()),
     )
-    parser.add_argument(
-        "--against",
-        type=Path,
-        metavar="CHECKOUT",
-        help="alternate between the simulator of another checkout and this one, and print the ratios of their figures",
-    )
+    against = "alternate between the simulator of another checkout and this one, and print the ratios of their figures"
+    parser.add_argument("--against", type=Path, metavar="CHECKOUT", help=against)
     args = parser.parse_args(argv)
-    args.seconds = args.seconds or (QUICK_SECONDS if args.quick else SECONDS)
-    args.repeats = args.repeats or (QUICK_REPEATS if args.quick else REPEATS)
+    args.seconds, args.repeats = (
+        default if given is None else given
+        for given, default in zip((args.seconds, args.repeats), QUICK if args.quick else USUAL)
+    )
+    if not (0.1 <= args.seconds <= 3600.0 and args.repeats >= 1):
+        parser.error(f"expected 0.1 to 3600 s and 1 repeat or more, got {args.seconds:g} s and {args.repeats}")
     return args
 
 
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not 0.1 <= value <= 3600.0:
-        raise argparse.ArgumentTypeError(f"expected 0.1 to 3600 s, got {text}")
-    return value
+def _measure(
+    wanted: Sequence[cases.Case], checkouts: Sequence[Checkout], seconds: float, repeats: int
+) -> List[List[Measured]]:
+    """Measure every case in each checkout, alternating, so that other load affects all of them alike.
 
-
-def _repeats(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected 1 or more, got {text}")
-    return value
-
-
-def _measure(measured: Measured, seconds: float, programs: Path, directory: Path) -> None:
-    """One repeat of a case; a failure is recorded in `measured`."""
-    case = measured.case
-    try:
-        measured.floors.append(measure_floor(case, seconds, directory))
-        measured.fastest.append(simulate(case, FAST, seconds, programs, directory))
-        measured.paced.append(simulate(case, PACED, seconds, programs, directory))
-    except BenchError as error:
-        measured.error = str(error)
-        print(f"robocop bench: {case.name}: {error}", file=sys.stderr)
-
-
-def _measure_all(wanted: List[cases.Case], args: argparse.Namespace) -> List[Measured]:
-    """Repeats of all cases alternate, so that other load on the machine does not affect one case alone."""
-    programs = Path(sys.argv[0]).absolute().parent
-    results = [Measured(case) for case in wanted]
+    A case that fails is not repeated. A single checkout is compared with its baseline.
+    """
+    results = [[Measured(case, one.name if len(checkouts) > 1 else "") for one in checkouts] for case in wanted]
     with own_ros() as directory:
-        rospy.init_node("robocop_bench", disable_signals=True)
-        for repeat in range(args.repeats):
-            for measured in results:
-                if measured.error is None:
-                    print(f"robocop bench: {measured.case.name}, {repeat + 1} of {args.repeats}", file=sys.stderr)
-                    _measure(measured, args.seconds, programs, directory)
-        rospy.signal_shutdown("done")
+        for repeat, row in itertools.product(range(repeats), results):
+            for measured, checkout in list(zip(row, checkouts))[:: -1 if repeat % 2 else 1]:
+                case = measured.case
+                if any(one.error for one in row):
+                    continue
+                print(f"robocop bench: {case.name}, {repeat + 1} of {repeats}", measured.checkout, file=sys.stderr)
+                try:
+                    world = world_of(case, directory)
+                    baseline = measure_baseline(case, world, seconds) if len(row) == 1 else {}
+                    fastest, paced = (simulate(case, world, at, seconds, checkout, directory) for at in FACTORS)
+                    measured.add(fastest, paced, baseline)
+                except RobocopError as error:
+                    measured.error = str(error)
+                    print(f"robocop bench: {measured.notes()[0]}", file=sys.stderr)
     return results
-
-
-def _interrupt(_number: int, _frame: Any) -> None:
-    raise KeyboardInterrupt
 
 
 def main() -> None:
     """Entry point; a signal ends everything that was started."""
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _interrupt)
+        signal.signal(number, signal.default_int_handler)
     args = _arguments(sys.argv[1:])
     try:
         wanted = cases.parse_cases(args.cases)
         where = report.conditions(args.seconds, args.repeats)
+        checkouts = [this_checkout()]
         if args.against is not None:
-            if not args.cases:
-                wanted += cases.lockstep_cases()
-            sys.exit(against.run(wanted, args.against, args.seconds, args.repeats, args.json, where))
-        results = _measure_all(wanted, args)
+            checkouts.insert(0, other_checkout(args.against))
+            wanted += [] if args.cases else cases.lockstep_cases()
+        results = _measure(wanted, checkouts, args.seconds, args.repeats)
     except BenchError as error:
         print(f"robocop bench: {error}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("robocop bench: interrupted; all processes are ended", file=sys.stderr)
         sys.exit(130)
-    print(report.as_json(results, where) if args.json else report.table(results, where))
-    sys.exit(1 if any(measured.error for measured in results) else 0)
+    print((report.as_json if args.json else report.table)(results, where))
+    sys.exit(1 if any(measured.error for row in results for measured in row) else 0)

@@ -1,116 +1,73 @@
-"""One repeat of a case: its simulation at a real-time factor -> Run, its bare parts -> Floor."""
+"""The simulation of a case at a real-time factor -> Run."""
 
 import contextlib
-import json
-import os
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Iterator, Mapping, Optional
+from typing import Iterator
 
-import rospy
-from geometry_msgs.msg import Twist, Vector3
+import rosgraph
 
 from ..errors import BenchError
-from ..simulation.clock import NANOSECONDS
-from .cases import ANGULAR, LINEAR, Case
-from .frames import deliveries
-from .processes import Child, Client, running
-from .results import Floor, Run
+from ..simulation.schedule import NANOSECONDS
+from .cases import Case
+from .checkout import Checkout
+from .client import subscribed
+from .processes import Child
 
 SETTLE = 0.3  # [s, wall] from the last connection to the start of the measurement
-NODE = "/robocop_sim"
 
 
-Environment = Optional[Mapping[str, str]]  # None: that of this process
+@dataclass(frozen=True)
+class Run:
+    """The result of one simulation."""
+
+    factor: float  # simulated seconds per second of the wall clock
+    cpu: float  # [s] of processor time per simulated second, user and system
+    memory: int  # [bytes] peak
+    first_scan: float  # [s, wall] from the process's start to the first scan
+    expected: int  # messages, from simulated time and rates
+    delivered: int
+    client_busy: float  # share of a processor; near 1 the client limits the speed
 
 
-def simulate(
-    case: Case, factor: float, seconds: float, programs: Path, directory: Path, environment: Environment = None
-) -> Run:
-    """Run a simulator and its client for `seconds` of wall time; BenchError when one of them fails.
-
-    `programs` is the folder of robocop_sim.py and robocop_goto_as.py; their environment may be another checkout's.
-    """
-    rospy.set_param(NODE, case.params(factor))
-    rospy.set_param("/use_sim_time", bool(case.controller))
+def simulate(case: Case, world: str, factor: float, seconds: float, checkout: Checkout, directory: Path) -> Run:
+    """Run a checkout's simulator and a client for `seconds` of wall time; BenchError when one of them fails."""
+    master = rosgraph.Master("/robocop_bench")
+    master.setParam("/robocop_sim", case.params(factor, world))
+    master.setParam("/use_sim_time", case.lockstep)
     topics = case.topics()
-    with velocity_commands(case) as all_connected, running(
-        Client(directory / "client.log", "--master", os.environ["ROS_MASTER_URI"], *topics)
-    ) as client:
-        client.line()
-        with running(
-            Child("the simulator", [str(programs / "robocop_sim.py")], directory / "simulator.log", False, environment)
-        ) as child, controller(case, programs, directory, environment):
-            child.wait_until(
-                lambda: len(client.tally().first_at) == len(topics) and all_connected(),
-                "messages on every topic and commands for every robot",
-            )
+    with controller(case, checkout, directory) as control, subscribed(list(topics)) as client:
+        with _node("the simulator", "robocop_sim.py", checkout, directory) as simulator:
+            ready = "messages on every topic and control of every robot"
+            simulator.wait_until(lambda: control.says("running") and len(client.first_at()) == len(topics), ready)
             time.sleep(SETTLE)
-            before, cpu_before = client.tally(), child.cpu()
+            start, stamp, cpu, client_cpu = time.monotonic(), client.newest_ns, simulator.cpu(), client.cpu
             time.sleep(seconds)
-            after, cpu_after = client.tally(), child.cpu()
-            child.require_running()
-            memory = child.peak_memory()
-        client.wait_until(lambda: client.tally().open == 0, "the end of all connections")
-        last = client.tally()
-    simulated = (after.newest_ns - before.newest_ns) / NANOSECONDS
-    wall = after.time - before.time
+            wall, simulated = time.monotonic() - start, (client.newest_ns - stamp) / NANOSECONDS
+            cpu, client_cpu = simulator.cpu() - cpu, client.cpu - client_cpu
+            simulator.require_running()
+            memory = simulator.peak_memory()
+        expected, delivered = client.deliveries(topics)
     if simulated <= 0.0:
         raise BenchError(f"simulated time did not advance in {wall:.1f} s")
-    first_scan = min(at for topic, at in last.first_at.items() if topic.endswith("scan")) - child.started
-    return Run(
-        simulated / wall,
-        (cpu_after - cpu_before) / simulated,
-        memory,
-        first_scan,
-        *deliveries(last.counts, topics),
-        (after.cpu - before.cpu) / wall,
-    )
+    first_scan = min(at for topic, at in client.first_at().items() if topic.endswith("scan")) - simulator.started
+    return Run(simulated / wall, cpu / simulated, memory, first_scan, expected, delivered, client_cpu / wall)
 
 
-def measure_floor(case: Case, seconds: float, directory: Path) -> Floor:
-    """Run the bare parts and their client for `seconds` of wall time; BenchError when one of them fails."""
-    with running(Client(directory / "client.log", "--listen")) as client:
-        port = client.line().strip()
-        command = [sys.executable, "-m", "aro_robocop_goto_as.bench.floor", case.name, str(seconds), port]
-        with running(Child("the floor", command, directory / "floor.log", piped=True)) as child:
-            return Floor(**json.loads(child.line()))
+def _node(name: str, program: str, checkout: Checkout, directory: Path) -> Child:
+    return Child(name, [str(checkout.programs / program)], directory / f"{program}.log", checkout.environment())
 
 
 @contextlib.contextmanager
-def controller(case: Case, programs: Path, directory: Path, environment: Environment) -> Iterator[None]:
-    """The controller of a lockstep case, in control of the robot; nothing for other cases."""
-    modules = {"rospy": "rospy_loop", "server": "goal_loop"}
+def controller(case: Case, checkout: Checkout, directory: Path) -> Iterator[Child]:
+    """What controls the robots of a case: a process that prints "running" when it does."""
     with contextlib.ExitStack() as processes:
-        if case.controller == "server":
-            server = Child(
-                "the server", [str(programs / "robocop_goto_as.py")], directory / "s.log", False, environment
-            )
-            processes.enter_context(running(server))
-        if case.controller:
-            command = [sys.executable, "-m", f"aro_robocop_goto_as.bench.{modules[case.controller]}"]
-            loop = processes.enter_context(
-                running(Child("the controller", command, directory / "controller.log", piped=True))
-            )
-            loop.line()
-        yield
-
-
-@contextlib.contextmanager
-def velocity_commands(case: Case) -> Iterator[Callable[[], bool]]:
-    """Publish one latched velocity command for every robot; yields a function: whether all are connected.
-
-    In a lockstep case its controller does that.
-    """
-    if case.controller:
-        yield lambda: True
-        return
-    publishers = [rospy.Publisher(robot + "cmd_vel", Twist, latch=True, queue_size=1) for robot in case.namespaces]
-    try:
-        for publisher in publishers:
-            publisher.publish(Twist(Vector3(LINEAR, 0.0, 0.0), Vector3(0.0, 0.0, ANGULAR)))
-        yield lambda: all(publisher.get_num_connections() for publisher in publishers)
-    finally:
-        for publisher in publishers:
-            publisher.unregister()
+        if case.kind == "server":
+            processes.enter_context(_node("the server", "robocop_goto_as.py", checkout, directory))
+        program = [sys.executable, "-m", "aro_robocop_goto_as.bench.controllers"]
+        command = [*program, *([case.kind] if case.lockstep else case.namespaces)]
+        control = processes.enter_context(Child("the controller", command, directory / "controller.log"))
+        control.wait_until(lambda: control.says("ready"), "the controller's start")
+        yield control

@@ -1,145 +1,135 @@
-"""Measurements -> a table or JSON, with a description of the machine."""
+"""All repeats of a case -> figures -> a table or JSON, with a description of the machine."""
 
 import json
 import os
 import platform
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib import metadata
 from pathlib import Path
 from statistics import median
-from typing import Any, Callable, Dict, List, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence
 
-from .cases import LEFT_OUT, ODOM_RATE, SCAN_RATE, SCAN_SAMPLES
-from .results import Measured
+from .cases import ODOM_RATE, SCAN_RATE, SCAN_SAMPLES, Case
+from .measure import Run
 
-
-@dataclass(frozen=True)
-class Conditions:
-    """The machine and the settings of a measurement."""
-
-    cpu: str
-    cores: int
-    python: str
-    numpy: str
-    pybullet: str
-    load_before: Sequence[float]  # over 1, 5, 15 minutes
-    seconds: float  # [s, wall] of each measurement
-    repeats: int
-
-    def lines(self) -> List[str]:
-        """As text."""
-        load = " ".join(f"{value:.2f}" for value in self.load_before)
-        return [
-            f"{self.cpu}, {self.cores} cores; Python {self.python}, numpy {self.numpy}, pybullet {self.pybullet}; "
-            f"load before: {load}",
-            f"A client on every robot's /scan ({SCAN_SAMPLES} beams, {SCAN_RATE} Hz) and /odom ({ODOM_RATE} Hz); "
-            f"{self.seconds:g} s per measurement; medians of {self.repeats}, with lowest and highest in brackets.",
-        ]
-
-
-def conditions(seconds: float, repeats: int) -> Conditions:
-    """The present conditions."""
-    model = next(
-        (
-            line.partition(":")[2].strip()
-            for line in Path("/proc/cpuinfo").read_text().splitlines()
-            if line.startswith("model name")
-        ),
-        platform.machine(),
-    )
-    return Conditions(
-        model,
-        len(os.sched_getaffinity(0)),
-        platform.python_version(),
-        metadata.version("numpy"),
-        metadata.version("pybullet"),
-        os.getloadavg(),
-        seconds,
-        repeats,
-    )
-
-
-def spread(values: Sequence[float], digits: int) -> str:
-    """The median, followed by the lowest and the highest if there are several values."""
-    middle = f"{median(values):.{digits}f}"
-    return middle if len(values) == 1 else f"{middle} ({min(values):.{digits}f}-{max(values):.{digits}f})"
-
-
-def _digits(values: Sequence[float]) -> int:
-    """Decimals for three significant figures."""
-    return 0 if median(values) >= 100.0 else 1 if median(values) >= 10.0 else 2
-
-
-COLUMNS: Dict[str, Callable[[Dict[str, List[float]]], str]] = {
-    "factor": lambda figures: spread(figures["factor"], _digits(figures["factor"])),
-    "floor": lambda figures: spread(figures["floor"], _digits(figures["floor"])),
-    "of floor": lambda figures: spread(figures["of_floor"], 2),
-    "CPU at 1 [ms/s]": lambda figures: spread(figures["cpu_ms"], 1),
-    "memory [MB]": lambda figures: spread(figures["memory_mb"], 0),
-    "first scan [s]": lambda figures: spread(figures["first_scan_s"], 2),
+BUSY = 0.5  # share of a processor from which on the client may limit the speed
+KEPT_UP = 0.95  # a lower share of the requested real-time factor is noted
+COLUMNS = {  # titles -> figures
+    "factor": "factor",
+    "baseline": "baseline",
+    "of baseline": "of_baseline",
+    "CPU at 1 [ms/s]": "cpu_ms",
+    "memory [MB]": "memory_mb",
+    "first scan [s]": "first_scan_s",
+    "bare step [us]": "step_us",
+    "bare message [us]": "message_us",
+    "client busy": "client_busy",
+    "messages": "messages",
+    "lost": "lost",
 }
-HEAD = ["drive", "robots", *COLUMNS, "messages", "lost"]
-PARTS_HEAD = ["the floor's parts", "robots", "step, all robots [us]", "scan, one robot [us]", "message [us]"]
+COMPARED = ("factor", "cpu_ms", "memory_mb", "first_scan_s")
+Figures = Dict[str, List[float]]  # with a value for each repeat
 
 
-def row(measured: Measured) -> List[str]:
-    """A case's cells; the notes below the table say why it failed."""
-    case = [f"{measured.case.drive} {measured.case.physics_rate} Hz", measured.case.name.partition(":")[2]]
-    if measured.error is not None:
-        return case + ["failed"] + ["-"] * (len(HEAD) - 3)
-    figures = measured.figures()
-    return case + [cell(figures) for cell in COLUMNS.values()] + [str(measured.delivered), str(measured.lost)]
+@dataclass
+class Measured:
+    """A case in one checkout, and the error that stopped its repeats."""
+
+    case: Case
+    checkout: str = ""  # which, if there are two
+    figures: Figures = field(default_factory=dict)
+    error: Optional[str] = None
+
+    def add(self, fastest: Run, paced: Run, baseline: Mapping[str, float]) -> None:
+        """A repeat: a run as fast as possible, one at real-time factor 1, the figures of the baseline."""
+        figures = {
+            **baseline,
+            "factor": fastest.factor,
+            "cpu_ms": paced.cpu * 1e3,
+            "memory_mb": max(fastest.memory, paced.memory) / 1e6,
+            "first_scan_s": paced.first_scan,
+            "client_busy": fastest.client_busy,
+            "messages": fastest.delivered + paced.delivered,
+            "lost": fastest.expected + paced.expected - fastest.delivered - paced.delivered,
+            "paced_factor": paced.factor,
+        }
+        if baseline:
+            figures["of_baseline"] = fastest.factor / baseline["baseline"]
+        for name, value in figures.items():
+            self.figures.setdefault(name, []).append(value)
+
+    def notes(self) -> List[str]:
+        """Remarks on the figures."""
+        notes = [] if self.error is None else [f"failed: {self.error}"]
+        busiest, slowest = max(self.figures.get("client_busy", [0.0])), min(self.figures.get("paced_factor", [1.0]))
+        if busiest > BUSY:
+            notes.append(f"the client was busy for {busiest:.2f} of the time, so it may limit the factor")
+        if slowest < KEPT_UP:
+            notes.append(f"only {slowest:.2f} of the requested factor 1 reached")
+        return [f"{self.case.name}{self.checkout and ', ' + self.checkout}: {note}" for note in notes]
 
 
-def parts_row(measured: Measured) -> List[str]:
-    """Durations of a step, a scan and a message in the floor [us]."""
-    values = [[getattr(floor, part) * 1e6 for floor in measured.floors] for part in ("step", "scan", "message")]
+PACKAGES = ("numpy", "pybullet", "pybullet-arm64")
+Row = Sequence[Measured]  # a case in this checkout, or in the other and in this one
+
+
+def conditions(seconds: float, repeats: int) -> List[str]:
+    """The machine, its present load over 1, 5 and 15 minutes, and the settings of a measurement."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    installed = {package.metadata["Name"]: package.version for package in metadata.distributions()}
+    versions = ", ".join(f"{name} {installed[name]}" for name in PACKAGES if name in installed)
+    load = " ".join(f"{value:.2f}" for value in os.getloadavg())
+    cpu = f"{next(models, platform.machine())}, {len(os.sched_getaffinity(0))} cores"
     return [
-        f"{measured.case.drive} {measured.case.physics_rate} Hz",
-        str(measured.case.robots),
-        *(spread(value, _digits(value)) for value in values),
+        f"{cpu}; Python {platform.python_version()}, {versions}; load before: {load}",
+        f"A client on every robot's /scan ({SCAN_SAMPLES} beams, {SCAN_RATE} Hz) and /odom ({ODOM_RATE} Hz); "
+        f"{seconds:g} s per measurement; medians of {repeats}, with lowest and highest in brackets.",
     ]
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> List[str]:
-    """An aligned Markdown table; the first row is the head."""
-    widths = [max(len(cells[column]) for cells in rows) for column in range(len(rows[0]))]
-    lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(cells, widths)) + " |" for cells in rows]
-    return [lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]]
+def ratios(row: Row) -> Figures:
+    """This / other: repeats are compared in pairs, as they were measured one after the other; {} for one checkout."""
+    if len(row) == 1 or any(measured.error for measured in row):
+        return {}
+    other, this = (measured.figures for measured in row)
+    return {name: [new / old for new, old in zip(this[name], other[name])] for name in COMPARED}
 
 
-def table(results: Sequence[Measured], where: Conditions) -> str:
-    """The results as text."""
-    lines = [*where.lines(), "", *aligned([HEAD] + [row(measured) for measured in results])]
-    with_floor = [measured for measured in results if measured.floors]
-    if with_floor:
-        lines += ["", *aligned([PARTS_HEAD] + [parts_row(measured) for measured in with_floor])]
-    names = {measured.case.name for measured in results}
-    notes = [note for measured in results for note in measured.notes()]
-    notes += [f"{name} left out: {why}" for name, why in LEFT_OUT.items() if name not in names]
-    return "\n".join(lines + [""] * bool(notes) + notes)
+def cell(values: Sequence[float]) -> str:
+    """The median, followed by the lowest and the highest if there are several values; the sum of counts."""
+    if not values or isinstance(values[0], int):
+        return str(sum(values)) if values else "-"
+    middle = median(values)
+    digits = 0 if middle >= 100.0 else 1 if middle >= 10.0 else 2
+    low, text, high = (f"{value:.{digits}f}" for value in (min(values), middle, max(values)))
+    return text if len(values) == 1 else f"{text} ({low}-{high})"
 
 
-def as_json(results: Sequence[Measured], where: Conditions) -> str:
-    """The results as JSON; `median` has the table's figures, with units in their names."""
-    cases: List[Dict[str, Any]] = []
-    for measured in results:
-        figures = {name: median(values) for name, values in measured.figures().items() if values}
-        runs: Dict[str, Sequence[Any]] = {
-            "floors": measured.floors,
-            "fastest": measured.fastest,
-            "paced": measured.paced,
+def table(rows: Sequence[Row], where: Sequence[str]) -> str:
+    """The results as text: an aligned Markdown table without empty columns, and notes."""
+    lines = []
+    for row in rows:
+        entries = [(one.checkout, {} if one.error else one.figures) for one in row]
+        for name, figures in [*entries, *([("ratio", ratios(row))] if len(row) == 2 else [])]:
+            label = [f"{row[0].case.drive} {row[0].case.physics_rate} Hz", row[0].case.kind, name]
+            lines.append([*label, *(cell(figures.get(column, ())) for column in COLUMNS.values())])
+    columns = [column for column in zip(["drive", "robots", "", *COLUMNS], *lines) if set(column[1:]) - {"", "-"}]
+    padded = [[text.ljust(max(map(len, column))) for text in column] for column in columns]
+    head, *body = ("| " + " | ".join(cells) + " |" for cells in zip(*padded))
+    rule = "|" + "|".join("-" * (len(column[0]) + 2) for column in padded) + "|"
+    notes = [note for row in rows for measured in row for note in measured.notes()]
+    return "\n".join([*where, "", head, rule, *body, *[""] * bool(notes), *notes])
+
+
+def as_json(rows: Sequence[Row], where: Sequence[str]) -> str:
+    """The results as JSON, with the figures of every repeat and units in their names."""
+    cases = [
+        {
+            "case": row[0].case.name,
+            "ratios": ratios(row),
+            **{name: asdict(measured) for name, measured in zip(("this", "other"), reversed(row))},
         }
-        cases.append(
-            {
-                "drive": measured.case.drive,
-                "robots": measured.case.robots,
-                "physics_rate": measured.case.physics_rate,
-                "error": measured.error,
-                "median": figures,
-                "delivered": measured.delivered,
-                "lost": measured.lost,
-                **{name: [asdict(run) for run in values] for name, values in runs.items()},
-            }
-        )
-    return json.dumps({"conditions": asdict(where), "cases": cases}, indent=1)
+        for row in rows
+    ]
+    return json.dumps({"conditions": where, "cases": cases}, indent=1)

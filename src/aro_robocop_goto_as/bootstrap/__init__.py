@@ -1,1 +1,1 @@
-"""What ./robocop runs with the bare /usr/bin/python3, before anything is installed: standard library only."""
+"""What runs before anything is installed, with Python's standard library only."""

@@ -1,8 +1,8 @@
-"""robocop doctor: the system, the versions, what answers, what is missing and the command that installs it.
+"""robocop doctor: reports the system, the versions, what answers, and what is missing and how to install it.
 
-Usage: doctor CHECKOUT STATE ROS_SETUP UNSUPPORTED DISPLAY_ANSWERS LIST=MISSING...
-ROS_SETUP is roslaunch's path in /opt/ros or empty, UNSUPPORTED a reason or empty, DISPLAY_ANSWERS 1 or empty, and
-MISSING the packages of deb-packages/LIST.txt (or the Python modules, for LIST `modules`) that are not installed.
+Usage: doctor CHECKOUT STATE ROSLAUNCH UNSUPPORTED LIST=MISSING...
+ROSLAUNCH is its path in /opt/ros or empty, UNSUPPORTED a reason or empty, and MISSING the packages of
+deb-packages/LIST.txt (or the Python modules, for LIST `modules`) that are not installed.
 """
 
 import json
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
 from ..errors import MasterError
+from ..process import x_display
 from . import master
 
 PYTHON = "/usr/bin/python3"
@@ -22,7 +23,7 @@ PACKAGES = ("rospy", "numpy", "pybullet")
 STAMPS = ("venv/made-as", "venv/requirements", "ws/built-from")  # what a complete set-up leaves
 SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
 REQUIRED_LISTS = ("run", "modules")
-PROBE_TIMEOUT = 60.0  # [s, wall] the first import of pybullet may read 100 MB from a slow disk
+PROBE_TIMEOUT = 60.0  # [s, wall] imports may be slow on a busy machine
 PROBE = """
 import importlib, json, sys
 from importlib import metadata
@@ -33,12 +34,14 @@ for name in sys.argv[1:]:
     except Exception as error:
         versions[name] = "" if isinstance(error, ModuleNotFoundError) else f"fails to import: {error}"
         continue
-    try:
-        versions[name] = metadata.version(name)
-    except metadata.PackageNotFoundError:
-        versions[name] = "of unknown version"
+    versions[name] = "of unknown version"
+    for package in (name, name + "-arm64"):
+        try:
+            versions[name] = metadata.version(package) + (f" of {package}" if package != name else "")
+        except metadata.PackageNotFoundError:
+            continue
     if name == "pybullet" and not module.isNumpyEnabled():
-        versions[name] += " (built without NumPy: camera images are slow)"
+        versions[name] += ", without NumPy"
 print(json.dumps(versions))
 """
 Row = Tuple[str, str]
@@ -85,7 +88,7 @@ def apt_line(packages: str) -> str:
 
 
 def examine(
-    checkout: str, state: str, roslaunch: str, unsupported: str, display_answers: str, missing: Dict[str, str]
+    checkout: str, state: str, roslaunch: str, unsupported: str, missing: Dict[str, str]
 ) -> Tuple[List[Row], List[Row]]:
     """The rows of the report, and what is missing with what to do about it."""
     python = str(Path(state, "venv", "bin", "python"))
@@ -94,7 +97,7 @@ def examine(
     debian_ros = "Debian packages in /usr" if shutil.which("roslaunch", path="/usr/bin") else "not installed"
     master_state, master_problem = master_row()
     name = os.environ.get("DISPLAY")
-    display = f"{name} {'answers' if display_answers else 'does not answer'}" if name else "DISPLAY is not set"
+    display = f"{name} {'answers' if x_display.answers() else 'does not answer'}" if name else "DISPLAY is not set"
     optional = [
         f"{part} {'not yet' if lacks else 'yes'}" for part, lacks in missing.items() if part not in REQUIRED_LISTS
     ]
@@ -126,9 +129,9 @@ def examine(
 
 def main() -> None:
     """Print the report; exit status 0 if nothing is missing, else 1."""
-    checkout, state, roslaunch, unsupported, display_answers, *lists = sys.argv[1:]
+    checkout, state, roslaunch, unsupported, *lists = sys.argv[1:]
     missing = dict(entry.partition("=")[::2] for entry in lists)
-    rows, problems = examine(checkout, state, roslaunch, unsupported, display_answers, missing)
+    rows, problems = examine(checkout, state, roslaunch, unsupported, missing)
     for name, value in rows:
         print(f"{name:11} {value}")
     print("\nnothing is missing" if not problems else "\nmissing or wrong:")

@@ -1,22 +1,18 @@
-"""Whether a ROS master and the simulator answer, asked by XML-RPC with timeouts.
-
-As a program: exit status 1, with the reason on standard output, if no simulator may be started on ROS_MASTER_URI.
-"""
+"""Asks by XML-RPC, with timeouts, whether a ROS master and the simulator answer."""
 
 import http.client
 import os
 import socket
-import sys
 import xml.parsers.expat
 import xmlrpc.client
 from typing import Any, Optional, cast
 
 from ..errors import MasterError
+from ..ros.names import SIMULATOR, absolute
 
 DEFAULT_URI = "http://localhost:11311"  # roscore's port
 TIMEOUT = 5.0  # [s, wall] without data, for each request; a healthy master answers in milliseconds
 CALLER = "/robocop"
-SIMULATOR = "/robocop_sim"
 SUCCESS = 1  # first element of every answer in ROS' master and node API
 _TIMEOUTS = (socket.timeout, TimeoutError)  # one class from Python 3.10 on
 # What is raised if the answer is not XML-RPC, or not that of a ROS master or node.
@@ -83,34 +79,12 @@ def running_simulator(uri: str) -> Optional[str]:
     that), so the node itself is asked.
     """
     try:
-        node = ask_master(uri, "lookupNode", SIMULATOR)
+        node = ask_master(uri, "lookupNode", absolute("", SIMULATOR))
     except OSError:
         return None
     try:
         return None if node is None or _request(node, "getPid") is None else "a simulator is already running"
     except _TIMEOUTS:
-        return f"a simulator that does not respond ({SIMULATOR} at {node}) is registered"
+        return f"a simulator that does not respond (/{SIMULATOR} at {node}) is registered"
     except (OSError, *_FOREIGN):  # it has ended, or another program has got its port
         return None
-
-
-def main() -> None:
-    """Refuse a second simulator on the same master: nodes with the same name shut each other down.
-
-    With --answers: exit status 1 if no master answers.
-    """
-    uri = master_uri()
-    try:
-        if sys.argv[1:] == ["--answers"]:
-            sys.exit(0 if master_answers(uri) else 1)
-        simulator = running_simulator(uri)
-    except MasterError as error:
-        print(error)
-        sys.exit(1)
-    if simulator:
-        print(f"{simulator} on {uri}; stop it, or use another ROS_MASTER_URI")
-        sys.exit(1)
-
-
-if __name__ == "__main__":
-    main()

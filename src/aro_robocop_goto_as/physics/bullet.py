@@ -1,10 +1,15 @@
 """The engine on Bullet: robots with wheels, motors, casters and contacts."""
 
+import ctypes
 import math
 from typing import Dict, List, Sequence, Set, Tuple
 
-from ..geometry import STANDARD_GRAVITY, Pose2D, Pose3D, Twist2D, compose3, lifted, yaw_of
-from ..robot.model import CASTER_PREFIX, WHEEL_JOINTS, BodyState, Pair, RobotModel, RobotState
+import numpy as np
+
+from ..geometry import STANDARD_GRAVITY, Pose2D, Pose3D, compose3, inverse3, lifted, yaw_of
+from ..robot.fleet import Fleet, library
+from ..robot.model import CASTER_PREFIX, WHEEL_JOINTS, BodyState, RobotModel
+from ..world.ground import is_in_ground
 from ..world.model import Obstacle, Plane, World
 from .bullet_shapes import FLOOR, load_urdf, shapes_of
 from .quiet_pybullet import pybullet
@@ -13,35 +18,45 @@ WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower motion with stopped wheels is solver creep
 REST_STEPS = 24  # consecutive steps below these speeds until the robot is parked
 WAKING = 1.0  # [m] between the centres, within which a moving obstacle keeps a robot awake
+CENTRED = Pose3D()  # of a base_link whose centre of mass is its origin
 TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
 
 
 class _Body:
-    """One robot: its ids in Bullet, its target wheel speeds, whether it is parked."""
+    """One robot: its ids in Bullet, and whether it is parked."""
 
-    def __init__(self, body: int, wheels: List[int], model: RobotModel, torque: float) -> None:
+    def __init__(self, body: int, wheels: List[int], torque: float, base_from_inertial: Pose3D) -> None:
         self.body = body
         self.wheels = wheels
-        self.model = model
         self.forces = [torque, torque]
-        self.targets: Pair = (0.0, 0.0)
+        self.targets: List[float] = [0.0, 0.0]  # of the wheel motors [rad/s]
+        self.base_from_inertial = base_from_inertial  # Bullet's pose of a body is that of its centre of mass
         self.resting_steps = 0
         self.parked = False
 
+    @property
+    def stands(self) -> bool:
+        """Whether the wheel motors' target speeds are zero."""
+        return self.targets == [0.0, 0.0]
+
 
 class BulletEngine:
-    """One Bullet world, stepped at `rate` [Hz]."""
+    """One Bullet world; see physics.engine for the interface."""
 
-    def __init__(self, world: World, rate: int, solver_iterations: int, wheel_torque: float, gui: bool = False) -> None:
-        """`wheel_torque` [Nm] is the maximum of each wheel motor; `gui` opens pybullet's own window."""
+    def __init__(
+        self, world: World, fleet: Fleet, rate: int, solver_iterations: int, wheel_torque: float, gui: bool = False
+    ) -> None:
+        """`rate` [Hz] of the steps; `wheel_torque` [Nm]: each wheel motor's maximum; `gui` opens pybullet's window."""
         self.client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
+        self.fleet = fleet
         self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
         self._wheel_torque = wheel_torque
+        self._control = library().aro_control
         self._robots: List[_Body] = []
+        self._is_read = True  # whether the fleet's rows are of the last step
         self._floors: Set[int] = set()
         self._moving: List[Tuple[int, Obstacle]] = []  # body and obstacle
         self._bodies: Dict[str, List[int]] = {}  # by the name of the obstacle
-        self._fill()
 
     def _fill(self) -> None:
         """Add the floor and the obstacles to an empty Bullet world."""
@@ -56,7 +71,7 @@ class BulletEngine:
         )
         self._add_obstacle(FLOOR)
         for obstacle in self._world.obstacles:
-            self._add_unless_floor(obstacle)
+            self._add_unless_ground(obstacle)
 
     def change_world(self, world: World, time: float) -> None:
         """Replace the world; obstacles that are in both worlds are not touched."""
@@ -66,11 +81,11 @@ class BulletEngine:
                 self._remove_obstacle(obstacle)
         for obstacle in world.obstacles:
             if id(obstacle) not in before:
-                self._add_unless_floor(obstacle)
+                self._add_unless_ground(obstacle)
         self._world = world
         self.move_obstacles(time)
-        for it in self._robots:
-            self._unpark(it)
+        for robot in self._robots:
+            self._unpark(robot)
 
     def _remove_obstacle(self, obstacle: Obstacle) -> None:
         bodies = self._bodies.pop(obstacle.name, [])
@@ -79,11 +94,8 @@ class BulletEngine:
         self._floors.difference_update(bodies)
         self._moving = [(body, other) for body, other in self._moving if body not in bodies]
 
-    def _add_unless_floor(self, obstacle: Obstacle) -> None:
-        if (obstacle.pose, obstacle.geometry) != (
-            FLOOR.pose,
-            FLOOR.geometry,
-        ):  # most world files have their own
+    def _add_unless_ground(self, obstacle: Obstacle) -> None:
+        if not is_in_ground(obstacle):  # most world files have a floor of their own
             self._add_obstacle(obstacle)
 
     def _add_obstacle(self, obstacle: Obstacle) -> None:
@@ -108,8 +120,19 @@ class BulletEngine:
             if obstacle.motion is not None:
                 self._moving.append((body, obstacle))
 
-    def add_robot(self, model: RobotModel, world_from_footprint: Pose2D) -> int:
-        """Place a robot at rest on the floor; returns its index."""
+    def reset(self, poses: Sequence[Pose2D]) -> None:
+        """Start again with all robots at these poses and wheels at angle zero, in an empty Bullet world.
+
+        Bullet keeps state between steps (contact caches), so only an empty world makes what follows bit-identical.
+        """
+        pybullet.resetSimulation(physicsClientId=self.client)
+        self._fill()
+        self._robots = [self._load(model) for model in self.fleet.models]
+        for robot, pose in enumerate(poses):
+            self.place(robot, pose)
+
+    def _load(self, model: RobotModel) -> _Body:
+        """Create a robot's body at the origin."""
         client = self.client
         body = load_urdf(model, client)
         joints = {}
@@ -122,58 +145,77 @@ class BulletEngine:
             pybullet.setCollisionFilterGroupMask(
                 body, link, ROBOT_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client
             )
-        self._robots.append(_Body(body, [joints[name] for name in WHEEL_JOINTS], model, self._wheel_torque))
-        self.place(len(self._robots) - 1, world_from_footprint)
-        return len(self._robots) - 1
+        inertial = Pose3D(*pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[3:5])
+        return _Body(body, [joints[name] for name in WHEEL_JOINTS], self._wheel_torque, inertial)
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere, at rest; its wheels keep their angles."""
-        it = self._robots[robot]
-        base = compose3(lifted(world_from_footprint), it.model.footprint_from_base)
-        pybullet.resetBasePositionAndOrientation(it.body, base.position, base.orientation, physicsClientId=self.client)
-        pybullet.resetBaseVelocity(it.body, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
-        for wheel in it.wheels:
-            angle = pybullet.getJointState(it.body, wheel, physicsClientId=self.client)[0]
-            pybullet.resetJointState(it.body, wheel, angle, 0.0, physicsClientId=self.client)
-        it.targets = (0.0, 0.0)
-        self._set_motors(it)
-        self._unpark(it)
+        placed = self._robots[robot]
+        base = compose3(lifted(world_from_footprint), self.fleet.models[robot].footprint_from_base)
+        inertial = base if placed.base_from_inertial == CENTRED else compose3(base, placed.base_from_inertial)
+        pybullet.resetBasePositionAndOrientation(
+            placed.body, inertial.position, inertial.orientation, physicsClientId=self.client
+        )
+        pybullet.resetBaseVelocity(placed.body, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
+        for wheel in placed.wheels:
+            angle = pybullet.getJointState(placed.body, wheel, physicsClientId=self.client)[0]
+            pybullet.resetJointState(placed.body, wheel, angle, 0.0, physicsClientId=self.client)
+        self.fleet.place(robot, world_from_footprint)
+        self._is_read = False
+        self._set_motors(placed, [0.0, 0.0])
 
-    def set_wheel_speeds(self, robot: int, wheel_speeds: Pair) -> None:
-        """Target speeds [rad/s] of the left and right wheel motor from the next step on."""
-        it = self._robots[robot]
-        if wheel_speeds != it.targets:
-            it.targets = wheel_speeds
-            self._set_motors(it)
-            self._unpark(it)
-
-    def reset(self, poses: Sequence[Pose2D]) -> None:
-        """Start again with all robots at these poses and wheels at angle zero, in an empty Bullet world.
-
-        Bullet keeps state between steps (contact caches), so only an empty world makes what follows bit-identical.
-        """
-        robots, self._robots = self._robots, []
-        pybullet.resetSimulation(physicsClientId=self.client)
-        self._fill()
-        for robot, pose in zip(robots, poses):
-            self.add_robot(robot.model, pose)
-
-    def _set_motors(self, it: _Body) -> None:
+    def _set_motors(self, robot: _Body, targets: List[float]) -> None:
+        robot.targets = targets
         pybullet.setJointMotorControlArray(
-            it.body,
-            it.wheels,
+            robot.body,
+            robot.wheels,
             pybullet.VELOCITY_CONTROL,
-            targetVelocities=it.targets,
-            forces=it.forces,
+            targetVelocities=targets,
+            forces=robot.forces,
             physicsClientId=self.client,
         )
+        self._unpark(robot)
 
-    def step(self) -> None:
-        """Advance every robot by one step."""
-        pybullet.stepSimulation(physicsClientId=self.client)
-        for it in self._robots:
-            if it.targets == (0.0, 0.0) and not it.parked:
-                self._park_when_at_rest(it)
+    def advance(self, first: int, steps: int) -> None:
+        """Advance the base controllers and all robots by a number of steps."""
+        for step in range(first, first + steps):
+            if self._control(ctypes.byref(self.fleet.struct), step / self._rate, 1.0 / self._rate):
+                for robot, targets in zip(self._robots, self.fleet.targets.tolist()):
+                    if targets != robot.targets:
+                        self._set_motors(robot, targets)
+            pybullet.stepSimulation(physicsClientId=self.client)
+            for robot in self._robots:
+                if robot.stands and not robot.parked:
+                    self._park_when_at_rest(robot)
+        self._is_read = False
+
+    def read(self) -> None:
+        """Update the fleet's rows to the state after the last step."""
+        if self._is_read:
+            return
+        self._is_read = True
+        fleet = self.fleet
+        for row, robot in enumerate(self._robots):
+            body = self.body(row)
+            (x, y, _), yaw = body.world_from_base.position, yaw_of(body.world_from_base.orientation)
+            (vx, vy, _), (_, _, spin) = body.linear_velocity, body.angular_velocity
+            left, right = pybullet.getJointStates(robot.body, robot.wheels, physicsClientId=self.client)
+            fleet.poses[row] = x, y, yaw
+            fleet.twists[row] = math.cos(yaw) * vx + math.sin(yaw) * vy, spin
+            fleet.wheel_angles[row] = left[0], right[0]
+            fleet.wheel_speeds[row] = left[1], right[1]
+
+    def body(self, robot: int) -> BodyState:
+        """The robot's base_link in space, after the last step."""
+        found = self._robots[robot]
+        position, orientation = pybullet.getBasePositionAndOrientation(found.body, physicsClientId=self.client)
+        linear, angular = pybullet.getBaseVelocity(found.body, physicsClientId=self.client)
+        if found.base_from_inertial == CENTRED:
+            return BodyState(Pose3D(position, orientation), linear, angular)
+        base = compose3(Pose3D(position, orientation), inverse3(found.base_from_inertial))
+        lever = np.subtract(base.position, position)
+        vx, vy, vz = (np.array(linear) + np.cross(angular, lever)).tolist()
+        return BodyState(base, (vx, vy, vz), angular)
 
     def move_obstacles(self, time: float) -> None:
         """Put the moving obstacles where they are at `time` [s]; contacts push robots out of their way.
@@ -183,54 +225,33 @@ class BulletEngine:
         for body, obstacle in self._moving:
             pose = obstacle.at(time)
             pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self.client)
-            for it in self._robots:
-                (x, y, _), _ = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self.client)
+            for robot in self._robots:
+                (x, y, _), _ = pybullet.getBasePositionAndOrientation(robot.body, physicsClientId=self.client)
                 if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKING:
-                    self._unpark(it)
+                    self._unpark(robot)
 
-    def _park_when_at_rest(self, it: _Body) -> None:
+    def _park_when_at_rest(self, robot: _Body) -> None:
         """Put a standing robot to sleep.
 
         Otherwise the solver's residual moves a standing Burger by 6.6 mm per minute (with 50 iterations).
         Bullet wakes it when a moving body touches it, `set_wheel_speeds` wakes it for a command.
         """
-        linear, angular = pybullet.getBaseVelocity(it.body, physicsClientId=self.client)
+        linear, angular = pybullet.getBaseVelocity(robot.body, physicsClientId=self.client)
         still = all(abs(v) < REST_LINEAR for v in linear) and all(abs(w) < REST_ANGULAR for w in angular)
-        it.resting_steps = it.resting_steps + 1 if still else 0
-        if it.resting_steps >= REST_STEPS:
-            it.parked = True
-            self._activate(it, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING, pybullet.ACTIVATION_STATE_SLEEP)
+        robot.resting_steps = robot.resting_steps + 1 if still else 0
+        if robot.resting_steps >= REST_STEPS:
+            robot.parked = True
+            self._activate(robot, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING, pybullet.ACTIVATION_STATE_SLEEP)
 
-    def _unpark(self, it: _Body) -> None:
-        it.resting_steps = 0
-        if it.parked:
-            it.parked = False
-            self._activate(it, pybullet.ACTIVATION_STATE_WAKE_UP, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
+    def _unpark(self, robot: _Body) -> None:
+        robot.resting_steps = 0
+        if robot.parked:
+            robot.parked = False
+            self._activate(robot, pybullet.ACTIVATION_STATE_WAKE_UP, pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
 
-    def _activate(self, it: _Body, *states: int) -> None:
+    def _activate(self, robot: _Body, *states: int) -> None:
         for state in states:
-            pybullet.changeDynamics(it.body, -1, activationState=state, physicsClientId=self.client)
-
-    def state(self, robot: int) -> RobotState:
-        """The robot seen from above, after the last step."""
-        it = self._robots[robot]
-        (x, y, _), orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self.client)
-        (vx, vy, _), (_, _, spin) = pybullet.getBaseVelocity(it.body, physicsClientId=self.client)
-        left, right = pybullet.getJointStates(it.body, it.wheels, physicsClientId=self.client)
-        yaw = yaw_of(orientation)
-        return RobotState(
-            Pose2D(x, y, yaw),
-            Twist2D(math.cos(yaw) * vx + math.sin(yaw) * vy, spin),
-            (left[0], right[0]),
-            (left[1], right[1]),
-        )
-
-    def body(self, robot: int) -> BodyState:
-        """The robot's base_link in space, after the last step."""
-        it = self._robots[robot]
-        position, orientation = pybullet.getBasePositionAndOrientation(it.body, physicsClientId=self.client)
-        linear, angular = pybullet.getBaseVelocity(it.body, physicsClientId=self.client)
-        return BodyState(Pose3D(position, orientation), linear, angular)
+            pybullet.changeDynamics(robot.body, -1, activationState=state, physicsClientId=self.client)
 
     def touching(self, robot: int) -> bool:
         """Whether the robot touches anything but the floor."""

@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from typing import Any, Dict, List
+from typing import Any, Dict, Iterator, List, Union
 
 import numpy as np
 
@@ -32,22 +32,80 @@ def load_urdf(model: RobotModel, client: int) -> int:
             raise RobotModelError(f"{model.name}: Bullet refused the robot: {error}") from error
 
 
+def shapes_of(geometry: Geometry, client: int) -> List[int]:
+    """Create the collision shapes of a static body; more than one only above MAX_TRIANGLES."""
+    if not isinstance(geometry, (Mesh, Walls)):
+        return [pybullet.createCollisionShape(**_primitive(geometry), physicsClientId=client)]
+    hollow = pybullet.GEOM_FORCE_CONCAVE_TRIMESH  # instead of the triangles' convex hull
+    return [
+        pybullet.createCollisionShape(**mesh, flags=hollow, physicsClientId=client)
+        for mesh in _meshes(_surface_triangles(geometry))
+    ]
+
+
 def visual_shapes(geometry: Geometry, client: int) -> List[int]:
     """Create the visual shapes of a geometry; planes, meshes and walls are visible from both sides."""
-    if isinstance(geometry, Mesh):
-        return _visual_meshes(geometry.corners, SOLID, client)
-    if isinstance(geometry, Walls):
-        return _visual_meshes(_wall_triangles(geometry), SOLID, client)
-    if isinstance(geometry, Plane):
-        return _visual_meshes(_plane_triangles(np.array(geometry.normal)), GROUND, client)
+    if isinstance(geometry, (Box, Sphere)):
+        return [pybullet.createVisualShape(**_primitive(geometry), rgbaColor=SOLID, physicsClientId=client)]
     if isinstance(geometry, Cylinder):
-        return _visual_meshes(_cylinder_triangles(geometry), SOLID, client, both_sides=False)
-    shape: Dict[str, Any]
-    if isinstance(geometry, Box):
-        shape = {"shapeType": pybullet.GEOM_BOX, "halfExtents": [size / 2 for size in geometry.size]}
+        corners, color = _cylinder_triangles(geometry), SOLID
+    elif isinstance(geometry, Plane):
+        corners, color = _both_sides(_plane_triangles(np.array(geometry.normal))), GROUND
     else:
-        shape = {"shapeType": pybullet.GEOM_SPHERE, "radius": geometry.radius}
-    return [int(pybullet.createVisualShape(rgbaColor=SOLID, physicsClientId=client, **shape))]
+        corners, color = _both_sides(_surface_triangles(geometry)), SOLID
+    edges = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = edges / np.maximum(np.linalg.norm(edges, axis=1, keepdims=True), 1e-30)
+    return [
+        pybullet.createVisualShape(
+            **mesh,
+            normals=np.repeat(normals[start : start + MAX_TRIANGLES], 3, axis=0).tolist(),
+            rgbaColor=color,
+            physicsClientId=client,
+        )
+        for start, mesh in zip(range(0, len(corners), MAX_TRIANGLES), _meshes(corners))
+    ]
+
+
+def _primitive(geometry: Geometry) -> Dict[str, Any]:
+    """pybullet's arguments for a shape without triangles."""
+    if isinstance(geometry, Box):
+        return {"shapeType": pybullet.GEOM_BOX, "halfExtents": [size / 2 for size in geometry.size]}
+    if isinstance(geometry, Cylinder):
+        return {"shapeType": pybullet.GEOM_CYLINDER, "radius": geometry.radius, "height": geometry.length}
+    if isinstance(geometry, Sphere):
+        return {"shapeType": pybullet.GEOM_SPHERE, "radius": geometry.radius}
+    if isinstance(geometry, Plane):
+        return {"shapeType": pybullet.GEOM_PLANE, "planeNormal": geometry.normal}
+    raise TypeError(f"no shape for {geometry!r}")
+
+
+def _meshes(corners: np.ndarray) -> Iterator[Dict[str, Any]]:
+    """pybullet's arguments for triangles (n, 3, 3) [m], in pieces of at most MAX_TRIANGLES."""
+    for start in range(0, len(corners), MAX_TRIANGLES):
+        vertices = corners[start : start + MAX_TRIANGLES].reshape(-1, 3)
+        yield {
+            "shapeType": pybullet.GEOM_MESH,
+            "vertices": vertices.tolist(),
+            "indices": list(range(len(vertices))),
+        }
+
+
+def _both_sides(corners: np.ndarray) -> np.ndarray:
+    """Triangles (2 n, 3, 3), visible from both sides, of (n, 3, 3), visible from where they run counter-clockwise."""
+    return np.stack([corners, corners[:, ::-1]], axis=1).reshape(-1, 3, 3)
+
+
+def _surface_triangles(surface: Union[Mesh, Walls]) -> np.ndarray:
+    """The triangles (n, 3, 3) [m] of a mesh or of walls, two for each wall.
+
+    Walls are one mesh, because Bullet visits every body at every step but finds a mesh's triangles by an index.
+    """
+    if isinstance(surface, Mesh):
+        return surface.corners
+    low = np.concatenate([surface.segments, np.zeros((len(surface.segments), 2, 1))], axis=-1)
+    high = low + [0.0, 0.0, surface.height]
+    (a, b), (c, d) = low.swapaxes(0, 1), high.swapaxes(0, 1)
+    return np.stack([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)], axis=1).reshape(-1, 3, 3)
 
 
 def _cylinder_triangles(cylinder: Cylinder) -> np.ndarray:
@@ -70,87 +128,3 @@ def _plane_triangles(normal: np.ndarray) -> np.ndarray:
     along = np.cross(normal, aside)
     a, b, c, d = aside + along, along - aside, -aside - along, aside - along
     return np.array([[a, b, c], [a, c, d]])
-
-
-def _visual_meshes(corners: np.ndarray, color: Any, client: int, both_sides: bool = True) -> List[int]:
-    """Visual shapes of triangles (n, 3, 3) [m], visible from where they run counter-clockwise, or from both sides."""
-    if both_sides:
-        corners = np.stack([corners, corners[:, ::-1]], axis=1).reshape(-1, 3, 3)
-    shapes = []
-    for start in range(0, len(corners), MAX_TRIANGLES):
-        piece = corners[start : start + MAX_TRIANGLES]
-        edges = np.cross(piece[:, 1] - piece[:, 0], piece[:, 2] - piece[:, 0])
-        normals = edges / np.maximum(np.linalg.norm(edges, axis=1, keepdims=True), 1e-30)
-        shapes.append(
-            int(
-                pybullet.createVisualShape(
-                    pybullet.GEOM_MESH,
-                    vertices=piece.reshape(-1, 3).tolist(),
-                    indices=list(range(3 * len(piece))),
-                    normals=np.repeat(normals, 3, axis=0).tolist(),
-                    rgbaColor=color,
-                    physicsClientId=client,
-                )
-            )
-        )
-    return shapes
-
-
-def shapes_of(geometry: Geometry, client: int) -> List[int]:
-    """Create the collision shapes of a static body; more than one only above MAX_TRIANGLES."""
-    if isinstance(geometry, Mesh):
-        return _mesh_shapes(geometry.corners, client)
-    if isinstance(geometry, Walls):
-        return _mesh_shapes(_wall_triangles(geometry), client)
-    return [_primitive_shape(geometry, client)]
-
-
-def _wall_triangles(walls: Walls) -> np.ndarray:
-    """Two triangles for each of n walls, (2 n, 3, 3) [m].
-
-    As one mesh, because Bullet visits every body at every step but finds a mesh's triangles by an index.
-    """
-    low = np.concatenate([walls.segments, np.zeros((len(walls.segments), 2, 1))], axis=-1)
-    high = low + [0.0, 0.0, walls.height]
-    (a, b), (c, d) = low.swapaxes(0, 1), high.swapaxes(0, 1)
-    return np.stack([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)], axis=1).reshape(-1, 3, 3)
-
-
-def _mesh_shapes(corners: np.ndarray, client: int) -> List[int]:
-    pieces = range(0, len(corners), MAX_TRIANGLES)
-    return [_mesh_shape(corners[start : start + MAX_TRIANGLES], client) for start in pieces]
-
-
-def _primitive_shape(geometry: Geometry, client: int) -> int:
-    if isinstance(geometry, Box):
-        return int(
-            pybullet.createCollisionShape(
-                pybullet.GEOM_BOX, halfExtents=[size / 2 for size in geometry.size], physicsClientId=client
-            )
-        )
-    if isinstance(geometry, Cylinder):
-        return int(
-            pybullet.createCollisionShape(
-                pybullet.GEOM_CYLINDER, radius=geometry.radius, height=geometry.length, physicsClientId=client
-            )
-        )
-    if isinstance(geometry, Sphere):
-        return int(pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=geometry.radius, physicsClientId=client))
-    if isinstance(geometry, Plane):
-        return int(
-            pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=geometry.normal, physicsClientId=client)
-        )
-    raise TypeError(f"no shape for {geometry!r}")
-
-
-def _mesh_shape(corners: np.ndarray, client: int) -> int:
-    """A collision shape of triangles (n, 3, 3) [m], hollow instead of their convex hull."""
-    return int(
-        pybullet.createCollisionShape(
-            pybullet.GEOM_MESH,
-            vertices=corners.reshape(-1, 3).tolist(),
-            indices=list(range(3 * len(corners))),
-            flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
-            physicsClientId=client,
-        )
-    )

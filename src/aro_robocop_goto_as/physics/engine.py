@@ -1,32 +1,29 @@
-"""What an engine does: move robots through a world, given their wheel speeds, one step at a time.
+"""The interface of a physics engine, which moves a fleet through a world, one step at a time.
 
-bullet.py and kinematic.py implement it. Robots are addressed by index, in the order in which they were added.
+bullet.py and kinematic.py implement it. Robots are addressed by index, in the order of the fleet.
 """
 
 from typing import Protocol, Sequence
 
 from ..geometry import Pose2D
-from ..robot.model import BodyState, Pair, RobotModel, RobotState
+from ..robot.fleet import Fleet
+from ..robot.model import BodyState
 from ..world.model import World
 
 
 class Engine(Protocol):
-    """Owned by one thread, which makes all calls."""
+    """A physics engine. One thread owns it and makes all calls; reset() has to be the first one."""
 
-    def add_robot(self, model: RobotModel, world_from_footprint: Pose2D) -> int:
-        """Place a robot at rest on the floor; returns its index."""
+    fleet: Fleet
 
-    def set_wheel_speeds(self, robot: int, wheel_speeds: Pair) -> None:
-        """Target speeds [rad/s] of the left and right wheel from the next step on."""
+    def advance(self, first: int, steps: int) -> None:
+        """Advance the base controllers and all robots by a number of steps, from step number `first` on."""
 
-    def step(self) -> None:
-        """Advance all robots by one step, whose length was given to the constructor."""
+    def read(self) -> None:
+        """Update the fleet's rows to the state after the last step."""
 
     def move_obstacles(self, time: float) -> None:
         """Put the moving obstacles where they are at `time` [s]; robots in their way are pushed."""
-
-    def state(self, robot: int) -> RobotState:
-        """The robot seen from above, after the last step."""
 
     def body(self, robot: int) -> BodyState:
         """The robot's base_link in space, after the last step."""

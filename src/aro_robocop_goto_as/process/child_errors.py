@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def send_child_errors_to(log: Path) -> None:
-    """From now on child processes write their errors to `log` (overwritten); this process still to the terminal.
+    """Redirect the standard error of future child processes, but not of this one, to `log` (overwritten).
 
     For libraries that start processes themselves: interrupted, those of dask and multiprocessing print tracebacks.
     """

@@ -1,21 +1,45 @@
-"""A program whose exit status is 0 if the X server that DISPLAY names answers.
+"""The X server that DISPLAY names: whether it answers, and the size of its screen.
 
-It imports nothing of this package, as ./robocop runs it before anything is installed.
+As a program it prints width and height, and its exit status is 0 if the server answers. It imports nothing of this
+package, as ./robocop uses it before anything is installed.
 """
 
 import ctypes
+import os
 import signal
+import subprocess
 import sys
+from typing import Optional, Tuple
 
-TIMEOUT = 5  # [s, wall] the alarm kills this program, which may be waiting inside Xlib
+TIMEOUT = 5  # [s, wall] the alarm kills the program, which may be waiting inside Xlib
+
+
+def screen_size() -> Optional[Tuple[int, int]]:
+    """Width and height of the screen [pixel]; None if no X server answers."""
+    if not os.environ.get("DISPLAY"):
+        return None
+    done = subprocess.run([sys.executable, "-IS", __file__], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    if done.returncode != 0:
+        return None
+    width, height = done.stdout.split()
+    return int(width), int(height)
+
+
+def answers() -> bool:
+    """Whether windows can be opened."""
+    return screen_size() is not None
 
 
 def main() -> None:
-    """Try to open the display."""
+    """Open the display, and print the size of its screen."""
     signal.alarm(TIMEOUT)
     x11 = ctypes.CDLL("libX11.so.6")
     x11.XOpenDisplay.restype = ctypes.c_void_p
-    sys.exit(not x11.XOpenDisplay(None))
+    display = ctypes.c_void_p(x11.XOpenDisplay(None))
+    if not display:
+        sys.exit(1)
+    screen = x11.XDefaultScreen(display)
+    print(x11.XDisplayWidth(display, screen), x11.XDisplayHeight(display, screen))
 
 
 if __name__ == "__main__":

@@ -6,9 +6,10 @@ from typing import Sequence
 
 import numpy as np
 
-from .caster_library import FanStruct, address
+from ..compiled import address
+from .caster_library import FanStruct
 from .cross_section import Slice
-from .scene import Plane, Scene
+from .scene import ScanPlane, Scene
 
 TURN = 2.0 * math.pi
 TOLERANCE = 1e-9  # [rad] as in caster.c
@@ -44,15 +45,15 @@ class Fan:
         From inside a circle its far side is seen; a segment is seen from both sides. A scan does not
         depend on which other robots are in `robots`. ValueError for an unknown robot or a pose that is not finite.
         """
-        numbers = np.array(robots, dtype=np.int64)
+        numbers = np.ascontiguousarray(robots, dtype=np.int64)
         distances = np.empty((len(numbers), self.samples))
         status = scene.aro_cast(
             ctypes.byref(self._struct),
             ctypes.byref(scene.struct),
             len(numbers),
-            numbers.ctypes.data,
+            address("robots", numbers, (None,), np.int64),
             max_range,
-            distances.ctypes.data,
+            address("distances", distances, (len(numbers), self.samples)),
         )
         if status:
             raise ValueError(REFUSED[status])
@@ -65,6 +66,6 @@ class Fan:
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([Plane(walls)], [0] * len(poses), np.zeros_like(poses))
+        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses))
         scene.footprints[:] = poses
         return self.scan(scene, range(len(poses)), reach)

@@ -12,7 +12,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#define ARO_CASTER_VERSION 1
+#include "grid.h"
+
+#define ARO_CASTER_VERSION 2
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define CULL (1.0 + 1e-9)      /* rounding errors never put a shape beyond max_range */
@@ -32,19 +34,6 @@ struct fan {
     const double *dx, *dy; /* (samples,) unit vectors */
 };
 
-/* Square tiles, row by row; tile t lists the segments members[starts[t]] to members[starts[t + 1] - 1]. */
-struct grid {
-    double x, y, side; /* [m] lower left corner, side of a tile */
-    int64_t columns, rows;
-    const int32_t *starts, *members;
-    int64_t n_everywhere;
-    const int32_t *everywhere; /* segments too long to be listed in tiles */
-    int32_t *tile_marks;       /* (columns * rows,) and (n_segments,): equal to `mark`: done in this scan */
-    int32_t *segment_marks;
-    int64_t n_segments;
-    int32_t mark;
-};
-
 /* What scanners at one height see. */
 struct plane {
     int64_t n_segments, n_circles, n_bodies;
@@ -56,7 +45,7 @@ struct plane {
     struct grid *grid;      /* of the segments; NULL: compare all of them */
 };
 
-struct fleet {
+struct scene {
     int64_t n_robots, n_planes;
     const double *footprints;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
     const double *mounts;    /* (n_robots, 3) the scanner's pose in its robot's frame */
@@ -74,7 +63,7 @@ struct scan {
 int aro_caster_version(void) { return ARO_CASTER_VERSION; }
 
 /* The beams from bearing low to low + span [rad], both within the turn of this number; 0 for none. */
-static int beams_between(const struct fan *fan, double low, double span, int64_t turn, int64_t *first, int64_t *last)
+static inline int beams_between(const struct fan *fan, double low, double span, int64_t turn, int64_t *first, int64_t *last)
 {
     double most = (double)(fan->samples - 1), start = low + TURN * (double)turn;
     double from = (start - TOLERANCE) * fan->per_angle, to = (start + span + TOLERANCE) * fan->per_angle;
@@ -85,6 +74,9 @@ static int beams_between(const struct fan *fan, double low, double span, int64_t
     *last = to < most ? (int64_t)to : fan->samples - 1;
     return *first <= *last;
 }
+
+/* The first turn of beams that can meet bearings from low, within one turn, to low + span [rad]. */
+static int64_t first_turn(double low, double span) { return low + span + 2.0 * TOLERANCE >= TURN ? -1 : 0; }
 
 /* A bearing [rad] counted from the first beam, within one turn. */
 static double from_first_beam(const struct fan *fan, double bearing)
@@ -132,7 +124,7 @@ static void cast_segment(const struct scan *scan, const double *segment)
     low = from_first_beam(fan, sweep >= 0.0 ? low : low + sweep);
     sweep = fabs(sweep);
 
-    for (turn = -1; turn <= fan->turns; turn++) {
+    for (turn = first_turn(low, sweep); turn <= fan->turns; turn++) {
         if (!beams_between(fan, low, sweep, turn, &first, &last))
             continue;
         for (i = first; i <= last; i++) {
@@ -163,7 +155,7 @@ static void cast_circle(const struct scan *scan, const double *circle)
     low = from_first_beam(fan, atan2(y, x) - half);
     free2 = away2 - radius * radius;
 
-    for (turn = -1; turn <= fan->turns; turn++) {
+    for (turn = first_turn(low, 2.0 * half); turn <= fan->turns; turn++) {
         if (!beams_between(fan, low, 2.0 * half, turn, &first, &last))
             continue;
         for (i = first; i <= last; i++) {
@@ -305,32 +297,32 @@ static void to_world(const double *pose, const double *local, double *x, double 
 }
 
 /* Distances (n_scans, samples) [m] of the scanners of these robots; +inf where nothing is within max_range [m]. */
-int aro_cast(const struct fan *fan, const struct fleet *fleet, int64_t n_scans, const int64_t *robots, double max_range,
+int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, const int64_t *robots, double max_range,
              double *distances)
 {
     int64_t i, k;
-    for (i = 0; i < 3 * fleet->n_robots; i++)
-        if (!isfinite(fleet->footprints[i]))
+    for (i = 0; i < 3 * scene->n_robots; i++)
+        if (!isfinite(scene->footprints[i]))
             return POSE_NOT_FINITE;
     for (i = 0; i < n_scans; i++)
-        if (robots[i] < 0 || robots[i] >= fleet->n_robots)
+        if (robots[i] < 0 || robots[i] >= scene->n_robots)
             return NO_SUCH_ROBOT;
-    for (i = 0; i < fleet->n_planes; i++) {
-        const struct plane *plane = fleet->planes + i;
+    for (i = 0; i < scene->n_planes; i++) {
+        const struct plane *plane = scene->planes + i;
         for (k = 0; k < plane->n_bodies; k++) {
             double *moved = plane->moved_bodies + 3 * k;
-            to_world(fleet->footprints + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
+            to_world(scene->footprints + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
             moved[2] = plane->bodies[3 * k + 2];
         }
     }
     for (i = 0; i < n_scans; i++) {
-        const double *footprint = fleet->footprints + 3 * robots[i], *mount = fleet->mounts + 3 * robots[i];
+        const double *footprint = scene->footprints + 3 * robots[i], *mount = scene->mounts + 3 * robots[i];
         double yaw = footprint[2] + mount[2];
         struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + i * fan->samples};
         to_world(footprint, mount, &scan.x, &scan.y);
         for (k = 0; k < fan->samples; k++)
             scan.nearest[k] = INFINITY;
-        cast_plane(&scan, fleet->planes + fleet->plane_of[robots[i]], robots[i]);
+        cast_plane(&scan, scene->planes + scene->plane_of[robots[i]], robots[i]);
         for (k = 0; k < fan->samples; k++)
             if (scan.nearest[k] > max_range)
                 scan.nearest[k] = INFINITY;

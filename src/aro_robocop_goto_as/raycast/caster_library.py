@@ -2,43 +2,32 @@
 
 import ctypes
 import functools
-from typing import List, Optional, Tuple
-
-import numpy as np
 
 from .. import compiled
+from ..compiled import members
 
-VERSION = 1  # of the structures below, as in caster.c
+VERSION = 2  # of the structures below and of movers and sensors.lidar, as in caster.c
 
 
 class FanStruct(ctypes.Structure):
     """`struct fan` of caster.c."""
 
     _fields_ = [
-        ("angle_min", ctypes.c_double),
-        ("per_angle", ctypes.c_double),
-        ("samples", ctypes.c_int64),
-        ("turns", ctypes.c_int64),
-        ("dx", ctypes.c_void_p),
-        ("dy", ctypes.c_void_p),
+        *members(ctypes.c_double, "angle_min per_angle"),
+        *members(ctypes.c_int64, "samples turns"),
+        *members(ctypes.c_void_p, "dx dy"),
     ]
 
 
 class GridStruct(ctypes.Structure):
-    """`struct grid` of caster.c."""
+    """`struct grid` of grid.h."""
 
     _fields_ = [
-        ("x", ctypes.c_double),
-        ("y", ctypes.c_double),
-        ("side", ctypes.c_double),
-        ("columns", ctypes.c_int64),
-        ("rows", ctypes.c_int64),
-        ("starts", ctypes.c_void_p),
-        ("members", ctypes.c_void_p),
+        *members(ctypes.c_double, "x y side"),
+        *members(ctypes.c_int64, "columns rows"),
+        *members(ctypes.c_void_p, "starts members"),
         ("n_everywhere", ctypes.c_int64),
-        ("everywhere", ctypes.c_void_p),
-        ("tile_marks", ctypes.c_void_p),
-        ("segment_marks", ctypes.c_void_p),
+        *members(ctypes.c_void_p, "everywhere tile_marks segment_marks"),
         ("n_segments", ctypes.c_int64),
         ("mark", ctypes.c_int32),
     ]
@@ -48,27 +37,18 @@ class PlaneStruct(ctypes.Structure):
     """`struct plane` of caster.c."""
 
     _fields_ = [
-        ("n_segments", ctypes.c_int64),
-        ("n_circles", ctypes.c_int64),
-        ("n_bodies", ctypes.c_int64),
-        ("segments", ctypes.c_void_p),
-        ("circles", ctypes.c_void_p),
-        ("bodies", ctypes.c_void_p),
-        ("owners", ctypes.c_void_p),
-        ("moved_bodies", ctypes.c_void_p),
+        *members(ctypes.c_int64, "n_segments n_circles n_bodies"),
+        *members(ctypes.c_void_p, "segments circles bodies owners moved_bodies"),
         ("grid", ctypes.POINTER(GridStruct)),
     ]
 
 
-class FleetStruct(ctypes.Structure):
-    """`struct fleet` of caster.c."""
+class SceneStruct(ctypes.Structure):
+    """`struct scene` of caster.c."""
 
     _fields_ = [
-        ("n_robots", ctypes.c_int64),
-        ("n_planes", ctypes.c_int64),
-        ("footprints", ctypes.c_void_p),
-        ("mounts", ctypes.c_void_p),
-        ("plane_of", ctypes.c_void_p),
+        *members(ctypes.c_int64, "n_robots n_planes"),
+        *members(ctypes.c_void_p, "footprints mounts plane_of"),
         ("planes", ctypes.POINTER(PlaneStruct)),
     ]
 
@@ -83,24 +63,16 @@ def load() -> ctypes.PyDLL:
     library.aro_cast.restype = ctypes.c_int
     library.aro_cast.argtypes = [
         ctypes.POINTER(FanStruct),
-        ctypes.POINTER(FleetStruct),
+        ctypes.POINTER(SceneStruct),
         ctypes.c_int64,
         ctypes.c_void_p,
         ctypes.c_double,
         ctypes.c_void_p,
     ]
+    library.aro_move.restype = ctypes.c_double
+    library.aro_move.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_double]
+    pointer, integer, unsigned = ctypes.c_void_p, ctypes.c_int64, ctypes.c_uint64
+    library.aro_normals.restype = None
+    library.aro_normals.argtypes = [unsigned, unsigned, unsigned, integer, pointer]
+    library.aro_measure.argtypes = [pointer, integer, integer, pointer, pointer, unsigned, unsigned, integer, pointer]
     return library
-
-
-def address(name: str, array: np.ndarray, shape: Tuple[Optional[int], ...], dtype: type = np.float64) -> int:
-    """The address of an array's data for C; None in `shape`: any length.
-
-    ValueError unless it is a contiguous array of exactly this type and shape, as C could read beyond it.
-    """
-    if not isinstance(array, np.ndarray) or array.dtype != dtype or not array.flags.c_contiguous:
-        kind = f"{array.dtype}, strides {array.strides}" if isinstance(array, np.ndarray) else type(array).__name__
-        raise ValueError(f"{name}: expected a C-contiguous array of {np.dtype(dtype)}, got {kind}")
-    if len(array.shape) != len(shape) or any(size not in (None, have) for size, have in zip(shape, array.shape)):
-        expected: List[object] = ["any" if size is None else size for size in shape]
-        raise ValueError(f"{name}: expected shape {tuple(expected)}, got {array.shape}")
-    return int(array.ctypes.data)

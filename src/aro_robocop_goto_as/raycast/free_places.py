@@ -42,19 +42,20 @@ class _Room:
 
 
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
-    """The pose itself if a robot's footprint has room there, else the nearest one of a grid that has, with its yaw.
+    """The pose itself if a robot's footprint has room there, else the nearest pose of a grid with room, of equal yaw.
 
-    ParameterError if there is none.
+    In the world of a map, the grid is laid around the free cell nearest to the pose. ParameterError if there is none.
     """
-    return _place(_Room(world, model), world.name, around)
+    return _place(_Room(world, model), world, around)
 
 
-def _place(room: _Room, name: str, around: Pose2D) -> Pose2D:
+def _place(room: _Room, world: World, around: Pose2D) -> Pose2D:
     if room.at(around.x, around.y) >= room.least:
         return around
+    centre = (around.x, around.y) if world.occupancy is None else world.occupancy.nearest_free(around.x, around.y)
     narrow: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
     for spacing, reach in SEARCHES:
-        for x, y in _outwards(around, spacing, reach):
+        for x, y in _outwards(centre, spacing, reach):
             distance = room.at(x, y)
             if distance >= CLEARANCE:
                 return Pose2D(x, y, around.yaw)
@@ -63,17 +64,17 @@ def _place(room: _Room, name: str, around: Pose2D) -> Pose2D:
     if narrow is not None:
         return narrow
     raise ParameterError(
-        f"spawn: world {name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
+        f"spawn: world {world.name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
         f"y {around.y:g}; give a spawn elsewhere"
     )
 
 
-def _outwards(around: Pose2D, spacing: float, reach: float) -> Iterator[Tuple[float, float]]:
-    """The points of a grid around a pose, nearest first."""
+def _outwards(centre: Tuple[float, float], spacing: float, reach: float) -> Iterator[Tuple[float, float]]:
+    """The points of a grid around a point [m], nearest first."""
     count = round(reach / spacing)
     cells = [(i * i + j * j, i, j) for i in range(-count, count + 1) for j in range(-count, count + 1)]
     for _, i, j in sorted(cells):
-        yield around.x + i * spacing, around.y + j * spacing
+        yield centre[0] + i * spacing, centre[1] + j * spacing
 
 
 def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> List[Pose2D]:
@@ -83,7 +84,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
     """
     walls, room = Slice(world, HEIGHT), _Room(world, model)
-    centre = _place(room, world.name, around)
+    centre = _place(room, world, around)
     places: List[Pose2D] = []
     for clearance in (CLEARANCE, room.least):
         places = _connected_places(walls, room, centre, count, clearance)

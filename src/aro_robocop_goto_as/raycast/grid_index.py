@@ -5,7 +5,8 @@ from typing import Tuple
 
 import numpy as np
 
-from .caster_library import GridStruct, address
+from ..compiled import address
+from .caster_library import GridStruct
 
 TILE = 1.0  # [m] side length, larger in worlds of more than MOST_TILES
 MOST_TILES = 1 << 20

@@ -5,16 +5,15 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
-from ..geometry import Pose2D
 from ..robot.model import RobotModel
 from ..world.model import Box, Cylinder, Obstacle, World
 from .beams import Fan
 from .cross_section import Slice
-from .scene import Plane, Scene
+from .scene import ScanPlane, Scene
 
 
 def circles_at(model: RobotModel, height: float) -> np.ndarray:
-    """The circles (k, [x, y, radius]) [m] in base_footprint as which scanners at a height [m] see a robot.
+    """What a scanner at a height [m] sees of a robot: circles (k, [x, y, radius]) [m] in base_footprint.
 
     Cylinders are exact. Boxes are approximated by a circle of equal area, independent of yaw.
     """
@@ -40,8 +39,9 @@ def _radius_at(obstacle: Obstacle, above: float) -> float:
 class Scanners:
     """One scanner per robot, all of the same kind; models differ in the height of their scanner."""
 
-    def __init__(self, models: Sequence[RobotModel], world: World) -> None:
-        self._models = tuple(models)
+    def __init__(self, models: Sequence[RobotModel], world: World, footprints: np.ndarray) -> None:
+        """footprints: (n, 3) x, y [m], yaw [rad] of all robots in the world, where they are at each scan."""
+        self._models, self._footprints = tuple(models), footprints
         self._heights = sorted({model.scan_height for model in models})
         self.change_world(world)
 
@@ -51,26 +51,23 @@ class Scanners:
         planes = [self._plane(height, walls) for height, walls in zip(self._heights, self._slices)]
         mounts = [model.base_from_scan.on_plane() for model in self._models]
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
-        self._scene = Scene(planes, self._plane_of, np.array([(pose.x, pose.y, pose.yaw) for pose in mounts]))
+        self._scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
 
-    def _plane(self, height: float, walls: Slice) -> Plane:
+    def _plane(self, height: float, walls: Slice) -> ScanPlane:
         """What scanners at one height see, the robots included."""
         circles = [circles_at(model, height) for model in self._models]
         owners = np.repeat(np.arange(len(self._models)), [len(of_one) for of_one in circles])
-        return Plane(walls, np.concatenate(circles), owners)
+        return ScanPlane(walls, np.concatenate(circles), owners)
 
     def walls(self, robot: int) -> Slice:
-        """The world's cross-section at the height of one robot's scanner, at time zero."""
-        return self._slices[self._plane_of[robot]].at(0.0)
+        """The world's cross-section at the height of one robot's scanner."""
+        return self._slices[self._plane_of[robot]]
 
-    def distances(
-        self, fan: Fan, max_range: float, world_from_footprints: Sequence[Pose2D], robots: Sequence[int], time: float
-    ) -> np.ndarray:
+    def distances(self, fan: Fan, max_range: float, robots: Sequence[int], time: float) -> np.ndarray:
         """Exact distances (r, samples) [m] seen by the given robots at a time [s]; +inf beyond max_range [m].
 
         In the plane that TF describes: scanners are level, at their height on an upright robot.
         """
         for walls in self._slices:
             walls.move(time)
-        self._scene.footprints[:] = [(pose.x, pose.y, pose.yaw) for pose in world_from_footprints]
         return fan.scan(self._scene, robots, max_range)

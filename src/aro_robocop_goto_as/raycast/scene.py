@@ -1,18 +1,19 @@
 """Scanners and all that they see, laid out in memory for the compiled ray caster."""
 
 import ctypes
-from typing import Sequence
+from typing import Optional, Sequence
 
 import numpy as np
 
-from .caster_library import FleetStruct, PlaneStruct, address, load
+from ..compiled import address
+from .caster_library import PlaneStruct, SceneStruct, load
 from .cross_section import Slice
 
 NO_BODIES = np.zeros((0, 3))
 NO_OWNERS = np.zeros(0, np.int64)
 
 
-class Plane:
+class ScanPlane:
     """What scanners at one height see: a world's cross-section and circles fixed to robots."""
 
     def __init__(self, walls: Slice, bodies: np.ndarray = NO_BODIES, owners: np.ndarray = NO_OWNERS) -> None:
@@ -37,8 +38,17 @@ class Plane:
 class Scene:
     """Robots with a scanner each, and what each scanner sees."""
 
-    def __init__(self, planes: Sequence[Plane], plane_of: Sequence[int], mounts: np.ndarray) -> None:
-        """Robot i's scanner is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`."""
+    def __init__(
+        self,
+        planes: Sequence[ScanPlane],
+        plane_of: Sequence[int],
+        mounts: np.ndarray,
+        footprints: Optional[np.ndarray] = None,
+    ) -> None:
+        """Robot i's scanner is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`.
+
+        footprints: (n, 3) [x m, y m, yaw rad] in the world, where the robots are at each scan; zeros if none are given
+        """
         self.aro_cast = load().aro_cast
         self._plane_of = np.array(plane_of, dtype=np.int64)
         count = len(self._plane_of)
@@ -46,11 +56,11 @@ class Scene:
             raise ValueError(f"plane_of: expected numbers from 0 to {len(planes) - 1}, got {list(plane_of)}")
         if any(not 0 <= owner < count for plane in planes for owner in plane.owners):
             raise ValueError(f"owners: expected numbers from 0 to {count - 1}")
-        self.footprints = np.zeros((count, 3))  # [x m, y m, yaw rad] in the world, to be filled by the user
+        self.footprints = np.zeros((count, 3)) if footprints is None else footprints
         self._mounts = mounts
         self._planes = list(planes)
         self._plane_structs = (PlaneStruct * len(planes))(*(plane.struct for plane in planes))
-        self.struct = FleetStruct(
+        self.struct = SceneStruct(
             count,
             len(planes),
             address("footprints", self.footprints, (count, 3)),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..robot.model import RobotModel
 from ..world.model import Mesh, Plane, World
-from .cross_section import Slice
+from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
 LOWEST = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
 LARGEST_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
@@ -37,14 +37,15 @@ class Surroundings:
     def __init__(self, world: World, heights: Tuple[float, ...], time: float = 0.0) -> None:
         self._names: List[str] = []  # of the outlines: one for each obstacle and height
         solid: List[bool] = []
-        segments, circles, owners, circle_owners = [np.zeros((0, 2, 2))], [np.zeros((0, 3))], [], []
+        segments, circles, owners, circle_owners = [NO_SEGMENTS], [NO_CIRCLES], [], []
         for obstacle in world.obstacles:
+            placed = replace(obstacle, pose=obstacle.at(time))
             for height in heights:
-                outline = Slice(replace(world, obstacles=(obstacle,)), height).at(time)
-                owners.append(np.full(len(outline.segments), len(self._names)))
-                circle_owners.append(np.full(len(outline.circles), len(self._names)))
-                segments.append(outline.segments)
-                circles.append(outline.circles)
+                of_one, circles_of_one = outline(placed, height)
+                segments.append(of_one)
+                circles.append(circles_of_one)
+                owners.append(np.full(len(of_one), len(self._names)))
+                circle_owners.append(np.full(len(circles_of_one), len(self._names)))
                 self._names.append(obstacle.name)
                 solid.append(not isinstance(obstacle.geometry, (Mesh, Plane)))
         self._is_solid = np.array(solid, dtype=bool)
@@ -68,7 +69,7 @@ class Surroundings:
         return Nearest(float(distances[best]), self._names[self._owners[best]])
 
     def _around(self, from_start: np.ndarray) -> np.ndarray:
-        """Which outlines are solid and around a point: a ray from it along x crosses them an odd number of times.
+        """Which solid outlines contain a point: those that a ray from it along x crosses an odd number of times.
 
         from_start: (m, 2) [m] from the start of each segment to the point
         """

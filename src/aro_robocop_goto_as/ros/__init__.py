@@ -1,1 +1,5 @@
-"""All of rospy: thin nodes around the core."""
+"""Everything that uses rospy: thin nodes around the core."""
+
+from . import lean_imports
+
+lean_imports.prepare()

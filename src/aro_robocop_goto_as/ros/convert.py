@@ -10,24 +10,18 @@ from nav_msgs.msg import Odometry as OdometryMsg
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
 from std_msgs.msg import Header
 
-from ..component_params import ImuNoise
 from ..errors import FrameError
 from ..geometry import FARTHEST, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
-from ..sensors.imu import ImuSample
+from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
-from ..simulation.clock import NANOSECONDS
+from ..simulation.schedule import NANOSECONDS
+from .covariances import ImuCovariances, diagonal
 
-# Variances of x, y, z, roll, pitch, yaw. A huge variance marks what a differential drive cannot measure. The figures
-# are those of Gazebo's differential drive plugin, which existing lab code was written against.
-ODOM_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
-TRUTH_VARIANCES = (1e-12,) * 6
-ORIENTATION_VARIANCE = 1e-6  # the simulated IMU's orientation is exact except for rounding
-REAL_IMU_VARIANCES = (0.0025, 0.02, 0.04)  # orientation, rates, accelerations of a TurtleBot3's firmware
 FULL_VOLTAGE, DESIGN_CAPACITY = 12.6, 1.8  # [V], [Ah] of a TurtleBot3's battery, three LiPo cells
-
-
-ImuCovariances = Tuple[List[float], List[float], List[float]]  # of orientation, rates, accelerations
+# Of a quaternion's length. A quarter turn typed as z 0.7 w 0.7 has a length of 0.99; what is farther from 1 is an error
+# of its sender, and normalising it would hide that. tf2 refuses transforms from 0.005 on.
+QUATERNION_TOLERANCE = 0.02
 
 
 def to_time(stamp_ns: int) -> Time:
@@ -40,35 +34,46 @@ def to_ns(time: Time) -> int:
     return time.secs * NANOSECONDS + time.nsecs
 
 
-def diagonal(variances: Tuple[float, ...]) -> List[float]:
-    """A row-major diagonal covariance, 6 x 6 or 3 x 3, with these variances."""
-    size = len(variances)
-    return [variances[row] if row == column else 0.0 for row in range(size) for column in range(size)]
-
-
 def to_quaternion(yaw: float) -> Quaternion:
     """A heading [rad] as a quaternion message."""
     return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))
 
 
-def from_pose_msg(pose: Pose) -> Pose2D:
-    """A geometry_msgs/Pose projected onto the plane."""
-    q = pose.orientation
-    return Pose2D(pose.position.x, pose.position.y, yaw_of((q.x, q.y, q.z, q.w)))
+def from_quaternion(q: Quaternion, unset_is_level: bool = False) -> Tuple[float, float, float, float]:
+    """A quaternion from another node, made one of length 1; FrameError where its length is not nearly that.
 
-
-def to_possible_pose(pose: Pose) -> Pose2D:
-    """A geometry_msgs/Pose from outside, projected onto the plane; FrameError if a robot can't be there.
-
-    Numbers that are finite but huge are refused too: distances computed from them do not fit into single precision.
+    `unset_is_level`: all zeros, which the sender of a request or a marker left out, mean no rotation.
     """
-    q = pose.orientation
-    if not all(abs(value) <= 2.0 for value in (q.x, q.y, q.z, q.w)):  # false for NaN
+    values = (q.x, q.y, q.z, q.w)
+    if unset_is_level and not any(values):
+        return (0.0, 0.0, 0.0, 1.0)
+    length = math.sqrt(sum(value * value for value in values))
+    if not abs(length - 1.0) <= QUATERNION_TOLERANCE:  # true for NaN
         raise FrameError(f"expected a quaternion of length 1, got x {q.x} y {q.y} z {q.z} w {q.w}")
-    x, y = pose.position.x, pose.position.y
-    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
-        raise FrameError(f"expected finite numbers within +-{FARTHEST:g} m, got x {x} y {y}")
-    return from_pose_msg(pose)
+    x, y, z, w = (value / length for value in values)
+    return x, y, z, w
+
+
+def require_near(where: str = "", **position: float) -> None:
+    """Raise FrameError unless a position is finite and within FARTHEST; `where` is the end of the sentence."""
+    if not all(abs(value) <= FARTHEST for value in position.values()):  # true for NaN
+        got = " ".join(f"{axis} {value}" for axis, value in position.items())
+        raise FrameError(f"expected finite numbers within +-{FARTHEST:g} m, got {got}{where}")
+
+
+def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:
+    """A geometry_msgs/Pose projected onto the plane, FrameError if a robot can't be there; see from_quaternion."""
+    orientation = from_quaternion(pose.orientation, unset_is_level)
+    require_near(x=pose.position.x, y=pose.position.y)
+    return Pose2D(pose.position.x, pose.position.y, yaw_of(orientation))
+
+
+def from_pose_msg_3d(pose: Pose, unset_is_level: bool = False) -> Pose3D:
+    """A geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
+    orientation = from_quaternion(pose.orientation, unset_is_level)
+    x, y, z = pose.position.x, pose.position.y, pose.position.z
+    require_near(x=x, y=y, z=z)
+    return Pose3D((x, y, z), orientation)
 
 
 def from_twist_msg(twist: Twist) -> Twist2D:
@@ -127,23 +132,16 @@ def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
     return JointState(Header(0, stamp, ""), list(WHEEL_JOINTS), angles, velocities, [])
 
 
-def imu_covariances(noise: ImuNoise, real: bool) -> ImuCovariances:
-    """The covariances of the noise that the simulator adds, or those that a real TurtleBot3 reports."""
-    variances = REAL_IMU_VARIANCES if real else (ORIENTATION_VARIANCE, noise.gyro**2, noise.accelerometer**2)
-    orientation, rates, accelerations = (diagonal((variance,) * 3) for variance in variances)
-    return orientation, rates, accelerations
-
-
-def to_imu(sample: ImuSample, stamp: Time, frame: str, covariances: ImuCovariances) -> Imu:
-    """An IMU sample with covariances from `imu_covariances`."""
+def to_imu(sample: np.ndarray, stamp: Time, frame: str, covariances: ImuCovariances) -> Imu:
+    """A sample (10,) of sensors.imu with covariances from `imu_covariances`."""
     orientation, rates, accelerations = covariances
     return Imu(
         Header(0, stamp, frame),
-        Quaternion(*sample.orientation),
+        Quaternion(*sample[ORIENTATION].tolist()),
         orientation,
-        Vector3(*sample.angular_velocity),
+        Vector3(*sample[RATES].tolist()),
         rates,
-        Vector3(*sample.linear_acceleration),
+        Vector3(*sample[FORCE].tolist()),
         accelerations,
     )
 

@@ -6,8 +6,8 @@ from typing import Dict, List, Tuple
 import rosgraph
 import rospy
 
-RESULT = "/result"  # the topic of an action server's results, after its name
-ACTION_RESULT = "ActionResult"  # the type of that topic is the action's name with this suffix
+# Topics of an action's server and clients, after its name; their types end in ActionResult and ActionGoal.
+RESULT, GOAL = "/result", "/goal"
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,18 @@ def topics_between(publisher: str, subscriber: str) -> List[str]:
 
 def action_servers() -> Dict[str, str]:
     """Action type of each action server, by name: {"/robocop_goto_as": "aro_robocop_goto_as/GoToPositionAction"}."""
+    return _actions(RESULT)
+
+
+def action_clients() -> Dict[str, str]:
+    """The same for the action servers that action clients look for, whether or not they exist."""
+    return _actions(GOAL)
+
+
+def _actions(suffix: str) -> Dict[str, str]:
+    kind = suffix[1:].capitalize()
     return {
-        topic.name[: -len(RESULT)]: topic.type[: -len("Result")]
+        topic.name[: -len(suffix)]: topic.type[: -len(kind)]
         for topic in published_topics()
-        if topic.name.endswith(RESULT) and topic.type.endswith(ACTION_RESULT)
+        if topic.name.endswith(suffix) and topic.type.endswith(f"Action{kind}")
     }

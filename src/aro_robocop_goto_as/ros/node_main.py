@@ -11,7 +11,8 @@ import rospy
 from ..errors import RobocopError
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
-from . import private_api
+from . import log_handlers
+from .rospy_internals import log_without_the_master, shutdown_has_begun, stop_registering_on_shutdown
 
 
 @contextlib.contextmanager
@@ -24,14 +25,17 @@ def node(name: str, **options: Any) -> Iterator[None]:
     for number in ending_signals():
         signal.signal(number, _shut_down)
     raise_descriptor_limit()
+    log_handlers.use()
+    stop_registering_on_shutdown()
     try:
         rospy.init_node(name, disable_signals=True, **options)
+        log_without_the_master()
         yield
     except RobocopError as error:
         rospy.logfatal("%s: %s", error.code, error)
         sys.exit(1)
     except rospy.ROSException as error:  # shutdown during start, or while publishing
-        if not private_api.shutdown_has_begun():
+        if not shutdown_has_begun():
             raise
         rospy.logdebug("%s", error)
 

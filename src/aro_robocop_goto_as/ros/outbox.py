@@ -1,4 +1,4 @@
-"""Messages of one step, sent together: one call writes them all to the sockets of their subscribers.
+"""Messages of one step, filled and sent together: one call of sender.c writes them all to their subscribers' sockets.
 
 rospy's way to a socket costs about as much Python as making the message: a lock, a test of the connection's state and
 a system call that releases and takes the interpreter's lock, for each message and each subscriber.
@@ -8,87 +8,123 @@ import ctypes
 import errno
 import functools
 import socket
-from array import array
-from typing import List, Sequence, Tuple
+import threading
+from typing import Any, Sequence, Set, Tuple
 
 from .. import compiled
+from ..compiled import members
 from .packed import PackedMessage
-from .private_api import count_message, count_sent, disconnect
 from .publishing import DirectPublisher, Outlet
+from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
 
-VERSION = 2  # of sender.c
-Send = Tuple[DirectPublisher, Outlet, PackedMessage]
+VERSION = 3  # of sender.c
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
+
+Posted = Tuple[DirectPublisher, PackedMessage]
+
+
+class _FieldStruct(ctypes.Structure):
+    """`struct field` of sender.c."""
+
+    _fields_ = [*members(ctypes.c_int64, "kind count"), *members(ctypes.c_void_p, "to source")]
+
+
+class _ParcelStruct(ctypes.Structure):
+    """`struct parcel` of sender.c."""
+
+    _fields_ = [("data", ctypes.c_void_p), *members(ctypes.c_int64, "size socket taken")]
+
+
+class _BatchStruct(ctypes.Structure):
+    """`struct batch` of sender.c."""
+
+    _fields_ = [
+        *members(ctypes.c_int64, "n_fields n_parcels n_first"),
+        ("fields", ctypes.POINTER(_FieldStruct)),
+        ("parcels", ctypes.POINTER(_ParcelStruct)),
+    ]
 
 
 @functools.lru_cache(maxsize=None)
 def _library() -> ctypes.PyDLL:
     library = compiled.load("sender", VERSION)
-    library.aro_send.restype = None
-    library.aro_send.argtypes = [ctypes.c_int64] + [ctypes.c_void_p] * 4
+    library.aro_send.restype = ctypes.c_int64
+    library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64]
     return library
 
 
-class Outbox:
-    """Used by one thread, for topics on which no other thread publishes and that are not latched."""
+class Batch:
+    """Messages that are sent together, again and again, to the present subscribers of their topics.
 
-    def __init__(self) -> None:
-        self._messages: List[Tuple[DirectPublisher, PackedMessage]] = []
-        self._send = _library().aro_send
+    One thread sends. No other one publishes on these topics, but for what rospy sends to a latched topic's new
+    subscribers; at most one of them is latched.
+    """
 
-    def put(self, topic: DirectPublisher, message: PackedMessage) -> None:
-        """Send a message with the next flush(). It must not be updated before."""
-        self._messages.append((topic, message))
+    def __init__(self, messages: Sequence[Posted], last: Sequence[Posted] = ()) -> None:
+        """`last`: messages that are not sent before all others are, such as the clock."""
+        self._messages = [*messages, *last]
+        self._parcels = [(*posted, outlet) for posted in self._messages for outlet in posted[0].outlets]
+        fields = [
+            _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
+            for _, message in self._messages
+            for field in message.fields
+        ]
+        parcels = [
+            _ParcelStruct(message.address, message.size, outlet.descriptor) for _, message, outlet in self._parcels
+        ]
+        self._struct = _BatchStruct(
+            len(fields),
+            len(parcels),
+            sum(len(topic.outlets) for topic, _ in messages),
+            (_FieldStruct * len(fields))(*fields),
+            (_ParcelStruct * len(parcels))(*parcels),
+        )
+        self._pointer, self._fill_and_send = ctypes.addressof(self._struct), _library().aro_send
+        locks = [lock for lock in (latch_lock(topic) for topic, _ in self._messages) if lock is not None]
+        self._lock: Any = locks[0] if locks else threading.Lock()
+        self._times = 0  # sent since the statistics were updated
 
-    def flush(self) -> None:
-        """Send everything, in the order in which it was put in.
+    def send(self, stamp_ns: int) -> None:
+        """Send everything at a simulated time [ns].
 
         A subscriber that takes nothing for publishing.STALL_LIMIT is disconnected. While one is waited for, that time
         passes for the others, too: a stopped node can have many topics.
         """
-        for topic, message in self._messages:
-            count_message(topic, message.size)
-        sends = [(topic, outlet, message) for topic, message in self._messages for outlet in topic.outlets]
-        self._messages.clear()
-        if len(sends) == 1 or len({outlet.connection for _, outlet, _ in sends}) < len(sends):
-            # For one message the arrays cost more than the call saves. In one call, the second of two messages on one
-            # connection (of topics remapped to one) could come between the parts of the first.
-            counts: Sequence[int] = [0] * len(sends)
-        else:
-            counts = self._send_at_once(sends)
+        self._times += 1
+        with self._lock:
+            if self._fill_and_send(self._pointer, stamp_ns):
+                self._finish()
+
+    def _finish(self) -> None:
+        """Send the rest of what was not sent whole; a subscriber for which that fails is disconnected."""
+        lost: Set[int] = set()  # ids of connections
         patient = True
-        for send, taken in zip(sends, counts):
-            _, outlet, message = send
-            if taken == message.size:
-                count_sent(outlet.connection, taken)
-            else:
-                patient = _finish(send, taken, patient) and patient
+        for (topic, message, outlet), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
+            if parcel.taken != message.size and id(outlet.connection) not in lost:
+                try:
+                    _finish_one(outlet, message, parcel.taken, patient)
+                except OSError as error:  # as rospy: this subscriber is lost, and only this one
+                    lost.add(id(outlet.connection))
+                    disconnect(topic, outlet.connection)
+                    patient = patient and not isinstance(error, BlockingIOError)
 
-    def _send_at_once(self, sends: Sequence[Send]) -> Sequence[int]:
-        """How many bytes of each message were sent without waiting, or -errno."""
-        sockets = array("i", [outlet.descriptor for _, outlet, _ in sends])
-        data = array("Q", [message.address for _, _, message in sends])
-        sizes = array("q", [message.size for _, _, message in sends])
-        taken = array("q", sizes)
-        self._send(len(sends), *(numbers.buffer_info()[0] for numbers in (sockets, data, sizes, taken)))
-        return taken
+    def count(self) -> None:
+        """Update rospy's statistics of these topics and connections."""
+        times, self._times = self._times, 0
+        for topic, message in self._messages:
+            count_messages(topic, times, message.size)
+        for _, message, outlet in self._parcels:
+            count_sent(outlet.connection, times, message.size)
 
 
-def _finish(send: Send, taken: int, patient: bool) -> bool:
-    """Send the rest of a message of which `taken` bytes were sent, or disconnect the subscriber on an error -taken.
+def _finish_one(outlet: Outlet, message: PackedMessage, taken: int, patient: bool) -> None:
+    """Send the rest of a message of which `taken` bytes were sent, or raise the OSError -taken.
 
-    Returns False if the subscriber has stalled: without patience at once, if it takes nothing more.
+    BlockingIOError if the subscriber has stalled: without patience at once, if it takes nothing more.
     """
-    topic, outlet, message = send
-    try:
-        if taken < 0 and taken not in LATER:
-            raise OSError(-taken, "send")
-        rest = memoryview(message.data)[max(0, taken) :]
-        if not patient:
-            rest = rest[outlet.socket.send(rest, socket.MSG_DONTWAIT) :]
-        outlet.socket.sendall(rest)
-    except OSError as error:  # as rospy: this subscriber is lost, and only this one
-        disconnect(topic, outlet.connection)
-        return not isinstance(error, BlockingIOError)
-    count_sent(outlet.connection, message.size)
-    return True
+    if taken < 0 and taken not in LATER:
+        raise OSError(-taken, "send")
+    rest = message.data.data[max(0, taken) :]
+    if not patient:
+        rest = rest[outlet.socket.send(rest, socket.MSG_DONTWAIT) :]
+    outlet.socket.sendall(rest)

@@ -1,47 +1,40 @@
-"""Messages of every step, serialized once and then updated in place, for `outbox` and `publishing.send`.
+"""Messages of every step, serialized once; sender.c then writes the simulation's numbers into their bytes.
 
 Building and serializing a message anew for each step was a quarter of the cost of a simulated second: genpy makes a
-Python object of every number. Here NumPy and struct write the numbers into the bytes that go to the sockets.
+Python object of every number.
 """
 
-import ctypes
-import itertools
-import math
 import struct
 from io import BytesIO
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 import genpy
 import numpy as np
 from geometry_msgs.msg import TransformStamped
-from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, JointState, LaserScan
 from tf2_msgs.msg import TFMessage
 
+from ..compiled import address
 from ..geometry import Pose2D, Twist2D
-from ..robot.model import RobotState
-from ..sensors.imu import ImuSample
+from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
-from ..simulation.clock import NANOSECONDS
 from . import convert
+from .covariances import ImuCovariances
+
+HEADER, STAMP, POSE, TWIST, DOUBLES, FLOATS = range(6)  # kinds of fields, as in sender.c
 
 _LENGTH = struct.Struct("<I")  # of a message, a string or a list
-_HEADER = struct.Struct("<III")  # seq, stamp.secs, stamp.nsecs; frame_id follows
-_STAMP = struct.Struct("<II")
-_POSE = struct.Struct("<7d")  # position or translation x y z, orientation x y z w
-_TWIST = struct.Struct("<6d")  # linear x y z, angular x y z
-_PAIR = struct.Struct("<2d")
+_HEADER = struct.calcsize("<III")  # bytes of seq, stamp.secs, stamp.nsecs; frame_id follows
+_POSE = struct.calcsize("<7d")  # position or translation x y z, orientation x y z w
+_COVARIANCE, _COVARIANCE_3 = 36 * 8, 9 * 8  # bytes
 _SCAN_FIGURES = 7 * 4  # bytes of angle_min to range_max
-_COVARIANCE = 36 * 8  # bytes
-_COVARIANCE_3 = 9 * 8  # bytes
 
-Stamp = Tuple[int, int]  # seconds, nanoseconds
+Row = np.ndarray  # of an array of the simulation, which changes in place
 
 
-def stamp_of(stamp_ns: int) -> Stamp:
-    """Simulated time [ns] as the two numbers of a ROS time."""
-    return divmod(stamp_ns, NANOSECONDS)
+def counter() -> np.ndarray:
+    """The number (1,) of the last message of a topic."""
+    return np.zeros(1, np.uint32)
 
 
 def _string(text: str) -> int:
@@ -49,142 +42,89 @@ def _string(text: str) -> int:
     return _LENGTH.size + len(text.encode())
 
 
-class PackedMessage:
-    """The bytes of a message as they are sent: its length, then its fields."""
+class Field(NamedTuple):
+    """A part of a message that changes: what it is made of, and where it is."""
 
-    def __init__(self, template: genpy.Message) -> None:
+    kind: int
+    offset: int  # bytes, from the message's length on
+    source: Optional[np.ndarray]  # numbers of the simulation, as sender.c expects them for this kind
+
+    @property
+    def size(self) -> int:
+        """The number of numbers in the source."""
+        return 0 if self.source is None else len(self.source)
+
+    @property
+    def source_address(self) -> Optional[int]:
+        """The address of the source, or None."""
+        kind = np.uint32 if self.kind == HEADER else np.float64
+        return None if self.source is None else address("source", self.source, (None,), kind)
+
+
+class PackedMessage:
+    """The bytes of a message as they are sent: its length, then its fields. Latched, it is the message sent last."""
+
+    def __init__(self, template: genpy.Message, fields: Sequence[Field] = ()) -> None:
         serialized = BytesIO()
         template.serialize(serialized)
         body = serialized.getvalue()
-        self.data = bytearray(_LENGTH.pack(len(body)) + body)
+        self.data = np.frombuffer(_LENGTH.pack(len(body)) + body, np.uint8).copy()
         self.size = len(self.data)
-        self._start = ctypes.c_char.from_buffer(self.data)  # while it exists, the bytes stay where they are
-        self.address = ctypes.addressof(self._start)
+        self.fields = tuple(fields)
+        self.address = address("data", self.data, (None,), np.uint8)
+
+    def serialize(self, buff: Any) -> None:
+        """As genpy's messages do it."""
+        buff.write(self.data[_LENGTH.size :].tobytes())
 
 
-class _Stamped(PackedMessage):
-    """A message that starts with a header; `_fields` is where the fields after it start."""
-
-    def __init__(self, template: genpy.Message, frame: str, numbers: Optional[Iterator[int]] = None) -> None:
-        """`numbers`: the header's sequence number in each message to come."""
-        super().__init__(template)
-        self._numbers = numbers or itertools.count(1)
-        self._fields = _LENGTH.size + _HEADER.size + _string(frame)
-
-    def _set_header(self, stamp: Stamp) -> None:
-        _HEADER.pack_into(self.data, _LENGTH.size, next(self._numbers) % 2**32, *stamp)
+def packed_clock() -> PackedMessage:
+    """A message on /clock."""
+    return PackedMessage(Clock(), [Field(STAMP, _LENGTH.size, None)])
 
 
-class PackedClock(PackedMessage):
-    """/clock."""
-
-    def __init__(self) -> None:
-        super().__init__(Clock())
-
-    def update(self, stamp: Stamp) -> "PackedClock":
-        """The message with a new time."""
-        _STAMP.pack_into(self.data, _LENGTH.size, *stamp)
-        return self
+def packed_scan(spec: LidarSpec, frame: str, ranges: Row, number: np.ndarray) -> PackedMessage:
+    """The ranges (n_beams,) [m] of one scanner; `number`: a counter."""
+    template = convert.to_scan(np.zeros(len(ranges)), spec, genpy.Time(), frame)
+    start = _LENGTH.size + _HEADER + _string(frame) + _SCAN_FIGURES + _LENGTH.size
+    return PackedMessage(template, [Field(HEADER, _LENGTH.size, number), Field(FLOATS, start, ranges)])
 
 
-class PackedScan(_Stamped):
-    """The ranges of one scanner, always the same number; `numbers` as in _Stamped."""
-
-    def __init__(self, spec: LidarSpec, frame: str, numbers: Optional[Iterator[int]] = None) -> None:
-        template: LaserScan = convert.to_scan(np.zeros(spec.samples), spec, genpy.Time(), frame)
-        super().__init__(template, frame, numbers)
-        start = self._fields + _SCAN_FIGURES + _LENGTH.size
-        self._ranges = np.frombuffer(self.data, "<f4", spec.samples, start)
-
-    def update(self, ranges: np.ndarray, stamp: Stamp) -> "PackedScan":
-        """The message with new ranges (n_beams,) [m]."""
-        self._set_header(stamp)
-        self._ranges[:] = ranges
-        return self
+def packed_odometry(frame: str, child: str, covariance: List[float], pose: Row, twist: Row) -> PackedMessage:
+    """Pose (3,) of `child` in `frame` with the twist (2,) in `child`; one covariance (36,) serves both."""
+    template = convert.to_odometry(Pose2D(), Twist2D(), genpy.Time(), frame, child, covariance)
+    start = _LENGTH.size + _HEADER + _string(frame) + _string(child)
+    fields = [Field(POSE, start, pose), Field(TWIST, start + _POSE + _COVARIANCE, twist)]
+    return PackedMessage(template, [Field(HEADER, _LENGTH.size, counter()), *fields])
 
 
-class PackedOdometry(_Stamped):
-    """Pose of `child` in `frame` with the twist in `child`; one covariance (36,) serves both."""
-
-    def __init__(self, frame: str, child: str, covariance: List[float]) -> None:
-        template: Odometry = convert.to_odometry(Pose2D(), Twist2D(), genpy.Time(), frame, child, covariance)
-        super().__init__(template, frame)
-        self._pose = self._fields + _string(child)
-        self._twist = self._pose + _POSE.size + _COVARIANCE
-
-    def update(self, pose: Pose2D, twist: Twist2D, stamp: Stamp) -> "PackedOdometry":
-        """The message with a new pose and twist."""
-        self._set_header(stamp)
-        _pack_pose(self.data, self._pose, pose)
-        _TWIST.pack_into(self.data, self._twist, twist.v, 0.0, 0.0, 0.0, 0.0, twist.w)
-        return self
+def packed_joint_state(angles: Row, speeds: Row) -> PackedMessage:
+    """Wheel angles (2,) [rad] and speeds (2,) [rad/s], left and right."""
+    template = convert.to_joint_state((0.0, 0.0), (0.0, 0.0), genpy.Time())
+    start = _LENGTH.size + _HEADER + _string("") + _LENGTH.size + sum(map(_string, template.name)) + _LENGTH.size
+    fields = [Field(DOUBLES, start, angles), Field(DOUBLES, start + 2 * 8 + _LENGTH.size, speeds)]
+    return PackedMessage(template, [Field(HEADER, _LENGTH.size, counter()), *fields])
 
 
-class PackedJointState(_Stamped):
-    """Angles and velocities of the wheels."""
-
-    def __init__(self) -> None:
-        template: JointState = convert.to_joint_state((0.0, 0.0), (0.0, 0.0), genpy.Time())
-        super().__init__(template, "")
-        names = _LENGTH.size + sum(map(_string, template.name))
-        self._angles = self._fields + names + _LENGTH.size
-        self._velocities = self._angles + _PAIR.size + _LENGTH.size
-
-    def update(self, state: RobotState, stamp: Stamp) -> "PackedJointState":
-        """The message with a new state."""
-        self._set_header(stamp)
-        _PAIR.pack_into(self.data, self._angles, *state.wheel_angles)
-        _PAIR.pack_into(self.data, self._velocities, *state.wheel_velocities)
-        return self
+def packed_imu(frame: str, covariances: ImuCovariances, sample: Row) -> PackedMessage:
+    """A sample (10,) of sensors.imu, with constant covariances."""
+    template = convert.to_imu(sample, genpy.Time(), frame, covariances)
+    start = _LENGTH.size + _HEADER + _string(frame)
+    fields = [Field(HEADER, _LENGTH.size, counter())]
+    for part, covariance in ((ORIENTATION, _COVARIANCE_3), (RATES, _COVARIANCE_3), (FORCE, 0)):
+        fields.append(Field(DOUBLES, start, sample[part]))
+        start += sample[part].nbytes + covariance
+    return PackedMessage(template, fields)
 
 
-class PackedImu(_Stamped):
-    """Orientation, rates and accelerations with constant covariances."""
-
-    def __init__(self, frame: str, covariances: convert.ImuCovariances) -> None:
-        zeros = np.zeros(3)
-        template: Imu = convert.to_imu(ImuSample((0.0, 0.0, 0.0, 1.0), zeros, zeros), genpy.Time(), frame, covariances)
-        super().__init__(template, frame)
-        rates = self._fields + 4 * 8 + _COVARIANCE_3
-        accelerations = rates + 3 * 8 + _COVARIANCE_3
-        self._orientation, self._rates, self._accelerations = (
-            np.frombuffer(self.data, "<f8", size, start)
-            for size, start in ((4, self._fields), (3, rates), (3, accelerations))
-        )
-
-    def update(self, sample: ImuSample, stamp: Stamp) -> "PackedImu":
-        """The message with a new sample."""
-        self._set_header(stamp)
-        self._orientation[:] = sample.orientation
-        self._rates[:] = sample.angular_velocity
-        self._accelerations[:] = sample.linear_acceleration
-        return self
-
-
-class PackedTransforms(PackedMessage):
-    """One /tf message with transforms between fixed pairs of frames."""
-
-    def __init__(self, frames: Sequence[Tuple[str, str]]) -> None:
-        """`frames`: parent and child of each transform."""
-        transforms: List[TransformStamped] = [
-            convert.to_transform(parent, child, Pose2D(), genpy.Time()) for parent, child in frames
-        ]
-        super().__init__(TFMessage(transforms))
-        self._starts: List[Tuple[int, int]] = []  # of each transform's header and pose
-        start = 2 * _LENGTH.size
-        for parent, child in frames:
-            pose = start + _HEADER.size + _string(parent) + _string(child)
-            self._starts.append((start, pose))
-            start = pose + _POSE.size
-
-    def update(self, poses: Sequence[Pose2D], stamp: Stamp) -> "PackedTransforms":
-        """The message with a new parent_from_child of each pair."""
-        for (header, at), pose in zip(self._starts, poses):
-            _HEADER.pack_into(self.data, header, 0, *stamp)
-            _pack_pose(self.data, at, pose)
-        return self
-
-
-def _pack_pose(data: bytearray, start: int, pose: Pose2D) -> None:
-    half = pose.yaw / 2.0
-    _POSE.pack_into(data, start, pose.x, pose.y, 0.0, 0.0, 0.0, math.sin(half), math.cos(half))
+def packed_transforms(transforms: Sequence[Tuple[str, str, Row]]) -> PackedMessage:
+    """One /tf message with transforms: parent, child, and parent_from_child (3,)."""
+    template: List[TransformStamped] = []
+    fields, start = [], 2 * _LENGTH.size
+    for parent, child, pose in transforms:
+        template.append(convert.to_transform(parent, child, Pose2D(), genpy.Time()))
+        fields.append(Field(HEADER, start, None))
+        start += _HEADER + _string(parent) + _string(child)
+        fields.append(Field(POSE, start, pose))
+        start += _POSE
+    return PackedMessage(TFMessage(template), fields)

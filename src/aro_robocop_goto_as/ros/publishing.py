@@ -10,14 +10,13 @@ from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
 
-from .packed import PackedMessage
-from .private_api import connections_of, write_message
+from .rospy_internals import connections_of
 
 STALL_LIMIT = 2  # [s, wall] after which a subscriber that accepts no data is disconnected, so that it cannot block us
 
 
 class Outlet(NamedTuple):
-    """A subscriber's connection, and a duplicate of its socket: open, whoever closes the connection meanwhile."""
+    """A subscriber's connection, with a duplicate of its socket that stays open even if the connection is closed."""
 
     connection: Any
     socket: socket.socket
@@ -86,15 +85,10 @@ def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
 def publisher(
     topic: str, kind: Any, latch: bool = False, on_change: Callable[[], None] = lambda: None
 ) -> DirectPublisher:
-    """A DirectPublisher.
+    """Advertise a topic.
 
     `on_change` is called, from rospy's threads, when a subscriber connects or disconnects.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # rospy advises a queue_size, which would drop messages
         return DirectPublisher(topic, kind, latch, on_change)
-
-
-def send(topic: rospy.Publisher, message: PackedMessage) -> None:
-    """Publish a packed message at once. It may be updated again when this returns."""
-    write_message(topic, message.data)

@@ -2,14 +2,20 @@
 
 import threading
 import time
-from typing import Callable
+from typing import Callable, TypeVar
 
 import rospy
 
-from ..simulation.clock import NANOSECONDS
-from . import convert, private_api
+from ..simulation.schedule import NANOSECONDS
+from . import convert
+from .rospy_internals import clock_condition
 
 POLL = 0.02  # [s, wall] the longest time between two calls of `interrupted`, also while /clock is paused
+T = TypeVar("T")
+
+
+def _ros_time_ns() -> int:
+    return convert.to_ns(rospy.get_rostime())
 
 
 class Ticker:
@@ -18,11 +24,15 @@ class Ticker:
     On simulated time those are the steps at which scan and odometry are stamped.
     """
 
-    def __init__(self, period: float, interrupted: Callable[[], bool]) -> None:
+    def __init__(
+        self, period: float, interrupted: Callable[[], bool], now_ns: Callable[[], int] = _ros_time_ns
+    ) -> None:
+        """`period` [s]; `now_ns` is the clock [ns]."""
         self._period_ns = int(round(period * NANOSECONDS))
         self._interrupted = interrupted
         self._wall = threading.Condition()
-        self._next_ns = self._first_after(convert.to_ns(rospy.get_rostime()))
+        self._now_ns = now_ns
+        self._next_ns = self._first_after(now_ns())
         self.tick_ns = 0  # time of the last tick
 
     def _first_after(self, now_ns: int) -> int:
@@ -30,11 +40,11 @@ class Ticker:
 
     def wait(self) -> bool:
         """Wait for the next tick; False when `interrupted` returned true before it."""
-        clock = private_api.clock_condition()
+        clock = clock_condition()
         condition = clock or self._wall
         with condition:
             while not self._interrupted():
-                now = convert.to_ns(rospy.get_rostime())
+                now = self._now_ns()
                 if now >= self._next_ns:
                     self.tick_ns = self._next_ns + (now - self._next_ns) // self._period_ns * self._period_ns
                     self._next_ns = self.tick_ns + self._period_ns
@@ -46,11 +56,14 @@ class Ticker:
         return False
 
 
-def wait_until(condition: Callable[[], bool], timeout: float, poll: float = 0.01) -> bool:
-    """Whether a condition became true within `timeout` [s, wall], which passes also while /clock is paused."""
+def wait_until(condition: Callable[[], T], timeout: float, poll: float = 0.01) -> T:
+    """The first true value of a condition, else its last one after `timeout` [s, wall] or on shutdown.
+
+    Wall time passes also while /clock is paused.
+    """
     deadline = time.monotonic() + timeout
-    while not condition():
-        if time.monotonic() >= deadline or rospy.is_shutdown():
-            return condition()
+    while True:
+        value = condition()
+        if value or time.monotonic() >= deadline or rospy.is_shutdown():
+            return value
         time.sleep(poll)
-    return True

@@ -50,26 +50,16 @@ class CameraImage:
 
 def projection(spec: CameraSpec) -> List[float]:
     """OpenGL's projection matrix, column-major, for a renderer that samples at integer pixels from the lower left."""
-    x, y = 2.0 * spec.focal / spec.width, 2.0 * spec.focal / spec.height
     deep = spec.far - spec.near
-    return [
-        x,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        y,
-        0.0,
-        0.0,
-        1.0 / spec.width,
-        1.0 / spec.height,
-        -(spec.far + spec.near) / deep,
-        -1.0,
-        0.0,
-        0.0,
-        -2.0 * spec.far * spec.near / deep,
-        0.0,
-    ]
+    matrix = np.array(
+        [
+            [2.0 * spec.focal / spec.width, 0.0, 1.0 / spec.width, 0.0],
+            [0.0, 2.0 * spec.focal / spec.height, 1.0 / spec.height, 0.0],
+            [0.0, 0.0, -(spec.far + spec.near) / deep, -2.0 * spec.far * spec.near / deep],
+            [0.0, 0.0, -1.0, 0.0],
+        ]
+    )
+    return [float(value) for value in matrix.T.ravel()]
 
 
 def depth_of(buffer: np.ndarray, spec: CameraSpec) -> np.ndarray:

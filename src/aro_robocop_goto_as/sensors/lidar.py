@@ -1,11 +1,25 @@
 """A planar laser scanner: exact distances in a cross-section of the world, and ranges with the scanner's errors."""
 
-from typing import Dict
+import ctypes
+import math
+from typing import Dict, Sequence
 
 import numpy as np
 
+from ..compiled import address, members
 from ..raycast.beams import Fan
+from ..raycast.caster_library import load
 from .scan_profiles import LidarSpec
+
+
+class _LidarStruct(ctypes.Structure):
+    """`struct lidar` of lidar.c."""
+
+    _fields_ = [
+        *members(ctypes.c_double, "range_min range_max noise step too_near no_return"),
+        ("n_accuracy", ctypes.c_int64),
+        ("accuracy", ctypes.c_void_p),
+    ]
 
 
 class Lidar:
@@ -15,36 +29,43 @@ class Lidar:
         self.spec = spec
         self.fan = Fan(spec.angle_min, spec.increment, spec.samples)
         self._turns: Dict[int, Lidar] = {}  # the same scanner by number of beams
+        self._accuracy = np.array(spec.accuracy, dtype=float).reshape(-1, 3)
+        self._struct = _LidarStruct(
+            spec.range_min,
+            spec.range_max,
+            spec.noise,
+            spec.step,
+            *((0.0, 0.0) if spec.zero_is_none else (-math.inf, math.inf)),  # as in REP-117, or as in the LDS drivers
+            len(self._accuracy),
+            address("accuracy", self._accuracy, (None, 3)),
+        )
+        self._measure = load().aro_measure
 
     def next_turn(self, rng: np.random.Generator) -> "Lidar":
         """The scanner for one revolution, whose number of beams varies with the speed of the scanner's motor."""
-        if not self.spec.varying:
-            return self
         low, high = self.spec.samples - self.spec.varying, self.spec.samples + self.spec.varying
         samples = max(2, int(rng.integers(low, high, endpoint=True)))
         if samples not in self._turns:
             self._turns[samples] = Lidar(self.spec.with_samples(samples))
         return self._turns[samples]
 
-    def measure(self, distances: np.ndarray, noise: np.ndarray) -> np.ndarray:
-        """Ranges [m] from exact distances [m] and standard normal noise, all of the same shape.
+    def measure(self, distances: np.ndarray, robots: Sequence[int], seed: int, step: int, ranges: np.ndarray) -> None:
+        """Measure exact distances (r, samples) [m] of these robots, and write them to their rows of `ranges`.
 
+        ranges: (n, samples) [m]. The noise depends on seed, robot and step.
         As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
-        spec = self.spec
-        ranges = distances + (range_noise(distances, noise, spec) if spec.accuracy else spec.noise * noise)
-        near, far = ranges < spec.range_min, ranges > spec.range_max
-        if spec.step:
-            ranges = np.round(ranges / spec.step) * spec.step
-        ranges[near] = 0.0 if spec.zero_is_none else -np.inf
-        ranges[far] = 0.0 if spec.zero_is_none else np.inf
-        return ranges
-
-
-def range_noise(distances: np.ndarray, noise: np.ndarray, spec: LidarSpec) -> np.ndarray:
-    """Range errors [m] from a data sheet's accuracy, taken as two sigma and as the maximum."""
-    bounds = np.array([entry.up_to for entry in spec.accuracy])
-    entry = np.minimum(np.searchsorted(bounds, distances), len(bounds) - 1)
-    metres, shares = (np.array([part[i] for part in spec.accuracy]) for i in (1, 2))
-    limits = metres[entry] + shares[entry] * np.minimum(distances, spec.range_max)
-    return limits * np.clip(noise / 2.0, -1.0, 1.0)
+        samples, numbers = self.spec.samples, np.array(robots, dtype=np.int64)
+        refused = self._measure(
+            ctypes.byref(self._struct),
+            len(robots),
+            samples,
+            address("robots", numbers, (None,), np.int64),
+            address("distances", distances, (len(robots), samples)),
+            seed,
+            step,
+            len(ranges),
+            address("ranges", ranges, (None, samples)),
+        )
+        if refused:
+            raise ValueError(f"robots: expected numbers from 0 to {len(ranges) - 1}, got {robots}")

@@ -1,4 +1,4 @@
-"""Repeatable sensor noise: a function of seed, stream and step, whoever asks for it and in whatever order."""
+"""Repeatable sensor noise: it depends on seed, stream and step only, not on the order of the calls."""
 
 import numpy as np
 

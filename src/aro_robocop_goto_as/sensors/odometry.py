@@ -1,29 +1,93 @@
-"""Wheel odometry: pose and twist by dead reckoning from wheel angles."""
+"""Wheel odometry of a fleet, with its configured errors, or the true poses in the world."""
 
-from typing import NamedTuple
+import ctypes
+from typing import Optional
 
-from ..geometry import STANDSTILL, Pose2D, Twist2D, arc, wrap_angle
-from ..robot.model import Pair
+import numpy as np
 
-
-class Odometry(NamedTuple):
-    """Pose of base_footprint in odom, mean twist since the previous update, and the wheel angles at this update."""
-
-    odom_from_footprint: Pose2D
-    twist: Twist2D
-    wheel_angles: Pair  # left, right [rad], never wrapped
+from ..compiled import address, members
+from ..geometry import Pose2D
+from ..params import OdometryParams
+from ..robot.fleet import Fleet, library
 
 
-def starting(wheel_angles: Pair) -> Odometry:
-    """Odometry at zero, whatever the wheel angles."""
-    return Odometry(Pose2D(), STANDSTILL, wheel_angles)
+class _OdometersStruct(ctypes.Structure):
+    """`struct odometers` of odometry.c."""
+
+    _fields_ = [
+        ("n", ctypes.c_int64),
+        *members(ctypes.c_void_p, "wheels poses twists read counted rolled"),
+        *members(ctypes.c_double, "slip tick"),
+    ]
 
 
-def integrate(before: Odometry, wheel_angles: Pair, dt: float, radius: float, separation: float) -> Odometry:
-    """Odometry `dt` [s] later, along the circular arc that the wheels' travel implies; radius and separation in [m]."""
-    pose, _, (left_before, right_before) = before
-    left, right = (wheel_angles[0] - left_before) * radius, (wheel_angles[1] - right_before) * radius
-    distance, turn = (left + right) / 2.0, (right - left) / separation
-    dx, dy = arc(pose.yaw, distance, turn)
-    after = Pose2D(pose.x + dx, pose.y + dy, wrap_angle(pose.yaw + turn))
-    return Odometry(after, Twist2D(distance / dt, turn / dt), wheel_angles)
+class Odometers:
+    """One odometry per robot: wheel odometry that starts at zero, or the true pose in the world.
+
+    poses: (n, 3) odom_from_footprint at the latest update: x, y [m], yaw [rad]
+    twists: (n, 2) mean velocity since the update before: v [m/s], w [rad/s]
+    """
+
+    def __init__(self, params: OdometryParams, fleet: Fleet, rate: int) -> None:
+        """Updated at `rate` [Hz]."""
+        n = len(fleet)
+        self._fleet = fleet
+        self.in_world = params.odom_source == "world"
+        self.slipping = params.odom_slip > 0.0 and not self.in_world  # whether update() needs noise
+        self._tick = params.encoder_tick
+        self._wheels = fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
+        self.poses, self.twists = np.zeros((n, 3)), np.zeros((n, 2))
+        self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
+        self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
+        self._struct = _OdometersStruct(
+            n,
+            address("wheels", self._wheels, (n, 2)),
+            address("poses", self.poses, (n, 3)),
+            address("twists", self.twists, (n, 2)),
+            address("read", self._read, (n, 2)),
+            address("counted", self._counted, (n, 2)),
+            address("rolled", self._rolled, (n, 2)),
+            params.odom_slip,
+            self._tick,
+        )
+        self._noise = np.zeros((n, 2))
+        self._arguments = (
+            ctypes.addressof(self._struct),
+            fleet.struct.wheel_angles,
+            address("noise", self._noise, (n, 2)),
+            1.0 / rate,
+        )
+        self._integrate = library().aro_odometry
+        self.reset()
+
+    def reset(self) -> None:
+        """Start at zero, or at the true poses, at the wheels' present angles."""
+        self.poses[:], self.twists[:] = 0.0, 0.0
+        self._read[:] = self.joint_angles()
+        self._counted[:] = self._rolled[:] = self._fleet.wheel_angles
+        if self.in_world:
+            self.update()
+
+    def joint_angles(self) -> np.ndarray:
+        """Wheel angles (n, 2) [rad] at the resolution of the encoders, without slip."""
+        angles = self._fleet.wheel_angles
+        return np.floor(angles / self._tick) * self._tick if self._tick else angles
+
+    def update(self, noise: Optional[np.ndarray] = None) -> None:
+        """Update all odometers to the fleet's present state; noise of slipping wheels: (n, 2) standard normal."""
+        if self.in_world:
+            self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
+            return
+        if self.slipping:
+            self._noise[:] = 0.0 if noise is None else noise
+        self._integrate(*self._arguments)
+
+    def pose_now(self, robot: int) -> Pose2D:
+        """odom_from_footprint as the next update will see it, without the slip that it draws."""
+        rows = (self.poses, self.twists, self._read, self._counted, self._rolled)
+        before = [row.copy() for row in rows]
+        self.update()
+        pose = Pose2D(*self.poses[robot].tolist())
+        for row, values in zip(rows, before):
+            row[:] = values
+        return pose

@@ -1,8 +1,9 @@
 """The robots' cameras: who has one, and what they see."""
 
-from typing import Callable, Dict, Mapping, Optional, Sequence
+from typing import Callable, Dict, Optional, Sequence
 
 from ..geometry import Pose3D, compose3
+from ..params import CameraParams
 from ..robot.model import RobotModel
 from ..sensors.camera import CameraImage, CameraSpec, ImageRenderer
 from ..world.model import World
@@ -14,18 +15,18 @@ class Cameras:
     """At most one camera per robot. The renderer holds the world, so it is made again after the world has changed."""
 
     def __init__(
-        self, models: Sequence[RobotModel], specs: Mapping[str, CameraSpec], make_renderer: Optional[MakeRenderer]
+        self, models: Sequence[RobotModel], params: CameraParams, make_renderer: Optional[MakeRenderer]
     ) -> None:
-        """`specs` by the models' names; without a renderer there are no images."""
+        """Without a renderer there are no images."""
         self._models = tuple(models)
-        self._specs = specs
+        self._params = params
         self._make_renderer = make_renderer
         self._renderer: Optional[ImageRenderer] = None  # made for the first image
 
     def spec(self, robot: int) -> Optional[CameraSpec]:
         """The camera of a robot; None if its model has none."""
         model = self._models[robot]
-        return None if model.base_from_camera is None else self._specs[model.name]
+        return None if model.base_from_camera is None else self._params.spec(model.name)
 
     def images(
         self, world: World, world_from_bases: Sequence[Pose3D], robots: Sequence[int], time: float

@@ -1,18 +1,18 @@
-"""Velocity commands: applied at once; in lockstep at the end of the tick that they answer, for which time is held."""
+"""Velocity commands: applied at once, or in lockstep at the end of the control tick, for which time is held."""
 
-import contextlib
-import queue
-from typing import Dict, List, NamedTuple, Optional
+from dataclasses import dataclass, field
+from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional
 
-from ..component_params import LockstepParams
 from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
+from ..params import LockstepParams
+from .jobs import Clock
 from .lockstep import Controller, Lockstep
-from .loop_interface import LoopInterface
 from .simulator import Simulator
-from .wall_clock import Clock, Job, Jobs
 
-DISCONNECT_POLL = 0.05  # [s, wall] between two looks for disconnected controllers while waiting for their answers
+DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controllers while waiting for their answers
+
+NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
 
 
 class _Pending(NamedTuple):
@@ -20,23 +20,32 @@ class _Pending(NamedTuple):
     twist: Twist2D
 
 
-class Controllers:
-    """The nodes that command robots. The loop's thread calls all methods."""
+@dataclass
+class TickReport:
+    """How a control tick ended."""
 
-    def __init__(
-        self, simulator: Simulator, params: LockstepParams, interface: LoopInterface, clock: Clock, jobs: "Jobs[Job]"
-    ) -> None:
-        """`jobs` are run while time is held; they bring the answers."""
+    late: List[Controller] = field(default_factory=list)  # did not answer in time: time goes on without them
+    gone: List[Controller] = field(default_factory=list)  # disconnected: their robots are stopped
+
+
+class Controllers:
+    """The nodes that command robots. The simulation's owner calls all methods.
+
+    A control tick in lockstep: begin_tick(), then jobs are run for as long as hold() says, then end_tick().
+    """
+
+    def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
-        self.timeout = params.timeout
+        self.timeout = params.lockstep_timeout
         self.lockstep: Lockstep[Controller] = Lockstep()
-        self._rate = params.control_rate
+        self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
-        self._interface = interface
         self._clock = clock
-        self._jobs = jobs
         self._pending: Dict[int, _Pending] = {}  # lockstep: newest command of each robot, applied at the tick's end
-        self._resets = 0
+        self._refused: List[CommandError] = []
+        self._report = TickReport()
+        self._held_since = self._next_look = 0.0  # [s, wall]
+        self._is_reset = False  # since the tick began
 
     def command(self, controller: Controller, twist: Twist2D) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
@@ -58,70 +67,76 @@ class Controllers:
         if twist is not None:
             self._pending[controller.robot] = _Pending(controller, twist)
 
-    def _apply(self, robot: int, twist: Twist2D) -> None:
-        try:
-            self._simulator.command(twist, robot)
-        except CommandError as error:
-            self._interface.command_refused(error)
-
     @property
     def tick(self) -> int:
         """Number of the control tick at which simulated time stands, or which it runs towards."""
-        return -(-self._simulator.steps * self._rate // self._simulator.config.rates.physics)
+        return -(-self._simulator.steps * self._rate // self._simulator.rate)
 
-    def await_answers(self) -> float:
-        """Hold simulated time until every controller has answered this tick or timed out, then apply the commands.
-
-        Returns how long that took [s, wall].
-        """
-        self.enroll_answering()
-        self.lockstep.tick = self.tick
-        started, resets = self._clock.now(), self._resets
-        next_look = started + DISCONNECT_POLL
-        while self.lockstep.missing() and self._resets == resets and not self._interface.stopped():
-            now = self._clock.now()
-            remaining = started + self.lockstep.patience() * self.timeout - now
-            if remaining <= 0.0:
-                late = self.lockstep.give_up()
-                if late:
-                    self._interface.controllers_late(late)
-                break
-            if now >= next_look:
-                self._forget_disconnected()
-                next_look = now + DISCONNECT_POLL
-                continue
-            with contextlib.suppress(queue.Empty):
-                self._clock.get(self._jobs, min(remaining, next_look - now))()
-        pending, self._pending = self._pending, {}
-        for robot, command in pending.items():
-            self._apply(robot, command.twist)
-        return self._clock.now() - started
-
-    def enroll_answering(self) -> None:
-        """Controllers that are connected to answer ticks are waited for from their first tick on."""
+    def enroll(self, answering: NodesOf) -> None:
+        """Wait from now on for the controllers that are connected to answer ticks."""
         if self.in_lockstep:
             for robot in range(len(self._simulator.robots)):
-                for node in self._interface.answering(robot):
+                for node in answering(robot):
                     self.lockstep.enroll(Controller(robot, node))
 
-    def _forget_disconnected(self) -> None:
+    def begin_tick(self, answering: NodesOf) -> None:
+        """Simulated time has reached a control tick, and is held until the controllers have answered."""
+        self.enroll(answering)
+        self.lockstep.tick = self.tick
+        self._report, self._is_reset = TickReport(), False
+        self._held_since = self._clock.now()
+        self._next_look = self._held_since + DISCONNECT_POLL
+
+    def hold(self, connected: NodesOf) -> float:
+        """How long to hold simulated time [s, wall] before asking again; 0: nobody is waited for any more."""
+        while not self._is_reset and self.lockstep.missing():
+            now = self._clock.now()
+            remaining = self._held_since + self.lockstep.patience() * self.timeout - now
+            if remaining <= 0.0:
+                self._report.late = self.lockstep.give_up()
+                break
+            if now < self._next_look:
+                return min(remaining, self._next_look - now)
+            self._forget_disconnected(connected)
+            self._next_look = now + DISCONNECT_POLL
+        return 0.0
+
+    def _forget_disconnected(self, connected: NodesOf) -> None:
         """Do not wait for a controller that has disconnected, and stop its robot."""
         for controller in self.lockstep.missing():
-            if controller.node not in self._interface.connected(controller.robot):
-                self._interface.controller_gone(controller)
+            if controller.node not in connected(controller.robot):
+                self._report.gone.append(controller)
                 self.lockstep.gone(controller)
                 pending = self._pending.get(controller.robot)
                 if pending is None or pending.controller == controller:
                     self._pending[controller.robot] = _Pending(controller, STANDSTILL)
 
+    def end_tick(self) -> TickReport:
+        """Apply the commands of the tick."""
+        pending, self._pending = self._pending, {}
+        for robot, command in pending.items():
+            self._apply(robot, command.twist)
+        return self._report
+
+    def _apply(self, robot: int, twist: Twist2D) -> None:
+        try:
+            self._simulator.command(twist, robot)
+        except CommandError as error:
+            self._refused.append(error)
+
+    def take_refused(self) -> List[CommandError]:
+        """The commands refused since the last call, as they are not finite; the previous ones stay in force."""
+        refused, self._refused = self._refused, []
+        return refused
+
     def restart(self) -> None:
-        """The simulation was reset: what was commanded before it does not count."""
-        self._resets += 1
+        """Forget pending commands, because the simulation was reset."""
+        self._is_reset = True
         self._pending.clear()
         self.lockstep.restart(self.tick)
 
     def drop_command(self, robot: int) -> None:
-        """A robot was placed elsewhere, at rest."""
+        """Forget a pending command, because its robot was placed elsewhere, at rest."""
         self._pending.pop(robot, None)
 
     def awaited(self) -> List[Controller]:

@@ -74,7 +74,7 @@ class Lockstep(Generic[Name]):
         self._controllers: Dict[Name, _Controller] = {}
 
     def commanded(self, name: Name) -> None:
-        """A velocity command arrived that does not name its tick."""
+        """Note a velocity command that does not name its tick."""
         known = self._controllers.get(name)
         if known is None:
             self._controllers[name] = _Controller(self.tick)
@@ -84,13 +84,13 @@ class Lockstep(Generic[Name]):
             self._controllers[name] = _Controller(self.tick, gaps=gaps, mistaken=known.mistaken)
 
     def answered(self, name: Name, tick: int) -> None:
-        """An answer arrived that names its tick; one for an earlier tick only shows that its sender is alive."""
+        """Note an answer, which names its tick; one for an earlier tick only shows that its sender is alive."""
         known = self._controllers.get(name)
         last = tick if known is None or not known.stamped else max(tick, known.last)
         self._controllers[name] = _Controller(last, stamped=True)
 
     def enroll(self, name: Name) -> None:
-        """A controller that stamps its answers has connected: wait for it from now on."""
+        """Wait from now on for a controller that stamps its answers and has connected."""
         if not self.is_stamped(name):
             self._controllers[name] = _Controller(self.tick - 1, stamped=True)
 
@@ -100,48 +100,43 @@ class Lockstep(Generic[Name]):
         return known is not None and known.stamped
 
     def gone(self, name: Name) -> None:
-        """A controller has disconnected."""
+        """Forget a controller that has disconnected."""
         self._controllers.pop(name, None)
 
     def missing(self) -> List[Name]:
         """The controllers that still have to answer the current tick, sorted."""
-        return sorted(name for name, it in self._controllers.items() if it.missing(self.tick))
+        return sorted(name for name, known in self._controllers.items() if known.missing(self.tick))
 
     def patience(self) -> float:
         """How long to wait for the missing controllers, as a share of the timeout."""
-        return max((it.patience() for it in self._controllers.values() if it.missing(self.tick)), default=0.0)
+        return max((known.patience() for known in self._controllers.values() if known.missing(self.tick)), default=0.0)
 
     def give_up(self) -> List[Name]:
         """Stop waiting at this tick; returns and counts the controllers that were due, dropped until heard again."""
         late = []
         for name in self.missing():
-            it = self._controllers[name]
-            was_due = it.next_gap() is not None
-            it.awaited = not was_due and self.tick - it.last < LONGEST_GAP
+            known = self._controllers[name]
+            was_due = known.next_gap() is not None
+            known.awaited = not was_due and self.tick - known.last < LONGEST_GAP
             if was_due:
                 late.append(name)
-                it.mistaken = True
-            it.passed = self.tick
+                known.mistaken = True
+            known.passed = self.tick
         self.misses += len(late)
         return late
 
-    def slower_than_ticks(self) -> bool:
-        """Whether a controller is known to answer regularly, but not at every tick."""
-        rhythms = [it.gaps for it in self._controllers.values() if it.next_gap() is not None]
-        return any(set(gaps) - {1} for gaps in rhythms)
-
     def drivers(self) -> List[Name]:
         """The controllers that are waited for, sorted."""
-        return sorted(name for name, it in self._controllers.items() if it.awaited)
+        return sorted(name for name, known in self._controllers.items() if known.awaited)
 
     def restart(self, tick: int) -> None:
         """The simulation was reset and runs towards this tick, which stamping controllers still have to answer.
 
         The period of a plain loop stays known if time continues; it has to be learned again if time was set back.
         """
-        for name, it in self._controllers.items():
-            if it.stamped:
-                it.last = tick - 1
+        for name, known in self._controllers.items():
+            if known.stamped:
+                known.last = tick - 1
             elif tick < self.tick:
-                self._controllers[name] = _Controller(tick - 1, awaited=it.awaited)
+                self._controllers[name] = _Controller(tick - 1, awaited=known.awaited)
         self.tick = tick

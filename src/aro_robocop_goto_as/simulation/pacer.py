@@ -29,12 +29,12 @@ class Pacer:
 
     def __init__(self, factor: float, now: Callable[[], float] = time.monotonic) -> None:
         self.factor = factor
-        self._now = now
+        self.now = now  # [s, wall]
         self.restart(0.0)
 
     def restart(self, simulated: float) -> None:
         """Start counting at this simulated time [s], as after a pause."""
-        wall = self._now()
+        wall = self.now()
         self._anchor_wall, self._anchor_simulated = wall, simulated
         self._report_wall, self._report_simulated = wall, simulated
         self._report_steps: Optional[int] = None
@@ -45,7 +45,7 @@ class Pacer:
         """Wall time [s] until simulated time `simulated` [s] is due; 0 when it is overdue."""
         if self.factor == 0.0:
             return 0.0
-        wall = self._now()
+        wall = self.now()
         due = self._anchor_wall + (simulated - self._anchor_simulated) / self.factor
         self._lag = max(0.0, wall - due)
         if wall - due > MOST_BEHIND:
@@ -58,7 +58,7 @@ class Pacer:
 
     def report(self, simulated: float, steps: int) -> Optional[FactorReport]:
         """The factor since the last report; None until a report period has passed."""
-        wall = self._now()
+        wall = self.now()
         elapsed = wall - self._report_wall
         if elapsed < REPORT_PERIOD:
             return None

@@ -2,15 +2,14 @@
 
 from typing import Callable, List
 
-from ..component_params import SpawnParams
-from ..errors import ParameterError
+from ..params import RobotParams
 from ..raycast.free_places import free_place, free_places
 from ..robot.model import RobotModel, RobotSpec
 from ..world.model import World
-from ..world.spawn import parse_robots, parse_spawn
+from ..world.spawn import parse_count, parse_robots, parse_spawn
 
 
-def robots_from(p: SpawnParams, world: World, load: Callable[[str], RobotModel]) -> List[RobotSpec]:
+def robots_from(p: RobotParams, world: World, load: Callable[[str], RobotModel]) -> List[RobotSpec]:
     """The robots that the parameters `robots`, `model` and `spawn` request; `load` loads a model by its name.
 
     robots empty: one robot without a name at `spawn`, by default the world's own spawn; in a world without one, at the
@@ -26,9 +25,7 @@ def robots_from(p: SpawnParams, world: World, load: Callable[[str], RobotModel])
     if not text:
         return [RobotSpec("", model, spawn)]
     if text.isdigit():
-        count = int(text)
-        if count < 1:
-            raise ParameterError("robots: expected at least 1")
+        count = parse_count(text)
         names = [f"robot_{i}" for i in range(1, count + 1)]
         return [RobotSpec(name, model, pose) for name, pose in zip(names, free_places(world, spawn, count, model))]
     return [

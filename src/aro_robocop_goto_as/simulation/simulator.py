@@ -1,66 +1,39 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
-from dataclasses import dataclass
-from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence
+import functools
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from ..component_params import ImuNoise, OdometryParams, Rates, WorldParams
 from ..geometry import Pose2D, Twist2D, compose, compose3, inverse
+from ..params import SimParams
 from ..physics.engine import Engine
+from ..raycast.occupancy import occupancy_of
 from ..raycast.scanners import Scanners
-from ..robot import base_controller
-from ..robot.base_controller import Limits
-from ..robot.model import BodyState, RobotSpec, RobotState
+from ..robot.base_controller import Limits, accepted
+from ..robot.model import BodyState, RobotSpec
 from ..sensors import imu, magnetometer
-from ..sensors.camera import CameraImage, CameraSpec
-from ..sensors.fleet_odometry import Odometers
-from ..sensors.imu import ImuSample
 from ..sensors.lidar import Lidar
 from ..sensors.noise import NoiseStreams
-from ..sensors.odometry import Odometry
-from ..sensors.scan_profiles import LidarSpec
+from ..sensors.odometry import Odometers
 from ..world.model import Occupancy, World
-from ..world.occupancy_grid import occupancy_of
+from . import observations
 from .cameras import Cameras, MakeRenderer
-from .clock import due, stamp_ns
-from .observations import (
-    BATTERY,
-    BUMPER,
-    CAMERA,
-    GROUND_TRUTH,
-    IMU,
-    JOINTS,
-    MAGNETIC_FIELD,
-    ODOM,
-    SCAN,
-    SENSORS,
-    TF,
-    Observations,
-    RobotTransforms,
-    Subscriptions,
-)
+from .observations import Due, Observations, Robots, Subscriptions
 from .room import require_room
+from .schedule import Schedule, stamp_ns
 
 CLOCK, CONTROL = "clock", "control"  # scheduled as sensors are
-EVERY_STEP = frozenset((IMU, MAGNETIC_FIELD))  # due on most steps and seldom subscribed to
+OFTEN = {observations.IMU, observations.MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
-Robots = Sequence[int]  # indices
 
+class _Plan(NamedTuple):
+    """What is done on the steps on which the same is due."""
 
-@dataclass(frozen=True)
-class SimulatorConfig:
-    """The parameters that the simulator itself needs."""
-
-    rates: Rates
-    world: WorldParams
-    lidar: LidarSpec
-    cameras: Mapping[str, CameraSpec]  # by the models' names
-    odometry: OdometryParams
-    imu_noise: ImuNoise
-    true_localization: bool = False  # map -> odom is corrected from ground truth at each odometry update
-    footprint_radius: Optional[float] = None  # [m] of all robots; None: each model's own
+    due: Due
+    measures: Sequence[Callable[[], None]]
+    imus: Robots  # which compare the states before and after the step
 
 
 class Simulator:
@@ -68,118 +41,128 @@ class Simulator:
 
     def __init__(
         self,
-        config: SimulatorConfig,
+        p: SimParams,
         world: World,
         engine: Engine,
         robots: Sequence[RobotSpec],
-        limits: Sequence[Limits],
         make_renderer: Optional[MakeRenderer] = None,
     ) -> None:
-        """`engine` holds the same world and no robot yet; `limits` one set per robot; without a renderer no images."""
-        self.config = config
+        """`engine` holds the same world and the robots' fleet; without a renderer there are no images."""
+        self.p = p
         self.world = world
         self.robots = tuple(robots)
-        self.seed = config.world.seed
+        self.seed = p.world.seed
         self.steps = 0
-        self.dt = 1.0 / config.rates.physics
-        self.lidar = Lidar(config.lidar)
-        self._reset_step = 0  # step of the last reset, from which noise and moving obstacles count
-        self._noise = NoiseStreams()
-        self._limits = tuple(limits)
-        self.moving = bool(world.moving())
+        self.rate = p.rates.physics_rate  # [Hz]
+        self.lidar = Lidar(p.scan.lidar())
         self.engine = engine
-        for robot in self.robots:
-            engine.add_robot(robot.model, robot.spawn)
-        self._scanners = Scanners([robot.model for robot in self.robots], world)
-        self.cameras = Cameras([robot.model for robot in self.robots], config.cameras, make_renderer)
-        self._schedule = _schedule(config.rates)
-        self._start()
-
-    def _start(self) -> None:
-        """All robots stand at their spawn poses, with odometry at zero."""
-        self._controllers = [base_controller.STANDING for _ in self.robots]
-        self._odometers = Odometers(self.config.odometry, [robot.model for robot in self.robots], self._states())
-        self._map_from_odom = [Pose2D() if self._odometers.in_world else robot.spawn for robot in self.robots]
+        self.fleet = engine.fleet  # as of the latest read()
+        self._limits = [Limits(*row) for row in engine.fleet.limits.tolist()]
+        self._noise = NoiseStreams()
+        models = [robot.model for robot in self.robots]
+        self._scanners = Scanners(models, world, self.fleet.poses)
+        self.cameras = Cameras(models, p.camera, make_renderer)
+        rates = _rates(p)
+        self._usual = Schedule({name: rate for name, rate in rates.items() if name not in OFTEN}, self.rate)
+        self._full = Schedule(rates, self.rate)
+        self._schedule = self._usual
+        self._plans: Dict[Tuple[str, ...], _Plan] = {}  # by the names of what is due, for these subscriptions:
+        self._subscriptions: Subscriptions = {}
+        self._newly_placed: Set[int] = set()
+        self._ranges: Dict[int, np.ndarray] = {}
+        n, odometers = len(self.robots), Odometers(p.odometry, self.fleet, p.rates.odom_rate)
+        scans = self.ranges(self.lidar.spec.samples)
+        self.observed = Observations(
+            self.fleet, odometers, np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 10)), scans
+        )
+        self.reset()
 
     # -- time --
 
     @property
     def stamp_ns(self) -> int:
         """Simulated time [ns] of the last step. It moves backwards only in a reset that restarts time."""
-        return stamp_ns(self.steps, self.config.rates.physics)
+        return stamp_ns(self.steps, self.rate)
 
     @property
     def time(self) -> float:
         """Simulated time [s] of the last step."""
-        return self.steps / self.config.rates.physics
+        return self.steps / self.rate
 
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return (self.steps - self._reset_step) / self.config.rates.physics
+        return (self.steps - self._reset_step) / self.rate
 
-    # -- one step --
+    @property
+    def moving(self) -> bool:
+        """Whether any obstacle of the world moves."""
+        return bool(self._moving)
+
+    # -- steps --
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
         """Set a robot's velocity command; CommandError on NaN or infinity leaves the previous command in force."""
-        self._controllers[robot] = base_controller.accept(
-            self._controllers[robot], twist, self.time, self._limits[robot]
-        )
+        self.fleet.command(robot, accepted(twist, self._limits[robot]), self.time)
 
     def step(self, subscriptions: Subscriptions) -> Optional[Observations]:
-        """Advance by one physics step, then measure what is due and subscribed to; None when nothing is due."""
-        scheduled = self._schedule[self.steps % self.config.rates.physics]
-        bodies_before = {robot: self.engine.body(robot) for robot in _due(IMU, scheduled, subscriptions)}
-        self._advance()
-        if not scheduled or (scheduled <= EVERY_STEP and not any(map(subscriptions.get, scheduled))):
-            return None
-        return self._measure(scheduled, subscriptions, bodies_before)
+        """Advance by one step, then measure what is due and subscribed to; None when nothing is due."""
+        return self.advance(subscriptions, 1)
 
-    def _advance(self) -> None:
-        """Base controllers -> wheel speeds -> engine, by one step."""
-        now = self.time
-        for robot, before in enumerate(self._controllers):
-            after = base_controller.advance(before, now, self.dt, self._limits[robot])
-            if after is not before:
-                self._controllers[robot] = after
-                model = self.robots[robot].model
-                self.engine.set_wheel_speeds(
-                    robot, base_controller.wheel_speeds(after.velocity, model.wheel_radius, model.wheel_separation)
-                )
-        self.engine.step()
-        self.steps += 1
-        if self.moving:
+    def advance(self, subscriptions: Subscriptions, most: int) -> Optional[Observations]:
+        """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
+        if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
+            self._subscriptions, self._plans = subscriptions, {}
+            self._schedule = self._full if any(map(subscriptions.get, OFTEN)) else self._usual
+        steps, names = self._schedule.after(self.steps)
+        if steps > most:
+            self._run(most)
+            return None
+        plan = self._plans.get(names) or self._plan(names)
+        if plan.imus:
+            self._run(steps - 1)
+            before = [self.engine.body(robot) for robot in plan.imus]
+            self._run(1)
+            self._measure_imus(plan.imus, before)
+        else:
+            self._run(steps)
+        for measure in plan.measures:
+            measure()
+        self.observed.stamp_ns, self.observed.due = self.stamp_ns, plan.due
+        return self.observed
+
+    def _run(self, steps: int) -> None:
+        if not self._moving:
+            self.engine.advance(self.steps, steps)
+            self.steps += steps
+            return
+        for _ in range(steps):
+            self.engine.advance(self.steps, 1)
+            self.steps += 1
             self.engine.move_obstacles(self.world_time)
 
-    def _measure(
-        self, scheduled: FrozenSet[str], subscriptions: Subscriptions, bodies_before: Mapping[int, BodyState]
-    ) -> Observations:
-        """Measure what is due now. Odometry is integrated whenever it is due, whether or not anybody subscribes."""
-        due_for = {sensor: _due(sensor, scheduled, subscriptions) for sensor in SENSORS if sensor in scheduled}
-        needs_states = ODOM in scheduled or any(due_for.get(sensor) for sensor in (SCAN, JOINTS, GROUND_TRUTH))
-        states = self._states() if needs_states else []
-        odometry = self._update_odometry(states) if ODOM in scheduled else self._odometers.latest
-        return Observations(
-            self.stamp_ns,
-            CLOCK in scheduled,
-            CONTROL in scheduled,
-            scans=self._scan(states, due_for.get(SCAN, ())),
-            odometry={robot: odometry[robot] for robot in due_for.get(ODOM, ())},
-            transforms={
-                robot: RobotTransforms(self._map_from_odom[robot], odometry[robot].odom_from_footprint)
-                for robot in due_for.get(TF, ())
-            },
-            joints={robot: self._odometers.joint_state(states[robot]) for robot in due_for.get(JOINTS, ())},
-            imus={robot: self._imu(robot, before) for robot, before in bodies_before.items()},
-            ground_truth={robot: states[robot] for robot in due_for.get(GROUND_TRUTH, ())},
-            bumpers={robot: self.touching(robot) for robot in due_for.get(BUMPER, ())},
-            batteries=due_for.get(BATTERY, ()),
-            magnetic_fields={robot: self._magnetic_field(robot) for robot in due_for.get(MAGNETIC_FIELD, ())},
-            images=self._images(due_for.get(CAMERA, ())),
-        )
-
-    def _states(self) -> List[RobotState]:
-        return [self.engine.state(robot) for robot in range(len(self.robots))]
+    def _plan(self, names: Tuple[str, ...]) -> _Plan:
+        """What is done when these are due. Odometry is integrated whether or not anybody subscribes."""
+        due = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
+        measures: List[Callable[[], None]] = []
+        if (
+            observations.ODOM in names
+            or {observations.SCAN, observations.GROUND_TRUTH, observations.JOINTS} & due.keys()
+        ):
+            measures.append(self.engine.read)
+        if observations.ODOM in names:
+            measures.append(self._update_odometry)
+        for name, measure in (
+            (observations.JOINTS, self._read_joints),
+            (observations.SCAN, self._scan),
+            (observations.BUMPER, self._read_bumpers),
+            (observations.MAGNETIC_FIELD, self._measure_magnetic_fields),
+            (observations.CAMERA, self._take_images),
+        ):
+            if name in due:
+                measures.append(functools.partial(measure, due[name]))
+        self._plans[names] = _Plan(Due(CLOCK in names, CONTROL in names, due), measures, due.get(observations.IMU, ()))
+        return self._plans[names]
 
     # -- sensors --
 
@@ -187,66 +170,84 @@ class Simulator:
         """Noise of one stream on this step, counted from the last reset."""
         return self._noise.at(self.seed, stream, self.steps - self._reset_step)
 
-    def _scan(self, states: Sequence[RobotState], robots: Robots) -> Dict[int, np.ndarray]:
-        if not robots:
-            return {}
-        rng = self._noise_of(0)
-        lidar = self.lidar.next_turn(rng)
-        distances = self._distances(lidar, states, robots)
-        # Drawn for all robots, so that one robot's noise does not depend on who subscribes to another's scan.
-        noise = rng.standard_normal((len(self.robots), lidar.spec.samples))
-        return dict(zip(robots, lidar.measure(distances, noise[list(robots)])))
+    def ranges(self, beams: int) -> np.ndarray:
+        """The array (n, beams) [m] to which scans with so many beams are written."""
+        return self._ranges.setdefault(beams, np.zeros((len(self.robots), beams)))
 
-    def _distances(self, lidar: Lidar, states: Sequence[RobotState], robots: Robots) -> np.ndarray:
-        poses = [state.world_from_footprint for state in states]
-        return self._scanners.distances(lidar.fan, lidar.spec.range_max, poses, robots, self.world_time)
+    def _scan(self, robots: Robots) -> None:
+        lidar = self.lidar.next_turn(self._noise_of(0)) if self.lidar.spec.varying else self.lidar
+        distances = self._distances(lidar, robots)
+        self.observed.scans = self.ranges(lidar.spec.samples)
+        lidar.measure(distances, robots, self.seed, self.steps - self._reset_step, self.observed.scans)
+
+    def _distances(self, lidar: Lidar, robots: Sequence[int]) -> np.ndarray:
+        return self._scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
-        return self._distances(self.lidar, self._states(), [robot])[0]
+        self.engine.read()
+        return self._distances(self.lidar, [robot])[0]
 
-    def _update_odometry(self, states: Sequence[RobotState]) -> Sequence[Odometry]:
-        if self._odometers.slipping:
-            self._odometers.slip(states, self._noise_of(SLIP_STREAM).standard_normal((len(self.robots), 2)))
-        latest = self._odometers.update(states)
-        if self.config.true_localization:
-            self._map_from_odom = [
-                compose(state.world_from_footprint, inverse(odometry.odom_from_footprint))
-                for state, odometry in zip(states, latest)
-            ]
-        return latest
+    def _update_odometry(self) -> None:
+        odometers = self.observed.odometry
+        shape = len(self.robots), 2
+        odometers.update(self._noise_of(SLIP_STREAM).standard_normal(shape) if odometers.slipping else None)
+        if self.p.topics.localization == "truth":
+            for robot, pose in enumerate(odometers.poses.tolist()):
+                self.observed.map_from_odom[robot] = compose(self.fleet.pose(robot), inverse(Pose2D(*pose)))
+
+    def _read_joints(self, _robots: Robots) -> None:
+        self.observed.joint_angles[:] = self.observed.odometry.joint_angles()
+
+    def _read_bumpers(self, robots: Robots) -> None:
+        self.observed.bumpers = {robot: self.touching(robot) for robot in robots}
+
+    def _measure_magnetic_fields(self, robots: Robots) -> None:
+        self.observed.magnetic_fields = {robot: self._magnetic_field(robot) for robot in robots}
 
     def _magnetic_field(self, robot: int) -> np.ndarray:
         world_from_imu = compose3(self.engine.body(robot).world_from_base, self.robots[robot].model.base_from_imu)
         return magnetometer.measure(world_from_imu.orientation)
 
-    def _imu(self, robot: int, before: BodyState) -> ImuSample:
-        base_from_imu, noise = self.robots[robot].model.base_from_imu, self.config.imu_noise
-        return imu.measure(before, self.engine.body(robot), self.dt, base_from_imu, noise, self._noise_of(1 + robot))
+    def _measure_imus(self, robots: Robots, bodies_before: Sequence[BodyState]) -> None:
+        for robot, before in zip(robots, bodies_before):
+            base_from_imu, noise, after = (
+                self.robots[robot].model.base_from_imu,
+                self._noise_of(1 + robot),
+                self.engine.body(robot),
+            )
+            self.observed.imus[robot] = imu.measure(before, after, 1.0 / self.rate, base_from_imu, self.p.imu, noise)
 
-    def _images(self, robots: Robots) -> Dict[int, CameraImage]:
-        if not robots:
-            return {}
+    def _take_images(self, robots: Robots) -> None:
         bases = [self.engine.body(robot).world_from_base for robot in range(len(self.robots))]
-        return self.cameras.images(self.world, bases, robots, self.world_time)
+        self.observed.images = self.cameras.images(self.world, bases, robots, self.world_time)
 
     # -- the state of the world and of its robots --
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
-        return self._map_from_odom[robot]
+        return Pose2D(*self.observed.map_from_odom[robot].tolist())
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
-        return self.engine.state(robot).world_from_footprint
+        self.engine.read()
+        return self.fleet.pose(robot)
 
     def velocity(self, robot: int = 0) -> Twist2D:
         """The robot's true velocity after the last step."""
-        return self.engine.state(robot).twist
+        self.engine.read()
+        return self.fleet.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
         """Whether the robot touches anything but the floor."""
         return self.engine.touching(robot)
+
+    def newly_placed_in_contact(self) -> Sequence[int]:
+        """The robots placed since the last call that are in contact: physics pushes them out, or they are stuck."""
+        if not self._newly_placed:
+            return []
+        placed, self._newly_placed = self._newly_placed, set()
+        return [robot for robot in sorted(placed) if self.touching(robot)]
 
     def occupancy(self) -> Occupancy:
         """The world as an occupancy grid: its own map, or a cut at the height of the first robot's scanner.
@@ -258,51 +259,52 @@ class Simulator:
         walls = self._scanners.walls(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
-        return occupancy_of(walls.segments, walls.circles, starts, self.config.world.map_resolution)
-
-    def require_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """PlaceError, naming what is in the way, if a robot's footprint overlaps an obstacle or a robot at a pose."""
-        poses = [self.world_from_footprint(index) for index in range(len(self.robots))]
-        require_room(
-            self.world, self.world_time, self.robots, poses, self._footprint_radius, world_from_footprint, robot
-        )
-
-    def _footprint_radius(self, robot: int) -> float:
-        given = self.config.footprint_radius
-        return self.robots[robot].model.figures.footprint_radius if given is None else given
+        return occupancy_of(walls.segments, walls.circles_at_start, starts, self.p.world.map_resolution)
 
     # -- changes from outside --
 
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
-        self.world = world if self.config.world.moving else world.without_motion()
-        self.moving = bool(self.world.moving())
+        self.world = world if self.p.world.moving else world.without_motion()
+        self._moving = self.world.moving()
         self._scanners.change_world(self.world)
         self.cameras.close()
         self.engine.change_world(self.world, self.world_time)
+        self._newly_placed.update(range(len(self.robots)))
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
         """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
 
         What the wheels have travelled since the last odometry update belongs to the time before the jump.
         """
-        odom_from_footprint = self._odometers.pose_now(robot, self.engine.state(robot))
+        self.engine.read()
+        odom_from_footprint = self.observed.odometry.pose_now(robot)
         self.engine.place(robot, world_from_footprint)
-        self._controllers[robot] = base_controller.STANDING
-        if self._odometers.in_world:
-            return
-        self._map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
+        self._newly_placed.add(robot)
+        if not self.observed.odometry.in_world:
+            self.observed.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
+
+    def place_with_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
+        """Like place(), but raises PlaceError, naming the obstacle, if the robot would overlap something."""
+        self.engine.read()
+        require_room(self.world, self.world_time, self.robots, self.fleet, world_from_footprint, robot)
+        self.place(world_from_footprint, robot)
 
     def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
         """Robots to their spawn poses, odometry to zero, noise to its start, with a new seed if one is given.
 
         Simulated time continues, unless `restart_time` sets it back to zero.
         """
-        self.engine.reset([robot.spawn for robot in self.robots])
-        self._start()
+        spawns = [robot.spawn for robot in self.robots]
+        self._moving = self.world.moving()
+        self.engine.reset(spawns)
+        self.engine.read()
+        self.observed.odometry.reset()
+        self.observed.map_from_odom[:] = 0.0 if self.observed.odometry.in_world else spawns
         self.seed = self.seed if seed is None else seed
         self.steps = 0 if restart_time else self.steps
-        self._reset_step = self.steps
+        self._reset_step = self.steps  # from which noise and moving obstacles count
+        self._newly_placed = set(range(len(self.robots)))
 
     def close(self) -> None:
         """Free the engine and the renderer."""
@@ -310,16 +312,20 @@ class Simulator:
         self.engine.close()
 
 
-def _due(sensor: str, scheduled: FrozenSet[str], subscriptions: Subscriptions) -> Robots:
-    """The robots for which a sensor is due and subscribed to."""
-    return subscriptions.get(sensor, ()) if sensor in scheduled else ()
-
-
-def _schedule(rates: Rates) -> List[FrozenSet[str]]:
-    """What is due on each step of a second; every second is alike, as all rates are whole numbers."""
-    by_name = {name: rate for name, rate in vars(rates).items() if name != "physics"}
-    by_name[TF] = rates.odom
-    return [
-        frozenset(name for name, rate in by_name.items() if rate and due(step, rate, rates.physics))
-        for step in range(1, rates.physics + 1)
-    ]
+def _rates(p: SimParams) -> Dict[str, int]:
+    """How often each sensor and tick is due [Hz], in the order of their messages; 0 = never."""
+    rates = p.rates
+    return {
+        CLOCK: rates.clock_rate,
+        CONTROL: rates.control_rate,
+        observations.GROUND_TRUTH: rates.ground_truth_rate,
+        observations.IMU: rates.imu_rate,
+        observations.JOINTS: rates.joint_state_rate,
+        observations.ODOM: rates.odom_rate,
+        observations.SCAN: p.scan.rate,
+        observations.BUMPER: rates.bumper_rate,
+        observations.MAGNETIC_FIELD: rates.magnetic_field_rate,
+        observations.BATTERY: rates.battery_state_rate,
+        observations.CAMERA: rates.camera_rate,
+        observations.TF: rates.odom_rate,
+    }

@@ -1,1 +1,1 @@
-"""The web page, without ROS: what it shows and what it makes of input. `ros.web` connects it to topics and services."""
+"""What the web page is made of, without ROS: scene, texts, values. `ros.web` makes the parts of the page of it."""

@@ -2,7 +2,7 @@
 
 import ipaddress
 import os
-from typing import Optional, Sequence, Union
+from typing import Sequence, Union
 from urllib.parse import urlsplit
 
 LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
@@ -41,22 +41,12 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: Sequence[str], 
 
 
 def _is_ours(host: str, names: Sequence[str]) -> bool:
-    name = _host_name(host)
-    if name is None:
+    try:
+        name = urlsplit("//" + host).hostname or ""  # without the port, in lower case
+        known = name in LOOPBACK_NAMES or name in [known.lower() for known in names if known]
+        return known or bool(ipaddress.ip_address(name))
+    except ValueError:  # a malformed header, or a name that is no address
         return False
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return name in LOOPBACK_NAMES or name in [known.lower() for known in names]
-    return True
-
-
-def _host_name(host: str) -> Optional[str]:
-    """The name without the port, in lower case; None if the header is malformed."""
-    try:
-        return urlsplit("//" + host).hostname
-    except ValueError:
-        return None
 
 
 def default_host() -> str:

@@ -12,7 +12,7 @@ LONGEST_CHAIN = 100  # frames from a root to a leaf; longer ones are loops
 
 
 class FrameTree:
-    """Frames with their parents, whatever the age of the transforms. Writes of single entries are atomic."""
+    """Frames with their parents, whatever the age of the transforms."""
 
     def __init__(self) -> None:
         self._parents: Dict[str, Tuple[str, Pose3D]] = {}
@@ -21,32 +21,23 @@ class FrameTree:
         """Store a transform in place of the child's former one."""
         self._parents[child] = (parent, parent_from_child)
 
-    def clear(self) -> None:
-        """Forget all frames."""
-        self._parents = {}
-
     def names(self) -> List[str]:
         """All frames: roots first, then their children, and so on."""
-        parents = dict(self._parents)
-        names = {*parents, *(parent for parent, _ in parents.values())}
+        names = {*self._parents, *(parent for parent, _ in self._parents.values())}
         return sorted(names, key=lambda name: (len(self._chain(name)), name))
 
     def knows(self, frame: str) -> bool:
         """Whether a transform to or from the frame has been received."""
-        parents = dict(self._parents)
-        return frame in parents or any(parent == frame for parent, _ in parents.values())
+        return frame in self._parents or any(parent == frame for parent, _ in self._parents.values())
 
     def lookup(self, target: str, source: str) -> Optional[Pose3D]:
         """target_from_source, or None if the frames are not connected."""
-        if target == source:
-            return Pose3D()
-        to_target, to_source = self._chain(target), self._chain(source)
-        for number, (frame, from_source) in enumerate(to_source):
-            for ancestor, from_target in to_target:
-                if ancestor == frame:
-                    return compose3(inverse3(from_target), from_source) if ancestor != target else from_source
-            if number >= LONGEST_CHAIN:
-                break
+        from_target = dict(self._chain(target))
+        for ancestor, from_source in self._chain(source):
+            if ancestor == target:
+                return from_source
+            if ancestor in from_target:
+                return compose3(inverse3(from_target[ancestor]), from_source)
         return None
 
     def _chain(self, frame: str) -> List[Tuple[str, Pose3D]]:

@@ -1,31 +1,10 @@
-"""What the page says about the system, as plain values."""
+"""The state of the page that its parts share, as plain values."""
 
-from collections import deque
-from dataclasses import dataclass
-from typing import Deque, Dict, List, Optional, Tuple
+import threading
+from dataclasses import dataclass, replace
+from typing import Any, Optional, Tuple
 
-REMEMBERED = 8  # goals
-SILENCE = 4.0  # [s, wall] without a report of the simulator, which sends one per second, until it counts as gone
-
-
-@dataclass(frozen=True)
-class SimState:
-    """A report of the simulator; `at` is when it was received [s, monotonic]."""
-
-    at: float
-    time: float  # [s] simulated
-    world: str
-    robots: Tuple[str, ...]
-    seed: int
-    drive: str
-    sync: str
-    paused: bool
-    factor_asked: float
-    factor_reached: float
-
-    def silent_for(self, now: float) -> float:
-        """How long the simulator has sent no report [s], 0 while it reports as usual."""
-        return now - self.at if now - self.at > SILENCE else 0.0
+from ..geometry import Pose3D
 
 
 @dataclass(frozen=True)
@@ -39,36 +18,44 @@ class ReplayState:
 
 
 @dataclass(frozen=True)
-class Ended:
-    """A goal that has ended."""
+class PageState:
+    """What more than one part of the page needs to know."""
 
-    robot: str
-    state: str  # of actionlib, as SUCCEEDED
-    message: str
-    goal: Optional[Tuple[float, float]]  # [m] in the server's frame, if it was seen
+    live: bool = True  # visitors can send requests; otherwise they watch the system, or a recording
+    recorded: bool = False  # a recording is shown, no running system
+    registered: bool = False  # with the ROS master
+    forgotten: bool = False  # the master answers, but is another one than the node registered with
+    master_problem: str = "it has not been asked yet"  # why the ROS master does not answer, empty if it does
+    robots: Tuple[str, ...] = ("",)  # namespaces; "" is a robot without one
+    topics: Tuple[Tuple[str, str], ...] = ()  # that somebody publishes, with their types
+    chosen: str = ""  # the robot that a visitor chose last
+    answer: str = ""  # the outcome of the last request
+    simulated: bool = False  # a simulator has reported
+    factor: float = 1.0  # simulated seconds per second, as the simulator reached it
+    answering: bool = False  # the selected robot's server publishes its status
+    executing: bool = False  # the selected robot's server executes a goal
+    root: str = ""  # the frame that the scene is drawn in
+    pose: Optional[Pose3D] = None  # of the selected robot, in that frame
+
+    @property
+    def selected(self) -> str:
+        """The robot that is shown in detail and driven."""
+        return self.chosen if self.chosen in self.robots else self.robots[0]
+
+    @property
+    def accepts_requests(self) -> bool:
+        """Whether requests of visitors are sent on."""
+        return self.live and self.registered and not self.master_problem
 
 
-class GoalHistory:
-    """Goals and results by their actionlib ids."""
+class SharedState:
+    """Holds the one PageState that all read; any thread may change parts of it."""
 
-    def __init__(self) -> None:
-        self._goals: Dict[str, Tuple[float, float]] = {}
-        self._ended: Deque[Ended] = deque(maxlen=REMEMBERED)
+    def __init__(self, now: PageState) -> None:
+        self.now = now
+        self._lock = threading.Lock()
 
-    def sent(self, goal_id: str, x: float, y: float) -> None:
-        """A goal was sent to a server [m]."""
-        self._goals[goal_id] = (x, y)
-        for oldest in list(self._goals)[:-REMEMBERED]:
-            del self._goals[oldest]
-
-    def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
-        """A result was received."""
-        self._ended.appendleft(Ended(robot, state, message, self._goals.pop(goal_id, None)))
-
-    def clear(self) -> None:
-        """Forget all goals."""
-        self._goals, self._ended = {}, deque(maxlen=REMEMBERED)
-
-    def latest(self) -> List[Ended]:
-        """The last goals, the newest first."""
-        return list(self._ended)
+    def change(self, **values: Any) -> None:
+        """Replace these fields of the state."""
+        with self._lock:
+            self.now = replace(self.now, **values)

@@ -1,12 +1,16 @@
 """The page's texts as HTML. Names and messages come from outside: what looks like markup in them is shown as text."""
 
 import html
-from typing import Iterable, List, Optional, Tuple
+import re
+from typing import Iterable, Tuple
 
-from .state import Ended, ReplayState, SimState
+from .lab import Section
+from .state import ReplayState
 
 LONGEST = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
+BLOCK = "margin:0.4em 0;padding:0.3em 0.5em;white-space:pre-wrap;overflow-wrap:anywhere;font-size:0.9em"
+LEVELS = {4: "color:#e8590c", 8: "color:#e03131", 16: "color:#e03131"}  # of rosgraph_msgs/Log: WARN, ERROR, FATAL
 ALERT = "margin:0 0.8em 0.6em;padding:0.5em 0.7em;border-radius:4px;background:#b3261e;color:#fff;font-size:0.9em"
 
 
@@ -16,7 +20,8 @@ def plain(text: str) -> str:
     return html.escape(text if len(text) <= LONGEST else text[: LONGEST - 1] + "…")
 
 
-def _table(rows: Iterable[Tuple[str, str]]) -> str:
+def table(rows: Iterable[Tuple[str, str]]) -> str:
+    """Names with their values, one below the other."""
     cells = "".join(
         f'<tr><td style="padding-right:0.8em;opacity:0.7;vertical-align:top;white-space:nowrap">{plain(name)}</td>'
         f"<td>{plain(value)}</td></tr>"
@@ -30,27 +35,15 @@ def alert(message: str) -> str:
     return f'<div style="{ALERT}" role="alert">{plain(message)}</div>' if message else ""
 
 
-def overview(sim: Optional[SimState], robots: int, bridge: str) -> str:
-    """World, seed and speed, if there is a simulator, and what the bridge says."""
-    rows: List[Tuple[str, str]] = []
-    if sim is not None:
-        state = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, requested {factor(sim.factor_asked)}"
-        rows += [
-            ("world", sim.world),
-            ("seed", str(sim.seed)),
-            ("engine", f"{sim.drive}, {sim.sync}"),
-            ("time", f"{sim.time:.0f} s, {state}"),
-        ]
-    if robots != 1:
-        rows.append(("robots", str(robots)))
-    rows.append(("server", bridge or "no report from the bridge yet"))
-    return _table(rows)
+def answer(message: str) -> str:
+    """What became of the last request; nothing for an empty message."""
+    return f'<div style="{STYLE}" role="status">{plain(message)}</div>' if message else ""
 
 
 def progress(state: ReplayState) -> str:
     """How far a recording has been played."""
     how = f"factor {state.speed:g}" if state.playing else "paused"
-    return _table([("recording", f"{state.position:.0f} of {state.duration:.0f} s, {how}")])
+    return table([("recording", f"{state.position:.0f} of {state.duration:.0f} s, {how}")])
 
 
 def factor(asked: float) -> str:
@@ -58,22 +51,47 @@ def factor(asked: float) -> str:
     return f"{asked:g}" if asked > 0.0 else "as fast as possible"
 
 
-def feedback(position_error: float, angle_error: float, message: str) -> str:
-    """The newest feedback of the goal that is being executed."""
-    return _table(
-        [("position error", f"{position_error:.2f} m"), ("angle error", f"{angle_error:.2f} rad"), ("", message)]
+def history(ended: Iterable[Tuple[bool, str]]) -> str:
+    """The last goals: whether each was reached, and what became of it."""
+    marks = {True: '<span style="color:#2b8a3e">✓</span>', False: '<span style="color:#e8590c">✗</span>'}
+    lines = "".join(f"<div>{marks[reached]} {plain(line)}</div>" for reached, line in ended)
+    return f'<div style="{STYLE}">{lines or "no goal has ended yet"}</div>'
+
+
+def block(content: str) -> str:
+    """Text with lines of its own, as a terminal shows it."""
+    return f'<pre style="{BLOCK}">{html.escape(content)}</pre>'
+
+
+def log(lines: Iterable[Tuple[int, str, str]]) -> str:
+    """What nodes logged: level, name and message of each; warnings and errors stand out."""
+    shown = "".join(
+        f'<div style="{LEVELS.get(level, "")}"><b>{plain(name)}</b> {plain(message)}</div>'
+        for level, name, message in lines
     )
+    return f'<div style="{STYLE}">{shown or "nothing yet"}</div>'
 
 
-def history(ended: Iterable[Ended], several: bool) -> str:
-    """The last goals; with the robot's name if there are several."""
-    lines = []
-    for item in ended:
-        goal = "goal" if item.goal is None else f"({item.goal[0]:.2f}, {item.goal[1]:.2f})"
-        mark, color = ("✓", "#37b24d") if item.state == "SUCCEEDED" else ("✗", "#f76707")
-        robot = f"{item.robot} " if several else ""
-        lines.append(
-            f'<div><span style="color:{color}">{mark}</span> {plain(robot)}{plain(goal)}: '
-            f"{plain(item.message or item.state)}</div>"
-        )
-    return f'<div style="{STYLE}">{"".join(lines) or "no goal has ended yet"}</div>'
+def topics(rows: Iterable[Tuple[str, str, str, str]]) -> str:
+    """Topics: name, type, rate and newest message of each; the last two may be empty."""
+    shown = "".join(
+        f'<div style="margin-bottom:0.4em"><b>{plain(name)}</b> {plain(rate)}'
+        f'<div style="opacity:0.7">{plain(newest or kind)}</div></div>'
+        for name, kind, rate, newest in rows
+    )
+    return f'<div style="{STYLE}">{shown or "no topics"}</div>'
+
+
+def steps(section: Section) -> str:
+    """A section of the lab. A click on a command selects the whole of it, so that it can be copied."""
+    shown = "".join(
+        f'<pre style="{BLOCK};user-select:all;border-left:3px solid #1c7ed6">{html.escape(command.strip())}</pre>'
+        + (f'<pre style="{BLOCK};opacity:0.75">{html.escape(printed.strip())}</pre>' if printed else "")
+        for command, printed in section.steps
+    )
+    seen = _code(html.escape(f"You will see{section.expected and ' '}{section.expected}")) if section.expected else ""
+    return f'<div style="{STYLE}">{seen}{shown}</div>'
+
+
+def _code(escaped: str) -> str:
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escaped)

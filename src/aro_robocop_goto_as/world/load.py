@@ -1,14 +1,27 @@
 """Find a world file by its name or path and load it, whatever its format."""
 
 import os
+import re
 
 from ..errors import WorldError
+from ..reading import reading
+from ..suggestions import did_you_mean
 from .grid_map.walls import read_map
+from .ground import levelled
 from .model import World
 from .sdf.reader import read_world
 
+RANDOM = "random"  # in place of a name: the world that is made from the seed
 _MAP_EXTENSIONS = (".yaml", ".yml")
 _EXTENSIONS = (".sdf", ".world", *_MAP_EXTENSIONS)
+
+# The grammar of Stage's worldfiles (player-stage-manual.readthedocs.io): properties and blocks instead of XML.
+_STAGE = re.compile(
+    rb"\A(?!(\xef\xbb\xbf)?\s*<)(?s:.*?)^[ \t]*"
+    rb"(define\s+\w+\s+\w+|include\s+\"|(floorplan|window|model|position)\s*\()",
+    re.M,
+)
+_HEAD = 1 << 16  # bytes in which that is looked for
 
 LAB_WORLDS = ("house", "aro_maze_1", "aro_maze_2", "aro_maze_8")  # names that the original lab's launch file accepted
 LAB_WORLD_HINT = ", which the original lab had and this package does not have: give the path of its file"
@@ -28,13 +41,24 @@ def find_world(name_or_path: str, directory: str) -> str:
     hint = LAB_WORLD_HINT if name_or_path in LAB_WORLDS else ""
     raise WorldError(
         f"there is no world '{name_or_path}'{hint} (no file {os.path.abspath(path)}); "
-        f"worlds in {directory}: {', '.join(known) or 'none'}"
+        f"worlds in {directory}: {', '.join(known) or 'none'}{did_you_mean(name_or_path, known)}"
     )
 
 
 def load_world(path: str) -> World:
     """The world in an SDF file (1.4 to 1.8, a <world> or a single <model>) or in the YAML file of a map_server map.
 
+    What robots stand on is at z = 0, see levelled.
+
     WorldError names the file, the line where there is one, what is wrong and what is supported.
     """
-    return read_map(path) if path.endswith(_MAP_EXTENSIONS) else read_world(path)
+    with reading(path, WorldError, "an SDF file, or the YAML file of a map"):
+        if path.endswith(_MAP_EXTENSIONS):
+            return read_map(path)
+        with open(path, "rb") as file:
+            if _STAGE.search(file.read(_HEAD)):
+                raise WorldError(
+                    f"{path}: a world of Stage; expected an SDF file, or the YAML file of a map, whose image may be "
+                    "the bitmap of Stage's floor plan"
+                )
+        return levelled(read_world(path))

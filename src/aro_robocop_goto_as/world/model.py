@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Dict, Mapping, Optional, Tuple, Union
+from typing import Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -77,10 +77,25 @@ class Occupancy:
 
     def is_known(self, x: float, y: float) -> bool:
         """Whether a point [m] in the map is in a cell that is not unknown."""
-        point = compose(inverse(self.origin), Pose2D(x, y))
-        column, row = math.floor(point.x / self.resolution), math.floor(point.y / self.resolution)
+        column, row = (math.floor(place) for place in self._in_cells(x, y))
         rows, columns = self.cells.shape
         return 0 <= column < columns and 0 <= row < rows and bool(self.cells[row, column] >= 0)
+
+    def nearest_free(self, x: float, y: float) -> Tuple[float, float]:
+        """The centre [m] in the map of the cell nearest to a point that is known and not occupied, if there is one."""
+        column, row = self._in_cells(x, y)
+        rows, columns = (np.arange(count, dtype=np.float32) + 0.5 for count in self.cells.shape)
+        squares = (rows[:, None] - row) ** 2 + (columns - column) ** 2
+        squares[(self.cells < 0) | (self.cells >= 100)] = np.inf
+        best_row, best_column = np.unravel_index(np.argmin(squares), squares.shape)
+        in_grid = Pose2D(float(columns[best_column]) * self.resolution, float(rows[best_row]) * self.resolution)
+        centre = compose(self.origin, in_grid)
+        return centre.x, centre.y
+
+    def _in_cells(self, x: float, y: float) -> Tuple[float, float]:
+        """Column and row of a point [m] in the map, with fractions."""
+        point = compose(inverse(self.origin), Pose2D(x, y))
+        return point.x / self.resolution, point.y / self.resolution
 
 
 @dataclass(frozen=True)
@@ -106,20 +121,17 @@ class Obstacle:
         return lifted(moved, z)
 
 
-def _no_models() -> Dict[str, Pose3D]:
-    return {}
-
-
 @dataclass(frozen=True)
 class World:
     """The surroundings of the robots, as a world file describes them.
 
     obstacles: in the file's order, the ground included
     spawn: world_from_footprint of a robot at the start [m, rad]
-    has_spawn: whether the file says so; otherwise `spawn` is the origin or, in a map, a free place near it, where there
-        may not be room for a robot
+    has_spawn: whether the file says so; otherwise `spawn` is the origin, where there may be no room for a robot
     ignored: each element that was left out although it would have had an effect, such as "light 'sun' (line 4)"
+    approximated: each element that differs from the file, such as "heightmap of 'hill/link/c' is left out (line 4)"
     path: the file, as it was given to load_world
+    ground: height [m] in the file of what robots stand on, which is the z = 0 of all poses here
     models: world_from_model of each model [m]; the names of its obstacles begin with the model's name
     occupancy: the grid map that the world was made from, if any
     """
@@ -129,9 +141,11 @@ class World:
     spawn: Pose2D
     ignored: Tuple[str, ...]
     path: str
-    models: Mapping[str, Pose3D] = field(default_factory=_no_models)
+    models: Mapping[str, Pose3D] = field(default_factory=dict)
     occupancy: Optional[Occupancy] = None
     has_spawn: bool = True
+    ground: float = 0.0
+    approximated: Tuple[str, ...] = ()
 
     def moving(self) -> Tuple[Obstacle, ...]:
         """The obstacles that move."""

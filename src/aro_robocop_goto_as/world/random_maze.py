@@ -25,16 +25,18 @@ def random_world(seed: int) -> str:
     columns, rows = rng.randint(*SIZES), rng.randint(*SIZES)
     cells = [(x, y) for x in range(columns) for y in range(rows)]
     walls = _maze(rng, set(cells))
-    boxes = [_wall_box(run) for run in _runs(walls)]
-    clutter = [_clutter(rng, cell) for cell in cells if cell != (0, 0) and rng.random() < CLUTTER_SHARE]
-    goals = " ".join(f"({x}, {y})" for x, y in cells[1:])
-    collisions = [_collision(f"wall_{i}", pose, shape) for i, (pose, shape) in enumerate(boxes)]
-    collisions += [_collision(f"thing_{i}", pose, shape) for i, (pose, shape) in enumerate(clutter)]
+    collisions = [_wall(f"wall_{i}", *run) for i, run in enumerate(_runs(walls))]
+    numbers = itertools.count()
+    collisions += [
+        _clutter(f"thing_{next(numbers)}", cell, rng)
+        for cell in cells
+        if cell != (0, 0) and rng.random() < CLUTTER_SHARE
+    ]
     return _FILE.format(
         seed=seed,
         columns=columns,
         rows=rows,
-        goals=goals,
+        goals=" ".join(f"({x}, {y})" for x, y in cells[1:]),
         collisions="".join(collisions),
         half_lane=round(LANE / 2.0, 3),
         yaw="0" if ((0, 0), (1, 0)) not in walls else "1.5708",
@@ -79,33 +81,28 @@ def _runs(walls: Set[Wall]) -> Iterator[Tuple[int, float, float, float]]:
             yield axis, across, run[0] - 0.5, run[-1] + 0.5
 
 
-def _wall_box(run: Tuple[int, float, float, float]) -> Tuple[str, str]:
-    axis, across, start, end = run
+def _wall(name: str, axis: int, across: float, start: float, end: float) -> str:
     middle, length = (start + end) / 2.0, end - start + THICKNESS
-    place, size = ((middle, across), (length, THICKNESS)) if axis == 0 else ((across, middle), (THICKNESS, length))
-    return _pose(*place, HEIGHT), f"<box><size>{size[0]:g} {size[1]:g} {HEIGHT:g}</size></box>"
+    x, y, width, depth = (middle, across, length, THICKNESS) if axis == 0 else (across, middle, THICKNESS, length)
+    return _collision(name, x, y, HEIGHT, f"<box><size>{width:g} {depth:g} {HEIGHT:g}</size></box>")
 
 
-def _clutter(rng: random.Random, cell: Cell) -> Tuple[str, str]:
+def _clutter(name: str, cell: Cell, rng: random.Random) -> str:
     """A box or a pillar in a corner of a cell, touching both walls."""
     width = round(rng.uniform(*CLUTTER_WIDTH), 3)
     away = 0.5 - THICKNESS / 2.0 - width / 2.0
     x, y = (centre + rng.choice((-away, away)) for centre in cell)
     height = round(rng.uniform(0.25, HEIGHT), 3)
-    if rng.random() < 0.5:
-        return _pose(x, y, height), f"<box><size>{width:g} {width:g} {height:g}</size></box>"
-    shape = f"<cylinder><radius>{width / 2.0:g}</radius><length>{height:g}</length></cylinder>"
-    return _pose(x, y, height), shape
+    box = f"<box><size>{width:g} {width:g} {height:g}</size></box>"
+    pillar = f"<cylinder><radius>{width / 2.0:g}</radius><length>{height:g}</length></cylinder>"
+    return _collision(name, x, y, height, box if rng.random() < 0.5 else pillar)
 
 
-def _pose(x: float, y: float, height: float) -> str:
-    return f"{x:g} {y:g} {height / 2.0:g} 0 0 0"
-
-
-def _collision(name: str, pose: str, shape: str) -> str:
+def _collision(name: str, x: float, y: float, height: float, shape: str) -> str:
+    """A shape that stands on the ground."""
     return f"""
         <collision name="{name}">
-          <pose>{pose}</pose>
+          <pose>{x:g} {y:g} {height / 2.0:g} 0 0 0</pose>
           <geometry>{shape}</geometry>
         </collision>"""
 

@@ -31,11 +31,15 @@ class Motion:
 
     def _shift(self, time: float) -> Tuple[float, float]:
         """Displacement of the model's origin since time zero [m], in its frame at time zero."""
-        if not self.waypoints:
+        stops = self.stops()
+        if not stops:
             return 0.0, 0.0
-        stops = ((0.0, 0.0, 0.0), *self.waypoints)
         time = math.fmod(time, stops[-1][0])
         after = bisect.bisect_right([stop[0] for stop in stops], time)
         (start, x, y), (end, to_x, to_y) = stops[after - 1], stops[after]
         share = (time - start) / (end - start)
         return x + share * (to_x - x), y + share * (to_y - y)
+
+    def stops(self) -> Tuple[Waypoint, ...]:
+        """The waypoints with the start; empty for a model that only turns."""
+        return ((0.0, 0.0, 0.0), *self.waypoints) if self.waypoints else ()

@@ -30,6 +30,14 @@ def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
     return Pose2D(*numbers)
 
 
+def parse_count(text: str) -> int:
+    """The number of robots in a text of digits; ParameterError if there are none."""
+    count = int(text)
+    if count < 1:
+        raise ParameterError("robots: expected at least 1")
+    return count
+
+
 def parse_robots(text: str) -> List[SpawnRequest]:
     """The entries of 'NAME[:MODEL] X Y [YAW]; ...' [m, rad]; ParameterError quotes the entry that is wrong."""
     requests: List[SpawnRequest] = []

@@ -1,1 +1,1 @@
-"""Commands that start or talk to a ROS system: goto, launch."""
+"""The commands of ./robocop. `commands`, and what it imports, runs before anything is installed."""

@@ -1,4 +1,4 @@
-"""Parameter files -> the URDF of the model they choose, for launch files that were not given a model."""
+"""Prints the URDF of the model that parameter files choose, for launch files that were given no model."""
 
 import os
 import sys
@@ -7,8 +7,7 @@ from typing import Any, Dict, List, Optional
 import yaml
 
 from ...errors import ParameterError, RobocopError, RobotModelError
-from ...params import SimParams
-from ...robot.catalog import urdf_of
+from ...robot.model_names import DEFAULT_MODEL, urdf_of
 
 MODEL_VARIABLE = "TURTLEBOT3_MODEL"  # the model where no file chooses one, as in the launch file
 
@@ -32,7 +31,7 @@ def _urdf(chosen: Any, package: str) -> str:
     """Path of the chosen model's URDF, or else of the environment's; RobotModelError says if it is the latter's."""
     of_environment = os.environ.get(MODEL_VARIABLE)
     if chosen is not None or not of_environment:
-        return urdf_of(SimParams.model if chosen is None else str(chosen), package)
+        return urdf_of(DEFAULT_MODEL if chosen is None else str(chosen), package)
     try:
         return urdf_of(of_environment, package)
     except RobotModelError as error:

@@ -1,11 +1,11 @@
-"""Which key of a terminal is held down: terminals report presses and their repetition, but no releases."""
+"""Tells which key is held down; terminals report presses and their repetition, but no releases."""
 
 FIRST_REPEAT = 0.8  # [s] a held key repeats first after 0.25 s (console) to 0.66 s (X server, `xset q`)
 NEXT_REPEAT = 0.3  # [s] and then 10 to 30 times a second, less evenly over a slow connection
 
 
 class HeldKey:
-    """The last key, as long as its repetition says that it is held."""
+    """The last key that was pressed, for as long as its repetition shows that it is held."""
 
     def __init__(self) -> None:
         self._key = ""

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, TextIO
+from typing import Any, Dict, Iterator, List, Optional, TextIO, cast
 
 import rosgraph
 import roslaunch
@@ -22,17 +22,17 @@ from roslaunch.parent import ROSLaunchParent
 from roslaunch.pmon import ProcessListener
 from rospkg import get_log_dir
 
-from ...errors import RobotModelError
-from ...hosting.main import parsed, prepare
+from ...errors import RobocopError, RobotModelError
 from ...process import signals
-from ...robot.catalog import urdf_of
-from .. import private_api
-from . import rviz
-from .overview import overview
+from ...robot.model_names import urdf_of
+from .. import log_handlers
+from ..names import RVIZ_LOG, SIMULATOR, absolute
+from . import roslaunch_internals
+from .inner_master import inner_master
 
 PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # the simulator's, and the one that starts it for other packages
 FAILED = 1  # exit status
-SIMULATOR, READY_SERVICE = "robocop_sim", "pause"  # the node, and one of the services that it offers when it runs
+READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
 READY_PATIENCE = 30.0  # [s, wall] for a simulator with a large world on a slow machine
 POLL = 0.05  # [s, wall]
 STDOUT, STDERR = 1, 2  # file descriptors
@@ -70,8 +70,9 @@ def launch(arguments: List[str]) -> int:
         run_id = rlutil.get_or_generate_uuid(None, False)
         logs = Path(get_log_dir(), run_id)
         screen = _quiet(logs) if options.quiet else sys.stdout
+        sys.stdout = cast(TextIO, log_handlers.Lossy(sys.stdout))
+        log_handlers.use()
         roslaunch.configure_logging(run_id)
-        rlutil.check_log_disk_usage()
         rlutil.change_terminal_name(files, False)
         parent = ROSLaunchParent(
             run_id,
@@ -82,17 +83,29 @@ def launch(arguments: List[str]) -> int:
             show_summary=not options.no_summary,
         )
         required = RequiredNodes(parent)
-        private_api.add_early_listener(parent, required)
-        private_api.install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
-        with deferred:
-            with buffered_stderr(deferred):
-                private_api.load_launch_files(parent)
-            parent.start()
-        if options.quiet or options.overview:
-            simulator = _simulator(parent, expected=options.overview)
-            if not parent.pm.is_shutdown:
-                print(overview(parent.config, simulator, logs, not options.quiet), file=screen, flush=True)
-        parent.spin()
+        roslaunch_internals.add_early_listener(parent, required)
+        roslaunch_internals.end_processes_with_roslaunch()
+        roslaunch_internals.install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
+        uri = rosgraph.network.create_local_xmlrpc_uri(options.port) if options.port else rosgraph.get_master_uri()
+        with contextlib.ExitStack() as until_the_end:
+            with deferred:
+                with buffered_stderr(deferred):
+                    roslaunch_internals.load_launch_files(parent)
+                _check(parent.config)
+                until_the_end.enter_context(inner_master(uri))
+                parent.start()
+            if options.quiet or options.overview:
+                simulator = _simulator(parent, expected=options.overview)
+                if not parent.pm.is_shutdown:
+                    from .overview import overview  # now that everything else has started
+
+                    print(overview(parent.config, simulator, logs, not options.quiet), file=screen, flush=True)
+            if not options.no_summary:
+                rlutil.check_log_disk_usage()
+            parent.spin()
+    except RobocopError as error:
+        print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
+        return FAILED
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
         if not deferred.interrupted:
             printerrlog(_explained(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
@@ -100,13 +113,27 @@ def launch(arguments: List[str]) -> int:
     return FAILED if required.failed else 0
 
 
+def _simulators(config: Any) -> List[str]:
+    """The names of the simulators that a launch file starts."""
+    return [rosgraph.names.ns_join(node.namespace, node.name) for node in config.nodes if node.name == SIMULATOR]
+
+
+def _check(config: Any) -> None:
+    """RobocopError for what a simulator would refuse, unless all its parameters have their defaults."""
+    for name in _simulators(config):
+        given = {key[len(name) + 1 :]: spec.value for key, spec in config.params.items() if key.startswith(f"{name}/")}
+        if given:
+            from . import preflight
+
+            preflight.check(given, name)
+
+
 def _simulator(parent: ROSLaunchParent, expected: bool) -> Optional[Dict[str, Any]]:
     """Wait until the simulator runs, if the launch file starts one or another process is `expected` to; its parameters.
 
     So the reason why a simulator can't start is not preceded by what to do with it.
     """
-    names = [rosgraph.names.ns_join(n.namespace, n.name) for n in parent.config.nodes if n.name == SIMULATOR]
-    names = names or ([f"/{SIMULATOR}"] if expected else [])
+    names = _simulators(parent.config) or ([absolute("", SIMULATOR)] if expected else [])
     master = rosgraph.Master("/robocop_launch", parent.config.master.uri)
     deadline = time.monotonic() + READY_PATIENCE
     while names and not parent.pm.is_shutdown and time.monotonic() < deadline:
@@ -124,7 +151,7 @@ def _quiet(folder: Path) -> TextIO:
     screen = os.fdopen(os.dup(STDOUT), "w", encoding="utf-8", errors="replace")
     with open(folder / "roslaunch.log", "ab") as log:
         os.dup2(log.fileno(), STDOUT)
-    os.environ[rviz.LOG] = str(folder / "rviz.log")
+    os.environ[RVIZ_LOG] = str(folder / "rviz.log")
     return screen
 
 
@@ -167,13 +194,3 @@ def main(arguments: Optional[List[str]] = None) -> None:
     finally:
         signals.ignore_all()
     sys.exit(status)
-
-
-def main_with() -> None:
-    """robocop sim --with PATH: launch a hosted package in this process, so that ending it ends everything."""
-    args = parsed()
-    path, environment = prepare(args)
-    # Not in a new process: in the hosted package's environment this package might not be found.
-    os.environ.clear()
-    os.environ.update(environment)
-    main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)])

@@ -1,4 +1,4 @@
-"""What ./robocop run shows when everything is started: the world, the robots, what to do next."""
+"""What ./robocop run prints when everything runs: the world, the robots, what to do next."""
 
 import os
 import re
@@ -9,10 +9,9 @@ from ...errors import RobocopError
 from ...param_loading import from_dict
 from ...params import SimParams, WebParams
 from ...web.access import default_host, url
+from ..names import COMMAND_VARIABLE, SERVER, WEB
 
-SERVER = "aro_robocop_goto_as_node"
-DEFAULT_WORLD = SimParams.world  # whose example of a goal is in front of the robot
-COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
+DEFAULT_WORLD = SimParams().world.world  # whose example of a goal is in front of the robot
 
 
 def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False) -> str:
@@ -25,7 +24,11 @@ def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messa
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in config.nodes if node.name == SERVER} - {""})
     command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
-    rows += [("see it", f"in a browser: {_page(node.args)}") for node in config.nodes if node.name == "robocop_web"]
+    for node in config.nodes:
+        played = "replay:=" in node.args
+        if node.name == WEB or played:
+            waits = "; it plays when the page is opened" if played and "rviz" not in nodes else ""
+            rows.append(("view", f"in a browser: {_page(node.args)}{waits}"))
     if SERVER in nodes:
         if "rviz" in nodes:
             rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
@@ -37,8 +40,8 @@ def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messa
         )
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
-        ("look inside", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
-        ("end", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
+        ("inspect", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
+        ("stop", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
         ("all messages", "appear below" if messages_shown else in_files),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
@@ -56,6 +59,7 @@ def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
         p = from_dict(SimParams, given, "the simulator's parameters")
     except RobocopError:
         return []
-    moving = ", moving:=true" if p.moving else ""
-    robots = f"{p.robots} ({p.model} unless named)" if p.robots else p.model
-    return [("world", p.world + moving), ("robots" if p.robots else "robot", robots)]
+    moving = ", moving:=true" if p.world.moving else ""
+    robots, model = p.robots.robots, p.robots.model
+    shown = f"{robots} ({model} unless named)" if robots else model
+    return [("world", p.world.world + moving), ("robots" if robots else "robot", shown)]

@@ -6,53 +6,124 @@ OpenGL add warnings of their own.
 
 import argparse
 import os
-from typing import List, Optional
+import time
+from typing import List, Optional, Tuple
 
+import numpy as np
 import rosgraph
 import roslib.packages
 import rospkg
+import rospy
+import tf2_ros
+from visualization_msgs.msg import Marker, MarkerArray
 
-from ...rviz.config import robocop
-from .rviz_scene import scene_of
+from ...geometry import rotation_matrix
+from ...process import x_display
+from .. import log_handlers
+from ..names import RVIZ_LOG
+from .rviz_config import SHARE, Observed, adapted
 
-PACKAGE = "aro_robocop_goto_as"
-LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: the file; without it RViz writes to the terminal
 STDERR = 2  # file descriptor
+WORLD_TOPIC = "/robocop_sim/world"
+ODOM_TF = "/robocop_sim/odom_tf"  # parameter of the simulator
+MESSAGE_TIMEOUT = 5.0  # [s, wall] for a latched message of a topic that is published
+START_TIMEOUT = 1.0  # [s, wall] for map -> odom, which localization:=none does not publish
+POLL = 0.05  # [s, wall]
+UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
 
 def main(arguments: Optional[List[str]] = None) -> None:
     """Replace this process by RViz, which is started again if it crashes."""
     parser = argparse.ArgumentParser(prog="robocop_rviz.py", description=__doc__)
     parser.add_argument("--frame", default="map", help="RViz's Fixed Frame (default map)")
-    parser.add_argument("--config", default="", help="a configuration file of your own; empty: one is generated")
+    parser.add_argument("--config", default="", help="a configuration file of your own; empty: made for the system")
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
-    parser.add_argument("--server", action="store_true", help="also show the markers of the go-to server")
     options, rest = parser.parse_known_args(arguments)
-    config = options.config or _generated(options.frame, options.wait, options.server)
+    config = options.config or _written(adapted(observe(options.frame, options.wait)))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
-    again = os.path.join(rospkg.RosPack().get_path(PACKAGE), "launch", "restart_after_crash")
-    log = os.environ.get(LOG)
+    again = str(SHARE / "launch" / "restart_after_crash")
+    log = os.environ.get(RVIZ_LOG)
     if log:
         with open(log, "ab") as stream:
             os.dup2(stream.fileno(), STDERR)
     os.execv(again, [again, program, "-d", config, "-f", options.frame, *rest])
 
 
-def _generated(frame: str, wait: float, server: bool) -> str:
+def observe(frame: str, wait: float) -> Observed:
+    """What the system on ROS_MASTER_URI has, waiting up to `wait` [s] for the simulator to publish its world."""
+    screen = x_display.screen_size() or Observed.screen
+    if not rosgraph.is_master_online():
+        return Observed(frame, screen=screen)
+    # Not under the name that RViz will have; on the wall clock, as simulated time may not run yet.
+    log_handlers.use()
+    rospy.init_node("robocop_rviz_config", argv=[], anonymous=True, disable_rostime=True, disable_signals=True)
+    robot = rospy.get_namespace().strip("/")
+    markers = _world(wait)
+    corners = [corners_of(marker) for marker in (markers.markers if markers else [])]
+    seen = Observed(
+        frame,
+        robot,
+        dict(rospy.get_published_topics()),
+        description=rospy.search_param("robot_description") is not None,
+        odom_tf=markers is None or bool(rospy.get_param(ODOM_TF, True)),
+        obstacles=None if markers is None else np.vstack([np.zeros((0, 3)), *corners])[:, :2],
+        start=(0.0, 0.0) if markers is None else _start(robot),
+        screen=screen,
+    )
+    rospy.signal_shutdown("RViz starts")
+    return seen
+
+
+def _world(wait: float) -> Optional[MarkerArray]:
+    """The markers of the simulator's world; None if they are not published within `wait` [s]."""
+    end = time.monotonic() + wait
+    while WORLD_TOPIC not in dict(rospy.get_published_topics()):
+        if time.monotonic() >= end:
+            return None
+        time.sleep(POLL)
+    try:
+        return rospy.wait_for_message(WORLD_TOPIC, MarkerArray, MESSAGE_TIMEOUT)
+    except rospy.ROSException:
+        return None
+
+
+def corners_of(marker: Marker) -> np.ndarray:
+    """Corners (n, 3) [m] of the box around an obstacle's marker; (0, 3) for markers that stand for no obstacle."""
+    if marker.ns != "world":
+        return np.zeros((0, 3))
+    if marker.type == Marker.TRIANGLE_LIST:
+        corners = np.array([(point.x, point.y, point.z) for point in marker.points]).reshape(-1, 3)
+    else:
+        corners = UNIT_CORNERS * (marker.scale.x, marker.scale.y, marker.scale.z)
+    position, turn = marker.pose.position, marker.pose.orientation
+    rotation = rotation_matrix((turn.x, turn.y, turn.z, turn.w))
+    return corners @ rotation.T + np.array([position.x, position.y, position.z])
+
+
+def _start(robot: str) -> Tuple[float, float]:
+    """Where the robot's odometry started, x, y [m] in map; the origin if that is unknown."""
+    transforms = tf2_ros.Buffer()
+    listener = tf2_ros.TransformListener(transforms)
+    try:
+        odom = f"{robot}/odom".lstrip("/")
+        found = transforms.lookup_transform("map", odom, rospy.Time(), rospy.Duration.from_sec(START_TIMEOUT))
+    except tf2_ros.TransformException:
+        return 0.0, 0.0
+    finally:
+        listener.unregister()
+    return found.transform.translation.x, found.transform.translation.y
+
+
+def _written(text: str) -> str:
     """Write the configuration to the folder of this run's logs; its path, one for each namespace."""
-    text = robocop(scene_of(frame, wait, server))
+    try:
+        run_id = str(rosgraph.Master("/robocop_rviz").getParam("/run_id"))
+    except (rosgraph.MasterException, OSError):
+        run_id = ""
     robot = rosgraph.names.get_ros_namespace().strip("/").replace("/", "_")
-    folder = os.path.join(rospkg.get_log_dir(), _run_id())
+    folder = os.path.join(rospkg.get_log_dir(), run_id)
     os.makedirs(folder, exist_ok=True)
     path = os.path.join(folder, f"robocop_{robot}.rviz" if robot else "robocop.rviz")
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     return path
-
-
-def _run_id() -> str:
-    """Of the ROS master; empty if it does not answer."""
-    try:
-        return str(rosgraph.Master("/robocop_rviz").getParam("/run_id"))
-    except (rosgraph.MasterException, OSError):
-        return ""

@@ -17,6 +17,8 @@ from ...bootstrap import master
 from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
 from ...process import signals
+from .. import log_handlers
+from ..names import absolute
 from ..publishing import publisher
 from ..ticker import wait_until
 from .held_key import HeldKey
@@ -33,26 +35,19 @@ KEYS = {
     "d": (0.0, -1.0),
     "q": (1.0, 1.0),
     "e": (1.0, -1.0),
-    "\x1b[A": (1.0, 0.0),  # arrows, in the terminal's normal mode and in its application mode
-    "\x1b[B": (-1.0, 0.0),
-    "\x1b[D": (0.0, 1.0),
-    "\x1b[C": (0.0, -1.0),
-    "\x1bOA": (1.0, 0.0),
-    "\x1bOB": (-1.0, 0.0),
-    "\x1bOD": (0.0, 1.0),
-    "\x1bOC": (0.0, -1.0),
 }
+ARROWS = {"A": "w", "B": "x", "C": "d", "D": "a"}  # after ESC [, or ESC O in the terminal's application mode
 HELP = """\
   q  w  e       forward, and turning left or right
   a     d       turn left, turn right            (arrow keys work as well)
      x          backward
-The robot stops when the key is released. Ctrl-C ends.
+The robot stops when the key is released. Ctrl-C quits.
 """
 
 
 def command(key: str, linear: float, angular: float) -> Twist2D:
     """The velocity for a key, given the speeds [m/s], [rad/s]; zero for no key and for one without a meaning."""
-    forward, left = KEYS.get(key, (0.0, 0.0))
+    forward, left = KEYS.get(ARROWS.get(key[2:], key), (0.0, 0.0))
     return Twist2D(forward * linear, left * angular)
 
 
@@ -138,7 +133,7 @@ def _speed(text: str) -> float:
     except ValueError:
         value = -1.0
     if not 0.0 < value < 100.0:
-        raise argparse.ArgumentTypeError(f"expected a number above 0, got {text!r}")
+        raise argparse.ArgumentTypeError(f"expected a number above 0 and below 100, got {text!r}")
     return value
 
 
@@ -159,8 +154,9 @@ def main() -> None:
     try:
         _require_terminal_and_master(terminal)
         # Wall time: a paused simulator must not keep keys from being read.
+        log_handlers.use()
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
-        teleop = Teleop(f"/{args.robot}/cmd_vel".replace("//", "/"), args.linear, args.angular)
+        teleop = Teleop(absolute(args.robot, "cmd_vel"), args.linear, args.angular)
         with _raw_keys(terminal):
             print(HELP, flush=True)
             teleop.run(terminal)

@@ -1,16 +1,30 @@
 """Whether a go-to action server is up, and why it may not be found."""
 
 import time
+from typing import Callable
 
 import actionlib
 import rosgraph
 import rospy
 
-from .. import graph, private_api
-from ..action import ACTION_TYPE
+from ...suggestions import did_you_mean
+from .. import graph
+from ..names import ACTION_TYPE
+from ..rospy_internals import is_connected_to, publishers_of, sender
 from ..ticker import wait_until
 
-is_up = private_api.connected_to_server
+
+def is_up(client: actionlib.ActionClient) -> bool:
+    """Whether all five topics of an action client are connected to its server, without waiting.
+
+    actionlib's wait_for_server measures its timeout in ROS time: on a paused simulator it never returns.
+    """
+    if client.last_status_msg is None:
+        return False
+    server = sender(client.last_status_msg)
+    return all(server in publishers_of(topic) for topic in (client.result_sub, client.feedback_sub)) and all(
+        is_connected_to(topic, server) for topic in (client.pub_goal, client.pub_cancel)
+    )
 
 
 def absence(action: str) -> str:
@@ -28,23 +42,29 @@ def _hint(action: str) -> str:
     others = [name for name, type_ in servers.items() if type_ == ACTION_TYPE and name != wanted]
     if not others:
         return ""
-    same_base_name = any(name.endswith("/" + wanted.rpartition("/")[2]) for name in others)
-    question = "which robot is meant?" if same_base_name else "a misspelt name?"
-    return f"; there is {' and '.join(map(repr, others))} of the same type: {question}"
+    robot, _, base_name = wanted[1:].rpartition("/")
+    named = [name[1:].rpartition("/")[0] for name in others if name.endswith(f"/{base_name}")]
+    question = ": which robot is meant?" if named else ": a misspelt name?"
+    if robot:
+        question = did_you_mean(robot, named) or question
+    return f"; there is {' and '.join(map(repr, others))} of the same type{question}"
 
 
 def advice() -> str:
-    """What to do about a server that stays away, for a user of this namespace."""
+    """What a user of this namespace can do about a server that is still missing."""
     namespace = rospy.get_namespace().rstrip("/")
     setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
     command = f"./robocop shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
     return f"the server's output may say why it ended; to start it again, in another terminal: {command}"
 
 
-def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float) -> str:
-    """Wait up to `timeout` [s, wall] for the server; an empty string, or why it may be missing and what to do."""
+def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float, ended: Callable[[], bool]) -> str:
+    """Wait up to `timeout` [s, wall] for the server, or until its system has ended.
+
+    An empty string, or why it may be missing and what to do.
+    """
     started = time.monotonic()
-    if wait_until(lambda: is_up(client), timeout):
+    if wait_until(lambda: is_up(client) or ended(), timeout) and not ended():
         return ""
     hint = _hint(action) or "; the terminal in which the system was started shows why its server ended, if it did"
     return f"no answer from {action} for {time.monotonic() - started:.0f} s{hint}"

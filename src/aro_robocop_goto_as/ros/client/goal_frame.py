@@ -1,19 +1,19 @@
 """A stamped pose in any frame -> the goal's position in the server's frame, or FrameError; never raw numbers."""
 
-import time
-from typing import Callable, Optional, Tuple
+from typing import Callable, Optional
 
 import ros_numpy
 import rospy
-import tf2_geometry_msgs  # noqa: F401  registers the pose types with tf2
+import tf2_geometry_msgs
 import tf2_ros
-from geometry_msgs.msg import Point, PoseStamped
+from geometry_msgs.msg import Point, PointStamped, PoseStamped
 from nav_msgs.msg import Odometry
 
 from ...errors import FrameError
-from ...geometry import FARTHEST, Pose2D, compose
+from ...geometry import Pose2D, compose
 from .. import convert
-from .tf_buffer import STAMP_LIMIT, TfBuffer, is_possible
+from ..ticker import wait_until
+from .tf_buffer import TfBuffer, is_possible
 
 POLL = 0.01  # [s, wall]
 
@@ -34,73 +34,59 @@ class GoalTransformer:
     def resolve(self, pose: PoseStamped) -> Point:
         """The pose's position in goal_frame at the pose's stamp.
 
-        Waits up to `timeout` [s, wall] for the transform at the goal's stamp. Then uses the latest transform;
-        FrameError if the frames are not connected. Where TF does not connect them but the latest odometry does, uses
-        that without waiting. FrameError also for a position that is not
-        finite or beyond FARTHEST, before or after the transform.
+        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, then uses the latest one. Where TF does
+        not connect the frames but the latest odometry does, uses that without waiting. FrameError if the frames are not
+        connected, and for a position that is not finite or beyond FARTHEST, before or after the transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
-        _require_near(x, y, z)
+        convert.require_near(x=x, y=y, z=z)
         frame = pose.header.frame_id.lstrip("/")
         if not frame:
             frame = self.default_frame
-            rospy.logwarn("the goal has no frame_id; the default %r is assumed", frame)
+            rospy.logwarn("goal without frame_id; assuming the default %r", frame)
         if frame == self.goal_frame:
             return Point(x, y, z)
         position = self._transform(Point(x, y, z), frame, pose.header.stamp)
-        _require_near(position.x, position.y, position.z, f" in {self.goal_frame!r}, transformed from {frame!r}")
+        where = f" in {self.goal_frame!r}, transformed from {frame!r}"
+        convert.require_near(where, x=position.x, y=position.y, z=position.z)
         return position
 
     def _transform(self, point: Point, frame: str, stamp: rospy.Time) -> Point:
-        deadline = time.monotonic() + self.timeout
-        while True:
-            transformed, _ = self._transform_at(point, frame, stamp)
-            if transformed is None and not self.buffer.can_transform(self.goal_frame, frame, rospy.Time(0)):
-                transformed = self._transform_by_odometry(point, frame)
-            if transformed is not None:
-                return transformed
-            if time.monotonic() >= deadline or rospy.is_shutdown():
-                break
-            time.sleep(POLL)
-        transformed, reason = self._transform_at(point, frame, rospy.Time(0))
-        if transformed is None:
-            raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} within {self.timeout:g} s: {reason}")
-        rospy.logwarn(
-            "no transform from %r to %r at the goal's time %.3f within %g s; the latest one is used",
-            frame,
-            self.goal_frame,
-            stamp.to_sec(),
-            self.timeout,
-        )
-        return transformed
+        def at_stamp() -> Optional[Point]:
+            return self._by_tf(point, frame, stamp) if self._connects(frame, stamp) else self._by_odometry(point, frame)
 
-    def _transform_at(self, point: Point, frame: str, stamp: rospy.Time) -> Tuple[Optional[Point], str]:
-        """The transformed point, or None with the reason; does not wait."""
-        if not is_possible(stamp):
-            return None, f"the stamp of {stamp.secs} s is beyond {STAMP_LIMIT} s"
-        pose = PoseStamped()
-        pose.header.frame_id, pose.header.stamp = frame, stamp
-        pose.pose.position = point
-        pose.pose.orientation.w = 1.0
         try:
-            transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp)
+            position = wait_until(at_stamp, self.timeout, POLL)
+            if position is not None:
+                return position
+            position = self._by_tf(point, frame, rospy.Time(0))
         except tf2_ros.TransformException as error:
-            return None, str(error)
-        return tf2_geometry_msgs.do_transform_pose(pose, transform).pose.position, ""
+            within = f"within {self.timeout:g} s: {error}"
+            raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} {within}") from error
+        rospy.logwarn(
+            f"no transform from {frame!r} to {self.goal_frame!r} at the goal's time {stamp.to_sec():.3f} within "
+            f"{self.timeout:g} s; using the latest one"
+        )
+        return position
 
-    def _transform_by_odometry(self, point: Point, frame: str) -> Optional[Point]:
-        """The transformed point if the latest odometry message connects exactly these two frames."""
+    def _by_tf(self, point: Point, frame: str, stamp: rospy.Time) -> Point:
+        transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp)
+        return tf2_geometry_msgs.do_transform_point(PointStamped(point=point), transform).point
+
+    def _connects(self, frame: str, stamp: rospy.Time) -> bool:
+        """Whether TF connects a frame with goal_frame at a stamp; does not wait."""
+        return is_possible(stamp) and bool(self.buffer.can_transform(self.goal_frame, frame, stamp))
+
+    def _by_odometry(self, point: Point, frame: str) -> Optional[Point]:
+        """The transformed point if the latest odometry connects exactly these two frames, and TF does not."""
         odom = self.latest_odom()
         if odom is None or (odom.header.frame_id, odom.child_frame_id) != (self.goal_frame, frame):
             return None
+        if self._connects(frame, rospy.Time(0)):
+            return None
         try:
-            goal_from_frame = convert.to_possible_pose(odom.pose.pose)
+            goal_from_frame = convert.from_pose_msg(odom.pose.pose)
         except FrameError as error:
             raise FrameError(f"odometry holds an impossible pose of {frame!r}: {error}") from error
         goal = compose(goal_from_frame, Pose2D(point.x, point.y))
         return Point(goal.x, goal.y, point.z)
-
-
-def _require_near(x: float, y: float, z: float, where: str = "") -> None:
-    if not all(abs(value) <= FARTHEST for value in (x, y, z)):  # false for NaN
-        raise FrameError(f"position x {x} y {y} z {z}{where}: expected finite numbers within +-{FARTHEST:g} m")

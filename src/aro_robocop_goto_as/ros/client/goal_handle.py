@@ -29,11 +29,12 @@ class SentGoal:
         self,
         client: actionlib.ActionClient,
         position: Point,
-        on_end: Callable[[str], None],
+        on_end: Callable[[str], None] = lambda ending: None,
         on_feedback: Callable[[GoToPositionFeedback], None] = lambda feedback: None,
     ) -> None:
         self.position = position
         self.done = threading.Event()
+        self.ending = ""  # state and message, once it is done
         self.feedback: Optional[GoToPositionFeedback] = None
         self.result: Optional[GoToPositionResult] = None
         self._on_end = on_end
@@ -54,7 +55,8 @@ class SentGoal:
             return
         self.result = result = handle.get_result()
         state = STATES[handle.get_terminal_state()]
-        self._on_end(f"{state}: {result.message}" if result is not None and result.message else state)
+        self.ending = f"{state}: {result.message}" if result is not None and result.message else state
+        self._on_end(self.ending)
         self.done.set()
 
     def _handle_feedback(self, _handle: ClientGoalHandle, feedback: GoToPositionFeedback) -> None:
@@ -66,9 +68,8 @@ class SentGoal:
         goal = f"goal x {self.position.x:.2f} y {self.position.y:.2f}"
         if state not in UNFINISHED:
             return f"{goal} has ended ({state}), waiting for its result"
-        goal = f"{goal} is {state}"
         feedback = self.feedback
         if feedback is None:
-            return goal
+            return f"{goal} is {state}"
         errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
-        return f"{goal}: {feedback.message} ({errors})"
+        return f"{goal} is {state}: {feedback.message} ({errors})"

@@ -16,7 +16,7 @@ from aro_robocop_goto_as.msg import GoToPositionAction
 from ...errors import FrameError
 from ...params import BridgeParams
 from .. import param_server
-from ..action import ACTION
+from ..names import ACTION, BRIDGE
 from ..node_main import node
 from ..ticker import wait_until
 from ..timer import start_timer
@@ -37,10 +37,8 @@ class Bridge:
         self.click: Optional[PoseStamped] = None
         self.clicked = threading.Condition()
         self.sent: Optional[SentGoal] = None
-        self.last_result = ""
         self.last_status = ""
         self.last_seen = time.monotonic()  # when the server was up
-        self.warned_of_raw_goals = False
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
         self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
@@ -68,7 +66,7 @@ class Bridge:
                 self._replace_goal(self._resolve(click))
             except FrameError as error:
                 rospy.logerr("goal refused, an earlier goal continues: %s", error)
-                self._publish_status(f"goal refused: {error}")
+                self._publish_status(f"goal refused: {error}", rospy.loginfo)
             except Exception:  # the click's outermost level: the next one is served nevertheless
                 if not rospy.is_shutdown():
                     rospy.logerr("goal not sent:\n%s", traceback.format_exc())
@@ -83,13 +81,11 @@ class Bridge:
     def _resolve(self, click: PoseStamped) -> Point:
         if not self.p.ignore_goal_frame:
             return self.transformer.resolve(click)
-        if not self.warned_of_raw_goals:
-            self.warned_of_raw_goals = True
-            rospy.logwarn(
-                "ignore_goal_frame is set: coordinates in %r are sent to the server as if they were in %r",
-                click.header.frame_id,
-                self.p.goal_frame,
-            )
+        rospy.logwarn_once(
+            "ignore_goal_frame is set: coordinates in %r are sent to the server as if they were in %r",
+            click.header.frame_id,
+            self.p.goal_frame,
+        )
         return click.pose.position
 
     def _replace_goal(self, position: Point) -> None:
@@ -99,15 +95,15 @@ class Bridge:
         earlier = self.sent
         if earlier is not None and not earlier.done.is_set():
             earlier.cancel()
-            ended = earlier.done
-            if not wait_until(lambda: ended.is_set() or self.click is not None, self.p.cancel_timeout):
+            ended = earlier.done.is_set
+            if not wait_until(lambda: ended() or self.click is not None, self.p.cancel_timeout):
                 rospy.logwarn(
                     "the earlier goal did not end within %g s of its cancel; sending the new goal preempts it",
                     self.p.cancel_timeout,
                 )
         if self.click is not None:
             return
-        self.sent = SentGoal(self.client, position, self._on_end)
+        self.sent = SentGoal(self.client, position, lambda ending: rospy.loginfo("goal ended, %s", ending))
         rospy.loginfo("goal sent: x %.2f y %.2f in %s", position.x, position.y, self.p.goal_frame)
         self._report()
 
@@ -119,39 +115,32 @@ class Bridge:
         wait_until(lambda: discovery.is_up(self.client) or self.click is not None, float("inf"))
         return self.click is None and not rospy.is_shutdown()
 
-    def _on_end(self, ending: str) -> None:
-        self.last_result = ending
-        rospy.loginfo("goal ended, %s", ending)
-
     # -- status report --
 
     def _report(self) -> None:
-        """Publish the status now."""
-        if discovery.is_up(self.client):
-            self.last_seen = time.monotonic()
-            self._publish_status(self._describe())
-        elif time.monotonic() - self.last_seen > ADVICE_AFTER:
-            self._publish_status(f"{discovery.absence(ACTION)}; {discovery.advice()}", rospy.logwarn)
-        else:
-            self._publish_status(discovery.absence(ACTION))
+        """Publish the state of the server, and of the last goal as this client knows it."""
+        log = rospy.loginfo
+        if not discovery.is_up(self.client):
+            text = discovery.absence(ACTION)
+            if time.monotonic() - self.last_seen > ADVICE_AFTER:
+                text, log = f"{text}; {discovery.advice()}", rospy.logwarn
+            return self._publish_status(text, log)
+        self.last_seen = time.monotonic()
+        sent = self.sent
+        if sent is not None and not sent.done.is_set():
+            return self._publish_status(str(sent), log)
+        last = "no goal yet" if sent is None else f"last goal {sent.ending}"
+        self._publish_status(f"{ACTION} is ready, {last}", log)
 
-    def _publish_status(self, text: str, log: Callable[..., None] = rospy.loginfo) -> None:
-        """Publish a status; log it if it is news."""
+    def _publish_status(self, text: str, log: Callable[..., None]) -> None:
+        """Publish a status, and log it if it has changed."""
         if text != self.last_status:
             log("%s", text)
         self.last_status = text
         self.status.publish(String(text))
 
-    def _describe(self) -> str:
-        """The state of a server that is up, and of the last goal, as this client knows it."""
-        if self.sent is None:
-            return f"{ACTION} is ready, no goal yet"
-        if self.sent.done.is_set():
-            return f"{ACTION} is ready, last goal {self.last_result}"
-        return str(self.sent)
-
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    with node("robocop_rviz_goto_ac_node"):
+    with node(BRIDGE):
         Bridge(param_server.load(BridgeParams)).run()

@@ -1,4 +1,4 @@
-"""A TF buffer that survives impossible stamps: tf2's C++ core ends the process at them instead of raising."""
+"""A TF buffer that refuses impossible stamps, at which tf2's C++ core ends the process instead of raising."""
 
 import rospy
 import tf2_ros
@@ -15,24 +15,20 @@ def is_possible(stamp: rospy.Time) -> bool:
 class TfBuffer(tf2_ros.Buffer):
     """Refuses transforms with impossible stamps; the latest possible ones stay in force."""
 
-    def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Add a transform from /tf."""
-        if _is_accepted(transform, authority):
+    def set_transform(self, transform: TransformStamped, authority: str, is_static: bool = False) -> None:
+        """Add a transform from /tf or /tf_static."""
+        header = transform.header
+        if not is_possible(header.stamp):
+            rospy.logwarn_throttle(
+                10.0,
+                f"ignoring transform {header.frame_id!r} -> {transform.child_frame_id!r} of {authority}: its stamp of "
+                f"{header.stamp.secs} s is beyond {STAMP_LIMIT} s",
+            )
+        elif is_static:
+            super().set_transform_static(transform, authority)
+        else:
             super().set_transform(transform, authority)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
         """Add a transform from /tf_static."""
-        if _is_accepted(transform, authority):
-            super().set_transform_static(transform, authority)
-
-
-def _is_accepted(transform: TransformStamped, authority: str) -> bool:
-    header = transform.header
-    accepted = is_possible(header.stamp)
-    if not accepted:
-        rospy.logwarn_throttle(
-            10.0,
-            f"transform {header.frame_id!r} -> {transform.child_frame_id!r} of {authority} is ignored: its stamp of "
-            f"{header.stamp.secs} s is beyond {STAMP_LIMIT} s",
-        )
-    return accepted
+        self.set_transform(transform, authority, is_static=True)

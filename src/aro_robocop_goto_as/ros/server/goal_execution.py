@@ -2,7 +2,7 @@
 
 import time
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 import ros_numpy
 import rospy
@@ -10,11 +10,12 @@ import rospy
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
 from ... import goto
-from ...geometry import FARTHEST, STANDSTILL, Twist2D
+from ...geometry import FARTHEST, STANDSTILL
 from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate
-from ...params import GotoParams
-from ...simulation.clock import NANOSECONDS
+from ...goto_params import GotoParams
+from ...simulation.schedule import NANOSECONDS
 from .inputs import Inputs
+from .tuning import Tuning
 
 LONGEST_GAP = 2.0  # control periods between two steps; what is longer is time in which the server could not drive
 
@@ -32,29 +33,21 @@ class Ending:
         return f"{self.outcome.value}: {self.text}"
 
 
-@dataclass(frozen=True)
-class Step:
-    """What one control period brought: a velocity to command and feedback, or an ending, or all three."""
-
-    twist: Twist2D = STANDSTILL
-    feedback: Optional[GoToPositionFeedback] = None  # None without recent odometry and scan
-    ending: Optional[Ending] = None
-
-
 class GoalExecution:
-    """The state of one accepted goal. Times are ROS times unless marked wall."""
+    """The state of one accepted goal. Times are ROS times [s] unless marked wall."""
 
-    def __init__(self, message: GoToPositionGoal, p: GotoParams, inputs: Inputs) -> None:
+    def __init__(self, message: GoToPositionGoal, tuning: Tuning, inputs: Inputs) -> None:
         x, y, self.z = (float(value) for value in ros_numpy.numpify(message.position))
         self.goal = Goal(x, y)
-        self.p = p
-        self.inputs = inputs
-        self.accepted = time.monotonic()  # [s, wall]
-        self.started: Optional[float] = None
-        self.last: Optional[float] = None  # time of the previous step
-        self.stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
-        self.progress: Optional[Progress] = None
-        self.twist = STANDSTILL
+        self.outcome: Optional[Outcome] = None  # set by the goal's owner when the goal has ended
+        self.twist = STANDSTILL  # of the newest control period
+        self._tuning = tuning
+        self._inputs = inputs
+        self._accepted = time.monotonic()  # [s, wall]
+        self._started: Optional[float] = None
+        self._last: Optional[float] = None  # time of the previous step
+        self._stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
+        self._progress: Optional[Progress] = None
 
     def refusal(self) -> Optional[Ending]:
         """The ending of a goal that is not a position in reach; None for a valid goal."""
@@ -65,50 +58,52 @@ class GoalExecution:
             f"position x {self.goal.x} y {self.goal.y}: expected finite numbers in metres, at most {FARTHEST:g}",
         )
 
-    def step(self, tick_ns: int) -> Step:
-        """Run one control period, at time `tick_ns`."""
-        now = tick_ns / NANOSECONDS
-        if self.started is None or now < self.started:  # first period, or the clock was set back
-            self.started, self.progress, self.last = now, None, None
-        gap = 0.0 if self.last is None else now - self.last
-        self.stalled += max(0.0, gap - LONGEST_GAP / self.p.control_rate)
-        self.last = now
-        missing = self.inputs.missing(now, self.started, self.accepted)
+    def step(self, tick_ns: int) -> Tuple[Optional[GoToPositionFeedback], Optional[Ending]]:
+        """Run one control period, at time `tick_ns`: sets `twist`.
+
+        Returns feedback, None without recent odometry and scan, and the goal's ending, None to go on.
+        """
+        p, now = self._tuning.params, tick_ns / NANOSECONDS
+        if self._started is None or now < self._started:  # first period, or the clock was set back
+            self._started, self._progress, self._last = now, None, None
+        gap = 0.0 if self._last is None else now - self._last
+        self._stalled += max(0.0, gap - LONGEST_GAP / p.control_rate)
+        self._last = now
+        missing = self._inputs.missing(now, self._started, self._accepted)
         if missing is not None:
-            return Step(ending=Ending(*missing))
-        inputs = self.inputs.read()
+            return None, Ending(*missing)
+        inputs = self._inputs.read()
         if inputs is None:
-            return Step()
+            return None, None
         pose, clearance = inputs
-        decision = goto.decide(pose, clearance, self.goal, self.p)
-        self.progress = goto.track_progress(
-            self.progress, decision.errors, now - self.stalled, self.p.stuck_distance, self.p.stuck_angle
-        )
-        self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / self.p.control_rate, self.p)
-        feedback = GoToPositionFeedback(decision.errors.position, decision.errors.angle, describe(decision))
-        return Step(self.twist, feedback, self._ending(decision, clearance, now, self.started, self.progress))
+        decision = goto.decide(pose, clearance, self.goal, p)
+        errors, driven = decision.errors, now - self._stalled
+        self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
+        self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)
+        feedback = GoToPositionFeedback(errors.position, errors.angle, describe(decision))
+        elapsed, idle = now - self._started, driven - self._progress.since
+        return feedback, self._ending(p, decision, clearance, elapsed, idle)
 
     def _ending(
-        self, decision: Decision, clearance: float, now: float, started: float, progress: Progress
+        self, p: GotoParams, decision: Decision, clearance: float, elapsed: float, idle: float
     ) -> Optional[Ending]:
-        """The ending required by this decision, by lack of progress or by the goal's time limit; None to go on."""
-        errors, elapsed = decision.errors, now - started
-        where = f"{errors.position:.3f} m from the goal x {self.goal.x:.2f} y {self.goal.y:.2f} after {elapsed:.1f} s"
+        """The ending that follows from this decision, the time without progress or the time since the start."""
+        x, y = self.goal.x, self.goal.y
+        where = f"{decision.errors.position:.3f} m from the goal x {x:.2f} y {y:.2f} after {elapsed:.1f} s"
         if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)
         if isinstance(decision, End):
-            limit = f"limit {self.p.obstacle_distance:g} m"
-            return Ending(decision.outcome, f"something is {clearance:.3f} m ahead, {limit}; {where}")
-        idle = now - self.stalled - progress.since
-        if idle > self.p.stuck_timeout:
+            obstacle = f"obstacle {clearance:.3f} m ahead (limit {p.obstacle_distance:g} m)"
+            return Ending(decision.outcome, f"{obstacle}; {where}")
+        if idle > p.stuck_timeout:
             return Ending(Outcome.STUCK, f"no progress for {idle:.1f} s; {where}")
-        if 0.0 < self.p.goal_timeout < elapsed:
-            return Ending(Outcome.TIMEOUT, f"limit {self.p.goal_timeout:g} s; {where}")
+        if 0.0 < p.goal_timeout < elapsed:
+            return Ending(Outcome.TIMEOUT, f"not reached within {p.goal_timeout:g} s; {where}")
         return None
 
     def stopped_early(self, outcome: Outcome, reason: str) -> Ending:
         """The ending of a goal that a client or a shutdown stops."""
-        elapsed = 0.0 if self.started is None else max(0.0, rospy.get_rostime().to_sec() - self.started)
+        elapsed = 0.0 if self._started is None else max(0.0, rospy.get_rostime().to_sec() - self._started)
         return Ending(outcome, f"goal x {self.goal.x:.2f} y {self.goal.y:.2f} stopped after {elapsed:.1f} s: {reason}")
 
 

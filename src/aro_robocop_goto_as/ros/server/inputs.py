@@ -4,7 +4,7 @@ import math
 import threading
 import time
 from dataclasses import dataclass
-from typing import Any, Optional, Tuple
+from typing import Any, Callable, Optional, Tuple
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -14,9 +14,8 @@ from ... import goto
 from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
 from ...goto import Outcome
-from ...params import GotoParams
 from .. import convert
-from ..ticker import wait_until
+from .tuning import Tuning
 
 # [s, wall] for the first message on a topic after a goal was accepted. The connection to a publisher that has just
 # started takes up to a second on a busy machine; at full speed data_timeout passes meanwhile.
@@ -31,48 +30,38 @@ class Received:
 
     message: Any
     at: float
-    wall: float  # of time.monotonic
+    wall: float
     stamp_ns: int
-    period_ns: Optional[int]  # the shortest so far
-
-    def is_newest_at(self, tick_ns: int) -> bool:
-        """Whether, by the topic's period, no newer message is due by this time."""
-        return self.period_ns is None or tick_ns - self.stamp_ns < self.period_ns
+    period_ns: float = math.inf  # the shortest so far
 
 
-def _now() -> float:
+def _ros_time() -> float:
     return rospy.get_rostime().to_sec()
-
-
-def _received(message: Any, previous: Optional[Received]) -> Received:
-    stamp_ns = convert.to_ns(message.header.stamp)
-    periods = []
-    if previous is not None and stamp_ns > previous.stamp_ns:  # false after the clock was set back
-        periods = [period for period in (stamp_ns - previous.stamp_ns, previous.period_ns) if period is not None]
-    return Received(message, _now(), time.monotonic(), stamp_ns, min(periods) if periods else None)
 
 
 class Inputs:
     """Callbacks store the newest messages; the control loop reads what they mean."""
 
-    def __init__(self, p: GotoParams) -> None:
-        self.p = p
+    def __init__(
+        self, tuning: Tuning, ros_time: Callable[[], float] = _ros_time, wall: Callable[[], float] = time.monotonic
+    ) -> None:
+        """`ros_time` and `wall` are the clocks [s]."""
+        self._tuning = tuning
+        self._ros_time, self._wall = ros_time, wall
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
         self._arrived = threading.Condition()
-        # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
-        # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
-        rospy.Subscriber("odom", Odometry, self._on_odom, tcp_nodelay=True)
-        rospy.Subscriber("scan", LaserScan, self._on_scan, tcp_nodelay=True)
 
-    def _on_odom(self, message: Odometry) -> None:
+    def on_odom(self, message: Odometry) -> None:
+        """Store odometry; a callback."""
         with self._arrived:
-            self.odom = _received(message, self.odom)
+            self.odom = self._received(message, self.odom)
             self._arrived.notify_all()
 
-    def _on_scan(self, message: LaserScan) -> None:
-        received = _received(message, self.scan)
+    def on_scan(self, message: LaserScan) -> None:
+        """Store a scan; a callback."""
+        received = self._received(message, self.scan)
         clearance = self._clearance_in(message)
         with self._arrived:
             if clearance is None or not math.isnan(clearance):
@@ -80,51 +69,61 @@ class Inputs:
             self.scan = received
             self._arrived.notify_all()
 
+    def _received(self, message: Any, previous: Optional[Received]) -> Received:
+        stamp_ns, period_ns = convert.to_ns(message.header.stamp), math.inf
+        if previous is not None and stamp_ns > previous.stamp_ns:  # false after the clock was set back
+            period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
+        return Received(message, self._ros_time(), self._wall(), stamp_ns, period_ns)
+
     def await_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
+
+        def complete() -> bool:  # by the topics' periods no newer message is due
+            newest = [topic for topic in (self.odom, self.scan) if topic is not None]
+            return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
+
         with self._arrived:
-            self._arrived.wait_for(
-                lambda: all(topic is None or topic.is_newest_at(tick_ns) for topic in (self.odom, self.scan)),
-                LOCKSTEP_PATIENCE,
-            )
+            self._arrived.wait_for(complete, LOCKSTEP_PATIENCE)
 
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.
 
-        They must be missing on the wall clock, too: a topic without any message since the goal was accepted, at
-        `accepted` of time.monotonic, may just be connecting, and a message published before a clock tick may arrive
-        after it.
+        They must be missing on the wall clock, too: a topic without any message since the goal was accepted, at the
+        wall time `accepted`, may just be connecting, and a message published before a clock tick may arrive after it.
         """
-        for received, outcome in ((self.odom, Outcome.NO_ODOM), (self.valid_scan, Outcome.NO_SCAN)):
+        for name, outcome, newest, valid in (
+            ("odom", Outcome.NO_ODOM, self.odom, self.odom),
+            ("scan", Outcome.NO_SCAN, self.scan, self.valid_scan),
+        ):
             last = started
             # A message later than the present is from before the clock was set back; one later than `now` need not be.
-            if received is not None and received.at <= _now():
-                last = max(started, received.at)
-            if now - last <= self.p.data_timeout or self._may_be_connecting(outcome, accepted):
-                continue
-            if not wait_until(self._has_data, LATE_DATA):
-                since = "so far" if received is None else f"for {now - received.at:.1f} s"
-                return outcome, f"no {self._what_is_missing(outcome)} {since}, limit {self.p.data_timeout:g} s"
+            if valid is not None and valid.at <= self._ros_time():
+                last = max(started, valid.at)
+            overdue = now - last > self._tuning.params.data_timeout
+            if overdue and not self._may_be_connecting(newest, accepted) and not self._arrives_late():
+                return outcome, self._absence(name, valid, now)
         return None
 
-    def _may_be_connecting(self, outcome: Outcome, accepted: float) -> bool:
-        newest = self.odom if outcome is Outcome.NO_ODOM else self.scan
-        return (newest is None or newest.wall < accepted) and time.monotonic() - accepted < FIRST_MESSAGE
+    def _may_be_connecting(self, newest: Optional[Received], accepted: float) -> bool:
+        return (newest is None or newest.wall < accepted) and self._wall() - accepted < FIRST_MESSAGE
 
-    def _what_is_missing(self, outcome: Outcome) -> str:
-        if outcome is Outcome.NO_ODOM:
-            return f"message on {rospy.resolve_name('odom')}"
-        # By the time of now, as scans have arrived since the control period began.
-        what = "valid beam ahead" if self._is_recent(self.scan, _now()) else "message"
-        return f"{what} on {rospy.resolve_name('scan')}"
+    def _arrives_late(self) -> bool:
+        with self._arrived:
+            return self._arrived.wait_for(self._has_data, LATE_DATA)
 
-    def _is_recent(self, received: Optional[Received], now: float) -> bool:
-        return received is not None and 0.0 <= now - received.at <= self.p.data_timeout
+    def _absence(self, name: str, valid: Optional[Received], now: float) -> str:
+        # By the present time, as scans have arrived since the control period began.
+        what = "valid beam ahead" if name == "scan" and self._is_recent(self.scan) else "message"
+        since = "so far" if valid is None else f"for {now - valid.at:.1f} s"
+        return f"no {what} on {rospy.resolve_name(name)} {since} (limit {self._tuning.params.data_timeout:g} s)"
+
+    def _is_recent(self, received: Optional[Received]) -> bool:
+        age = -1.0 if received is None else self._ros_time() - received.at
+        return 0.0 <= age <= self._tuning.params.data_timeout
 
     def _has_data(self) -> bool:
         """Whether both odometry and a valid scan are recent enough to move the robot."""
-        now = _now()
-        return self._is_recent(self.odom, now) and self._is_recent(self.valid_scan, now)
+        return self._is_recent(self.odom) and self._is_recent(self.valid_scan)
 
     def read(self) -> Optional[Tuple[Pose2D, float]]:
         """Pose in odom and clearance ahead [m]; None without recent messages.
@@ -135,23 +134,26 @@ class Inputs:
         if odom is None or scan is None or not self._has_data():
             return None
         try:
-            pose = convert.to_possible_pose(odom.message.pose.pose)
+            pose = convert.from_pose_msg(odom.message.pose.pose)
         except FrameError as error:
             raise RobocopError(f"{rospy.resolve_name('odom')} holds an impossible pose: {error}") from error
         clearance = self._clearance_in(scan.message)
         if clearance is None:
-            degrees = math.degrees(self.p.obstacle_half_angle)
+            s, cone = scan.message, math.degrees(self._tuning.params.obstacle_half_angle)
+            angles = f"angles {s.angle_min:g} to {s.angle_max:g} rad, increment {s.angle_increment:g} rad"
             raise RobocopError(
-                f"{rospy.resolve_name('scan')} has no beam within {degrees:.0f} degrees of straight ahead"
+                f"{rospy.resolve_name('scan')} has no beam within {cone:.0f} degrees of straight ahead "
+                f"({len(s.ranges)} beams, {angles})"
             )
         return pose, clearance
 
     def clearance(self) -> Optional[float]:
         """Distance to the nearest obstacle ahead [m]; None without a recent valid scan or without a beam ahead."""
         scan = self.valid_scan
-        return self._clearance_in(scan.message) if scan is not None and self._is_recent(scan, _now()) else None
+        return self._clearance_in(scan.message) if scan is not None and self._is_recent(scan) else None
 
     def _clearance_in(self, s: LaserScan) -> Optional[float]:
-        return goto.clearance_ahead(
-            s.ranges, s.angle_min, s.angle_increment, s.range_min, s.range_max, self.p.obstacle_half_angle
-        )
+        if s.angle_increment * (s.angle_max - s.angle_min) < 0.0:  # clockwise or counter-clockwise?
+            return None
+        half_angle = self._tuning.params.obstacle_half_angle
+        return goto.clearance_ahead(s.ranges, s.angle_min, s.angle_increment, s.range_min, s.range_max, half_angle)

@@ -7,17 +7,21 @@ from typing import Optional
 
 import rospy
 from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionResult, TickAnswer
+from aro_robocop_goto_as.msg import GoToPositionResult, TickAnswer
 
 from ...errors import RobocopError
 from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
-from ...params import GotoParams
-from .. import convert, param_server, private_api
+from ...goto_params import GotoParams
+from .. import convert, param_server
+from ..names import SERVER
 from ..node_main import node
 from ..publishing import publisher
+from ..rospy_internals import is_connected_to, sender
 from ..ticker import Ticker
 from ..timer import start_timer
 from . import markers
@@ -40,19 +44,21 @@ class GotoServer:
     """
 
     def __init__(self, p: GotoParams) -> None:
-        self.p = p
         self.tuning = Tuning(p)
-        self.inputs = Inputs(p)
-        self.goal: Optional[GoalExecution] = None
+        self.inputs = Inputs(self.tuning)
+        self.execution: Optional[GoalExecution] = None  # of the current goal
+        self.newest: Optional[GoalExecution] = None  # for RViz, in which it stays until the next one
         self.command: Optional[Twist2D] = None  # published since the last answer to a lockstep simulator
         self.state = "idle"  # for RViz
-        self.shown_goal: Optional[markers.ShownGoal] = None
-        self.logged_z = False
         self.stopping = threading.Event()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
         self.server = GoalServer(GoToPositionResult(False, NOT_STARTED.message))
+        # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
+        # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
+        rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
+        rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
         self.loop = threading.Thread(target=self._control_loop, name="control loop", daemon=True)
         self.loop.start()
         rospy.on_shutdown(self._shut_down)
@@ -62,7 +68,7 @@ class GotoServer:
     # -- the control loop --
 
     def _control_loop(self) -> None:
-        ticker = Ticker(1.0 / self.p.control_rate, self._has_request)
+        ticker = Ticker(1.0 / self.tuning.params.control_rate, self._has_request)
         while not self._is_finished():
             try:
                 self._run_once(ticker)
@@ -75,7 +81,6 @@ class GotoServer:
         ticked = ticker.wait()
         try:
             if ticked:
-                self._adopt_parameters()
                 self._advance(ticker.tick_ns)
             else:
                 self._serve_request()
@@ -85,68 +90,54 @@ class GotoServer:
             if ticked:
                 self._answer_tick(ticker.tick_ns)
 
-    def _adopt_parameters(self) -> None:
-        """Use the newest parameters from this control period on, also for the current goal."""
-        self.p = self.tuning.params
-        if self.goal is not None:
-            self.goal.p = self.p
-
     def _has_request(self) -> bool:
-        return (
-            self.stopping.is_set()
-            or self.server.is_new_goal_available()
-            or (self.goal is not None and self.server.is_preempt_requested())
-        )
+        return self.stopping.is_set() or self.server.has_request()
 
     def _is_finished(self) -> bool:
         """On shutdown, whether every goal received so far has ended."""
-        idle = self.goal is None and not self.server.is_new_goal_available()
+        idle = self.execution is None and not self.server.has_request()
         return rospy.is_shutdown() or (self.stopping.is_set() and idle)
 
     def _serve_request(self) -> None:
-        """End the current goal if there is one, else accept the newest."""
-        if self.goal is None:
-            if self.server.is_new_goal_available():
-                self._accept_goal()
-        elif self.stopping.is_set():
-            self._end(self.goal.stopped_early(Outcome.SHUTDOWN, "the server is shutting down"))
-        elif self.server.is_new_goal_available():
-            self._end(self.goal.stopped_early(Outcome.PREEMPTED, "a newer goal replaced it"))
-        else:
-            self._end(self.goal.stopped_early(Outcome.PREEMPTED, "it was cancelled"))
+        """End the current goal if what has arrived replaces or cancels it, or on shutdown; accept the newest."""
+        self.server.receive()
+        if self.execution is not None:
+            if self.stopping.is_set():
+                self._end(self.execution.stopped_early(Outcome.SHUTDOWN, "the server is shutting down"))
+            elif self.server.waiting is not None:
+                self._end(self.execution.stopped_early(Outcome.PREEMPTED, "a newer goal replaced it"))
+            elif self.server.is_cancelled:
+                self._end(self.execution.stopped_early(Outcome.PREEMPTED, "it was cancelled"))
+        if self.server.waiting is not None:
+            self._accept_goal()
 
     # -- one goal --
 
     def _accept_goal(self) -> None:
-        goal = GoalExecution(self.server.accept_new_goal(), self.p, self.inputs)
-        refusal = goal.refusal()
+        execution = GoalExecution(self.server.accept(), self.tuning, self.inputs)
+        refusal = execution.refusal()
         if refusal is not None:
             self._end(refusal)
             return
-        self.goal = goal
-        self.shown_goal = markers.ShownGoal(goal.goal)
-        rospy.loginfo("goal accepted: x %.2f y %.2f", goal.goal.x, goal.goal.y)
-        if goal.z != 0.0 and not self.logged_z:
-            self.logged_z = True
-            rospy.loginfo("z of goals is ignored (it is %s m here): the robot stays on the floor", goal.z)
+        self.execution = self.newest = execution
+        rospy.loginfo("goal accepted: x %.2f y %.2f", execution.goal.x, execution.goal.y)
+        if execution.z != 0.0:
+            rospy.loginfo_once("ignoring goal z = %g m", execution.z)
 
     def _advance(self, tick_ns: int) -> None:
         """One control period of the current goal, if there is one."""
-        if self.goal is None:
+        if self.execution is None:
             return
         if self._simulator_in_lockstep():
             self.inputs.await_tick(tick_ns)
-        step = self.goal.step(tick_ns)
-        if step.feedback is not None:
-            self._publish_feedback(step.feedback)
-        if step.ending is not None:
-            self._end(step.ending)
-        elif step.feedback is not None:
-            self._publish_command(step.twist)
-
-    def _publish_feedback(self, feedback: GoToPositionFeedback) -> None:
-        self.state = feedback.message
-        self.server.publish_feedback(feedback)
+        feedback, ending = self.execution.step(tick_ns)
+        if feedback is not None:
+            self.state = feedback.message
+            self.server.current.publish_feedback(feedback)
+        if ending is not None:
+            self._end(ending)
+        elif feedback is not None:
+            self._publish_command(self.execution.twist)
 
     def _publish_command(self, twist: Twist2D) -> None:
         self.command = twist
@@ -158,37 +149,28 @@ class GotoServer:
         ending = Ending(Outcome.ERROR, str(error) if expected else f"{type(error).__name__}: {error}")
         if not expected and not rospy.is_shutdown():
             rospy.logerr("goal failed: %s\n%s", ending.message, traceback.format_exc())
-        if self.server.is_active():
+        if self.server.current is not None:
             self._end(ending)
-            return
-        if expected:  # _end, which logs it otherwise, is not called
-            rospy.logerr("%s", ending.message)
-        self._publish_command(STANDSTILL)
+        else:  # the error is not the goal's; all that the loop itself raises is unexpected, and logged above
+            self._publish_command(STANDSTILL)
 
     def _end(self, ending: Ending) -> None:
         """Stop the robot and give the active goal its terminal state."""
         self._publish_command(STANDSTILL)
-        if self.goal is not None:
-            self.shown_goal = markers.ShownGoal(self.goal.goal, ending.outcome)
-        self.goal = None
+        if self.execution is not None:
+            self.execution.outcome = ending.outcome
+        self.execution = None
         self.state = ending.message
-        result = GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message)
-        if ending.outcome is Outcome.REACHED:
-            rospy.loginfo("%s", ending.message)
-            self.server.set_succeeded(result, ending.message)
-        elif ending.outcome is Outcome.PREEMPTED:
-            rospy.loginfo("%s", ending.message)
-            self.server.set_preempted(result, ending.message)
-        else:
-            rospy.logwarn("%s", ending.message)
-            self.server.set_aborted(result, ending.message)
+        log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
+        log("%s", ending.message)
+        self.server.end(ending.outcome, GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message))
 
     # -- lockstep --
 
     def _simulator_in_lockstep(self) -> bool:
         """Whether the node that publishes odometry receives the answers; others, such as rosbag, may subscribe too."""
         odom = self.inputs.odom
-        return odom is not None and private_api.is_connected_to(self.answers, private_api.sender(odom.message))
+        return odom is not None and is_connected_to(self.answers, sender(odom.message))
 
     def _answer_tick(self, tick_ns: int) -> None:
         """Tell a simulator in lockstep that this control period is complete, with the command since the last one."""
@@ -201,7 +183,7 @@ class GotoServer:
 
     def _shut_down(self) -> None:
         """Before rospy closes its topics: let the control loop stop the robot and end every goal."""
-        busy = self.goal is not None or self.server.is_new_goal_available()
+        busy = self.execution is not None or self.server.has_request()
         self.stopping.set()
         self.loop.join(SHUTDOWN_PATIENCE)
         if busy:
@@ -211,21 +193,13 @@ class GotoServer:
     def _publish_markers(self) -> None:
         if not self.markers.get_num_connections():
             return
-        odom, scan, robot = self.inputs.odom, self.inputs.scan, rospy.get_namespace().strip("/")
-        self.markers.publish(
-            markers.server_markers(
-                self.p,
-                self.shown_goal,
-                self.inputs.clearance(),
-                "" if scan is None else scan.message.header.frame_id,
-                None if odom is None else odom.message,
-                f"{robot}: {self.state}" if robot else self.state,  # its text may stand beside another robot
-            )
-        )
+        robot = rospy.get_namespace().strip("/")
+        state = f"{robot}: {self.state}" if robot else self.state  # its text may stand beside another robot
+        self.markers.publish(markers.server_markers(self.tuning.params, self.inputs, self.newest, state))
 
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    with node("aro_robocop_goto_as_node"):
+    with node(SERVER):
         GotoServer(param_server.load(GotoParams))
         rospy.spin()

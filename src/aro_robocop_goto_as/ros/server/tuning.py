@@ -3,18 +3,16 @@
 from typing import Any, Mapping
 
 import rospy
-from dynamic_reconfigure.server import Server
-
-from aro_robocop_goto_as.cfg import GotoConfig
 
 from ...errors import ParameterError
 from ...goto_params import GotoParams, clamped_values, differences, tuned
+from ..reconfigure import GotoConfig, Server
 
 NAMES = tuple(GotoConfig.defaults)
 
 
 class _Server(Server):
-    """dynamic_reconfigure clamps values to their bounds without a word; this one logs it."""
+    """Logs which values dynamic_reconfigure clamps to their bounds, which it does silently."""
 
     def update_configuration(self, changes: Mapping[str, Any]) -> Any:
         """Called for each request, with the values that it contains."""
@@ -24,9 +22,9 @@ class _Server(Server):
 
 
 class Tuning:
-    """`params` are the newest valid parameters, which the control loop adopts at its next tick.
+    """`params` are the newest valid parameters; its users read them here each time, and keep no copy.
 
-    A request replaces the whole frozen object, so the loop needs no lock to read it.
+    A request replaces the whole frozen object, so that takes no lock.
     """
 
     def __init__(self, p: GotoParams) -> None:

@@ -1,4 +1,4 @@
-"""Which nodes answer control ticks, each from the moment everything it subscribes to here has connected.
+"""Finds the nodes that answer control ticks and whose subscriptions to this node have all connected.
 
 A node's subscriptions connect one by one and in any order. If lockstep waited for a node whose scan is not connected
 yet, the first scans would be lost, and a run that starts at once would depend on how fast the machine is.
@@ -6,14 +6,15 @@ yet, the first scans would be lost, and a run that starts at once would depend o
 
 import threading
 import time
-from typing import Callable, Iterable, Set
+from typing import Callable, Dict, Iterable, Set
 
 import rosgraph
 import rospy
 
-from .. import graph, private_api
+from .. import graph
+from ..rospy_internals import is_topic_connected_to
 
-POLL = 0.02  # [s, wall] between two looks at a node's connections
+POLL = 0.02  # [s, wall] between two checks of a node's connections
 PATIENCE = 10.0  # [s, wall] for them; a registration may be left over from a node that was killed
 
 
@@ -23,7 +24,7 @@ def is_fully_connected(node: str) -> bool:
         topics = graph.topics_between(rospy.get_name(), node)
     except (OSError, rosgraph.MasterException):
         return True  # unknown: the master does not answer
-    return all(private_api.is_topic_connected_to(topic, node) for topic in topics)
+    return all(is_topic_connected_to(topic, node) for topic in topics)
 
 
 class AnsweringNodes:
@@ -32,23 +33,26 @@ class AnsweringNodes:
     def __init__(self, is_ready: Callable[[str], bool] = is_fully_connected, patience: float = PATIENCE) -> None:
         self._is_ready = is_ready
         self._patience = patience
-        self._known: Set[str] = set()  # connected nodes, ready or not
-        self._ready: Set[str] = set()
+        self._connected: Dict[str, threading.Event] = {}  # node -> whether all is connected since it came
 
     def among(self, connected: Iterable[str]) -> Set[str]:
         """Those of the connected nodes that are ready; call it often, and from one thread."""
         nodes = set(connected)
-        for node in nodes - self._known:
-            threading.Thread(target=self._await, args=(node,), name=f"connections of {node}", daemon=True).start()
-        self._ready -= self._known - nodes  # those that have disconnected are looked at again when they return
-        self._known = nodes
-        return nodes & self._ready
+        self._connected = {node: self._connected.get(node) or self._look_at(node) for node in nodes}
+        return {node for node, complete in self._connected.items() if complete.is_set()}
 
-    def _await(self, node: str) -> None:
+    def _look_at(self, node: str) -> threading.Event:
+        """An event for a node that has just connected, set once all its subscriptions have; a new one each time."""
+        complete = threading.Event()
+        thread = threading.Thread(target=self._await, args=(node, complete), name=f"connections of {node}", daemon=True)
+        thread.start()
+        return complete
+
+    def _await(self, node: str, complete: threading.Event) -> None:
         deadline = time.monotonic() + self._patience
         while not self._is_ready(node) and not rospy.is_shutdown():
             if time.monotonic() >= deadline:
                 rospy.logwarn("%s answers ticks, but not all of its subscriptions have connected", node)
                 break
             time.sleep(POLL)
-        self._ready.add(node)
+        complete.set()

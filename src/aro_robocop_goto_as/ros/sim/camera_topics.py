@@ -27,7 +27,7 @@ JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default
 
 
 class CameraTopics:
-    """Named like the TurtleBot3's in Gazebo. Colour and depth share one lens, so also frame and calibration."""
+    """Topics named as the TurtleBot3's in Gazebo. Colour and depth share one lens: one frame, one calibration."""
 
     def __init__(self, prefix: str, spec: CameraSpec, frame: str, on_change: Callable[[], None]) -> None:
         self._spec = spec

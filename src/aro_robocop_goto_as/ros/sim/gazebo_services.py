@@ -3,9 +3,10 @@
 A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
-from typing import Any, Callable, List, TypeVar
+from typing import Any, Callable, List, Optional, TypeVar
 
 import rospy
+from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import (
     DeleteLight,
     DeleteLightResponse,
@@ -24,73 +25,50 @@ from gazebo_msgs.srv import (
     SpawnModelRequest,
     SpawnModelResponse,
 )
+from geometry_msgs.msg import Twist
 from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError, PlaceError, WorldError
-from ...geometry import STANDSTILL, Pose2D, Pose3D, compose3, inverse3, lifted
-from ...simulation.loop import SimulationLoop
+from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted
+from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
-from .world_services import WorldServices, from_pose
-
-WORLD_FRAMES = ("", "world", "map")  # names of the frame that Gazebo's poses are in
+from .gazebo_properties import GazeboProperties
+from .gazebo_topics import WORLD_FRAMES, in_gazebo, relative_twist, world_twist
+from .world_services import WorldServices
 
 Response = TypeVar("Response")
 
 
-class GazeboControl:
-    """What Gazebo's services may change; the judge replaces it by one that refuses."""
-
-    def __init__(self, loop: SimulationLoop, world_services: WorldServices) -> None:
-        self._loop = loop
-        self._world_services = world_services
-
-    # -- called in the loop's thread --
-
-    def set_paused(self, paused: bool) -> None:
-        """Pause or resume simulated time."""
-        self._loop.set_paused(paused)
-
-    def reset(self) -> None:
-        """Robots to their spawn poses."""
-        self._loop.reset()
-
-    def place(self, robot: int, pose: Pose2D) -> None:
-        """Place a robot; PlaceError if something is there."""
-        self._loop.place_with_room(pose, robot)
-
-    def move(self, model: str, pose: Pose3D) -> None:
-        """Move a model of the world."""
-        self._loop.change_world(lambda world: with_model_at(world, model, pose))
-
-    # -- called in the service's thread, where files are read --
-
-    def spawn(self, name: str, xml: str, pose: Pose3D) -> str:
-        """Add a model to the world; returns what was done."""
-        return self._world_services.spawn(name, xml, "", pose)
-
-    def delete(self, name: str) -> str:
-        """Remove a model from the world; returns what was done."""
-        return self._world_services.delete(name)
-
-
 class GazeboServices:
-    """Every request is carried out in the loop's thread, between two steps, or refused with success false."""
+    """Every request is carried out by the simulation's owner, between two steps, or refused with success false."""
 
-    def __init__(self, loop: SimulationLoop, control: GazeboControl) -> None:
-        self._loop = loop
-        self._simulator = loop.simulator
-        self._control = control
-        self._names = [robot.name or robot.model.name for robot in loop.simulator.robots]
-        self._serve_empty("pause_physics", lambda: control.set_paused(True))
-        self._serve_empty("unpause_physics", lambda: control.set_paused(False))
+    def __init__(
+        self,
+        simulation: Simulation,
+        world_services: Optional[WorldServices],
+        refusal: str = "",
+        set_factor: Optional[Callable[[float], None]] = None,
+    ) -> None:
+        """Without world services pausing and resetting do nothing, and other changes are refused with this reason.
+
+        set_factor: changes the real-time factor
+        """
+        self._simulation = simulation
+        self._simulator = simulation.simulator
+        self._world_services = world_services
+        self._refusal = refusal
+        self._names = [robot.name or robot.model.name for robot in simulation.simulator.robots]
+        self._serve_empty("pause_physics", lambda: simulation.set_paused(True))
+        self._serve_empty("unpause_physics", lambda: simulation.set_paused(False))
         # Gazebo's reset_simulation also sets time back to zero: here the parameter ~reset_time decides about that.
-        self._serve_empty("reset_simulation", control.reset)
-        self._serve_empty("reset_world", control.reset)
+        self._serve_empty("reset_simulation", simulation.reset)
+        self._serve_empty("reset_world", simulation.reset)
         rospy.Service("/gazebo/get_model_state", GetModelState, self._on_get_model_state)
         rospy.Service("/gazebo/set_model_state", SetModelState, self._on_set_model_state)
         rospy.Service("/gazebo/get_world_properties", GetWorldProperties, self._on_get_world_properties)
         rospy.Service("/gazebo/spawn_sdf_model", SpawnModel, self._on_spawn)
+        rospy.Service("/gazebo/spawn_urdf_model", SpawnModel, self._on_spawn)
         rospy.Service("/gazebo/delete_model", DeleteModel, self._on_delete)
         rospy.Service(
             "/gazebo/delete_light",
@@ -100,20 +78,33 @@ class GazeboServices:
             ),
         )
 
+        GazeboProperties(simulation, set_factor, refusal)
+        if world_services is not None:
+            rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
+
     def _serve_empty(self, name: str, action: Callable[[], Any]) -> None:
         def serve(_request: Any) -> EmptyResponse:
-            self._loop.call(action)
+            if self._world_services is not None:
+                self._simulation.jobs.call(action)
             return EmptyResponse()
 
         rospy.Service(f"/gazebo/{name}", Empty, serve)
 
-    # -- poses, in the loop's thread --
+    def _changes(self) -> WorldServices:
+        if self._world_services is None:
+            raise WorldError(self._refusal)
+        return self._world_services
+
+    # -- poses, in the owner's thread --
 
     def _world_from(self, name: str) -> Pose3D:
-        """Pose of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
+        """Pose of a model or robot; FrameError if it does not exist. 'model::link' means its model here.
+
+        Poses are those of the simulator, in which the ground is at z = 0. Gazebo's world has its z = 0 below that.
+        """
         model = name.partition("::")[0]
         if model in WORLD_FRAMES:
-            return Pose3D()
+            return in_gazebo(Pose3D(), -self._simulator.world.ground)
         if model in self._names:
             return lifted(self._simulator.world_from_footprint(self._names.index(model)))
         if model in self._simulator.world.models:
@@ -131,21 +122,42 @@ class GazeboServices:
             response.header.stamp = convert.to_time(self._simulator.stamp_ns)
             response.header.frame_id = request.relative_entity_name or "world"
             response.pose = convert.to_pose_msg(compose3(reference_from, self._world_from(name)))
-            if name in self._names:
-                response.twist = convert.to_twist_msg(self._simulator.velocity(self._names.index(name)))
+            response.twist = self._twist(name, request.relative_entity_name)
             return response
 
         return self._answer(read, GetModelStateResponse)
 
+    def _twist(self, name: str, reference: str) -> Twist:
+        """Velocity of a model relative to that of a reference, in the reference's axes."""
+        yaw = self._world_from(reference).on_plane().yaw
+        return relative_twist(self._world_twist(name), self._world_twist(reference), yaw)
+
+    def _world_twist(self, name: str) -> Twist:
+        if name not in self._names:
+            return Twist()  # Models of the world stand still, also those whose obstacles move.
+        self._simulator.engine.read()
+        return world_twist(self._simulator.fleet.state(self._names.index(name)))
+
+    def _on_model_state(self, message: ModelState) -> None:
+        response = self._set_model_state(message)
+        if not response.success:
+            rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", response.status_message)
+
     def _on_set_model_state(self, request: SetModelStateRequest) -> SetModelStateResponse:
-        requested = request.model_state
+        return self._set_model_state(request.model_state)
+
+    def _set_model_state(self, requested: ModelState) -> SetModelStateResponse:
 
         def write() -> SetModelStateResponse:
-            target = compose3(self._world_from(requested.reference_frame), from_pose(requested.pose))
-            if requested.model_name not in self._names:
-                self._control.move(requested.model_name, target)
+            target = compose3(
+                self._world_from(requested.reference_frame), convert.from_pose_msg_3d(requested.pose, True)
+            )
+            self._changes()
+            name = requested.model_name
+            if name not in self._names:
+                self._simulation.change_world(lambda world: with_model_at(world, name, target))
                 return SetModelStateResponse(True, "SetModelState: set model state done")
-            self._control.place(self._names.index(requested.model_name), target.on_plane())
+            self._simulation.place(target.on_plane(), self._names.index(name))
             moving = convert.from_twist_msg(requested.twist) != STANDSTILL
             note = "; its twist is ignored, only /cmd_vel moves a robot" if moving else ""
             return SetModelStateResponse(True, "SetModelState: set model state done" + note)
@@ -162,7 +174,7 @@ class GazeboServices:
 
     def _answer(self, action: Callable[[], Response], kind: Callable[..., Response]) -> Response:
         try:
-            return self._loop.call(action)
+            return self._simulation.jobs.call(action)
         except (FrameError, PlaceError, WorldError) as error:
             return kind(success=False, status_message=str(error))
 
@@ -170,11 +182,12 @@ class GazeboServices:
 
     def _on_spawn(self, request: SpawnModelRequest) -> SpawnModelResponse:
         try:
-            reference = self._loop.call(lambda: self._world_from(request.reference_frame))
+            reference = self._simulation.jobs.call(lambda: self._world_from(request.reference_frame))
+            changes = self._changes()
             if request.model_name in self._names:
                 raise WorldError(f"model name [{request.model_name}] is already used by a robot")
-            pose = compose3(reference, from_pose(request.initial_pose))
-            done = self._control.spawn(request.model_name, request.model_xml, pose)
+            pose = compose3(reference, convert.from_pose_msg_3d(request.initial_pose, True))
+            done = changes.spawn(request.model_name, request.model_xml, "", pose)
         except (FrameError, WorldError) as error:
             return SpawnModelResponse(False, f"SpawnModel: {error}")
         return SpawnModelResponse(True, f"SpawnModel: {done}")
@@ -184,6 +197,6 @@ class GazeboServices:
             refusal = f"[{request.model_name}] is a robot; robots cannot be deleted"
             return DeleteModelResponse(False, f"DeleteModel: {refusal}")
         try:
-            return DeleteModelResponse(True, f"DeleteModel: {self._control.delete(request.model_name)}")
+            return DeleteModelResponse(True, f"DeleteModel: {self._changes().delete(request.model_name)}")
         except WorldError as error:
             return DeleteModelResponse(False, f"DeleteModel: {error}")

@@ -9,17 +9,19 @@ from typing import Any, Dict, List, Tuple
 
 import genpy.dynamic
 import rospy
-from geometry_msgs.msg import Pose, Twist
+from geometry_msgs.msg import Pose, Twist, Vector3
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
 from ...geometry import STANDSTILL, Pose3D, compose3, lifted, quaternion_from_rpy
-from ...robot.model import WHEEL_JOINTS, RobotModel, RobotState
+from ...robot.fleet import RobotState
+from ...robot.model import WHEEL_JOINTS, RobotModel
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..private_api import message_definition
+from ..names import prefixed
 from ..publishing import publisher
-from .robot_topics import prefixed
+from ..rospy_internals import message_definition
 
+WORLD_FRAMES = ("", "world", "map")  # names of the frame that Gazebo's poses are in
 SEPARATOR = "=" * 80
 DEFINITION = "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist\n"  # of both types
 
@@ -37,7 +39,7 @@ def message_type(name: str) -> Any:
 
 
 class GazeboTopics:
-    """Published from the loop's thread at clock ticks, while somebody subscribes."""
+    """Published by the owner's thread at clock ticks, while somebody subscribes."""
 
     def __init__(self, robots: List[str]) -> None:
         """`robots`: their names; one without a name goes by its model's."""
@@ -50,58 +52,73 @@ class GazeboTopics:
     def publish(self, simulator: Simulator) -> None:
         """All models and robots as they are now."""
         if self._models.get_num_connections():
-            self._models.publish(to_message(self._types["ModelStates"], _models(simulator)))
+            self._models.publish(to_message(self._types["ModelStates"], _models(simulator), simulator.world.ground))
         if self._links.get_num_connections():
-            self._links.publish(to_message(self._types["LinkStates"], _links(simulator)))
+            self._links.publish(to_message(self._types["LinkStates"], links(simulator), simulator.world.ground))
 
 
-def to_message(kind: Any, states: List[State]) -> Any:
-    """A message of one of the two types."""
+def to_message(kind: Any, states: List[State], ground: float = 0.0) -> Any:
+    """A message of one of the two types; `ground`: the height [m] of the ground in Gazebo's world."""
     return kind(
         [name for name, _, _ in states],
-        [convert.to_pose_msg(pose) for _, pose, _ in states],
+        [convert.to_pose_msg(in_gazebo(pose, ground)) for _, pose, _ in states],
         [twist for _, _, twist in states],
     )
 
 
 def _calibrate(_request: EmptyRequest) -> EmptyResponse:
-    """Gazebo's plug-in answers this, too, without doing anything."""
+    """Do nothing, as Gazebo's plug-in."""
     return EmptyResponse()
 
 
 def _robots(simulator: Simulator) -> List[Tuple[str, RobotModel, RobotState]]:
+    simulator.engine.read()
     return [
-        (robot.name or robot.model.name, robot.model, simulator.engine.state(index))
+        (robot.name or robot.model.name, robot.model, simulator.fleet.state(index))
         for index, robot in enumerate(simulator.robots)
     ]
 
 
-def _twist_of(state: RobotState) -> Any:
-    """The robot's twist in the world's axes, as Gazebo gives it."""
-    twist, yaw = convert.to_twist_msg(state.twist), state.world_from_footprint.yaw
-    twist.linear.x, twist.linear.y = state.twist.v * math.cos(yaw), state.twist.v * math.sin(yaw)
-    return twist
+def world_twist(state: RobotState) -> Twist:
+    """A robot's twist in the world's axes, as Gazebo gives it."""
+    v, yaw = state.twist.v, state.world_from_footprint.yaw
+    return Twist(Vector3(v * math.cos(yaw), v * math.sin(yaw), 0.0), Vector3(0.0, 0.0, state.twist.w))
+
+
+def in_gazebo(pose: Pose3D, ground: float) -> Pose3D:
+    """A pose in Gazebo's world, where the ground is at this height [m], as in the world's file."""
+    x, y, z = pose.position
+    return Pose3D((x, y, z + ground), pose.orientation)
+
+
+def relative_twist(moving: Twist, frame: Twist, yaw: float) -> Twist:
+    """The velocity of something relative to that of a frame, in the frame's axes; both in the world, as in gazebo_ros.
+
+    yaw: of the frame in the world [rad]
+    """
+    vx, vy = moving.linear.x - frame.linear.x, moving.linear.y - frame.linear.y
+    c, s = math.cos(yaw), math.sin(yaw)
+    return Twist(Vector3(c * vx + s * vy, c * vy - s * vx, 0.0), Vector3(0.0, 0.0, moving.angular.z - frame.angular.z))
 
 
 def _models(simulator: Simulator) -> List[State]:
     """Models of the world stand still, also those whose obstacles move."""
     standing = convert.to_twist_msg(STANDSTILL)
-    return [
-        *((name, pose, standing) for name, pose in simulator.world.models.items()),
-        *((name, lifted(state.world_from_footprint), _twist_of(state)) for name, _, state in _robots(simulator)),
-    ]
+    found = [(name, pose, standing) for name, pose in simulator.world.models.items()]
+    found += [(name, lifted(state.world_from_footprint), world_twist(state)) for name, _, state in _robots(simulator)]
+    return found
 
 
-def _links(simulator: Simulator) -> List[State]:
+def links(simulator: Simulator) -> List[State]:
     """One link for each model of the world; of a robot its base and both wheels, as Gazebo merges fixed links."""
     standing = convert.to_twist_msg(STANDSTILL)
     found = [(f"{name}::link", pose, standing) for name, pose in simulator.world.models.items()]
     for name, model, state in _robots(simulator):
         base = lifted(state.world_from_footprint)
-        found.append((f"{name}::base_footprint", base, _twist_of(state)))
+        found.append((f"{name}::base_footprint", base, world_twist(state)))
         for joint, side, angle in zip(WHEEL_JOINTS, (0.5, -0.5), state.wheel_angles):
             spun = Pose3D(
                 (0.0, side * model.wheel_separation, model.wheel_radius), quaternion_from_rpy(0.0, angle, 0.0)
             )
-            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), _twist_of(state)))
+            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), world_twist(state)))
     return found

@@ -1,189 +1,181 @@
-"""robocop_sim: connects the simulation loop to topics and services."""
+"""robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
-from typing import AbstractSet, Optional, Sequence
+from typing import AbstractSet, Any, Callable, Sequence
 
 import rospy
-from rosgraph_msgs.msg import Clock
 
-from ...component_params import LockstepParams, TimeParams
-from ...errors import CommandError, ParameterError
-from ...geometry import Twist2D
+from ...errors import ParameterError
 from ...params import SimParams
-from ...simulation.factory import footprint_radius
-from ...simulation.lockstep import Controller
-from ...simulation.loop import SimulationLoop
-from ...simulation.loop_interface import LoopInterface
-from ...simulation.observations import TF, Observations, Subscriptions
+from ...robot.model import RobotSpec
+from ...simulation.observations import Observations
+from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
-from .. import convert, param_server
+from .. import param_server
+from ..names import SIMULATOR
 from ..node_main import node
-from ..outbox import Outbox
-from ..packed import PackedClock, stamp_of
-from ..private_api import set_latched
-from ..publishing import publisher, send
-from .factory import build_simulator, message_config
-from .gazebo_topics import GazeboTopics
+from .factory import build_simulator
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
-from .robot_topics import MessageConfig, RobotTopics
 from .status import StatusTopics, controller_name
-from .subscriptions import SubscriptionTable
+from .step_topics import StepTopics
 from .time_services import TimeServices
-from .transform_topics import TransformTopics
 from .world_services import WorldServices
-from .world_topics import NamedRobot, WorldTopics
+from .world_topics import WorldTopics
+
+SHORT = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
 
 
-class SimNode(LoopInterface):
-    """The loop's thread publishes; rospy's threads only post jobs to the loop."""
+class SimNode:
+    """One thread runs the loop and publishes; rospy's threads only post jobs to it."""
 
-    def __init__(
-        self,
-        simulator: Simulator,
-        messages: MessageConfig,
-        time: TimeParams,
-        lockstep: LockstepParams,
-        engine_kind: str,
-        radii: Sequence[float],
-    ) -> None:
-        """`radii` [m] of the robots, as RViz shows them."""
-        self.simulator = simulator
-        self.loop = SimulationLoop(simulator, time, lockstep, self)
-        names = [robot.name for robot in simulator.robots]
-        table = self._table = SubscriptionTable()
-        self._clock = publisher("/clock", Clock, latch=True)
-        self._clock_message = PackedClock()
-        self._outbox = Outbox()
-        self._transforms = TransformTopics(messages.frames, messages.topics, names, table.changed)
-        self._robots = [
-            RobotTopics(index, robot.name, messages, simulator.cameras.spec(index), table.changed)
-            for index, robot in enumerate(simulator.robots)
-        ]
-        table.set_topics([{**robot.by_sensor, TF: self._transforms.tf} for robot in self._robots])
-        markers: Sequence[NamedRobot] = [
-            (robot.name, robot.footprint_frame, radius) for robot, radius in zip(self._robots, radii) if robot.name
-        ]
-        publish_map = messages.topics.publish_map or simulator.world.occupancy is not None
-        self._world = WorldTopics(messages.frames, publish_map, markers)
-        self._status = StatusTopics(self.loop, engine_kind)
-        self._inputs = [self._connect_inputs(index, name, lockstep) for index, name in enumerate(names)]
-        self._poses = PoseInputs(self.loop, messages.frames, messages.topics.initialpose)
-        self._time_services = TimeServices(self.loop)
-        self._world_services = WorldServices(self.loop)
-        self._gazebo = GazeboTopics(names) if messages.topics.gazebo_topics else None
-        if messages.topics.gazebo_services:
-            _serve_gazebo(self.loop, self._world_services)
+    def __init__(self, simulator: Simulator) -> None:
+        p, robots = simulator.p, simulator.robots
+        self._simulator = simulator
+        self._simulation = Simulation(simulator, stopped=rospy.is_shutdown)
+        self._topics = StepTopics(simulator)
+        self._world = WorldTopics(simulator)
+        self._status = StatusTopics(self._simulation)
+        self._inputs = [RobotInputs(self._simulation, index) for index in range(len(robots))]
+        self._pose_inputs = PoseInputs(self._simulation, p.frames, p.topics.has_initialpose)
+        self._time_services = TimeServices(self._simulation)
+        world_services = WorldServices(self._simulation)
+        self._gazebo = _gazebo_topics(robots) if p.topics.gazebo_topics else None
+        if p.topics.gazebo_services:
+            _serve_gazebo(self._simulation, world_services, self._time_services.set_factor)
 
-    def _connect_inputs(self, robot: int, name: str, lockstep: LockstepParams) -> RobotInputs:
-        def on_command(sender: str, twist: Twist2D) -> None:
-            self.loop.post(lambda: self.loop.controllers.command(Controller(robot, sender), twist))
-
-        def on_answer(sender: str, tick_ns: int, twist: Optional[Twist2D]) -> None:
-            self.loop.post(lambda: self.loop.controllers.answer(Controller(robot, sender), tick_ns, twist))
-
-        return RobotInputs(name, lockstep.enabled, on_command, on_answer)
+    # -- the loop --
 
     def run(self) -> None:
-        """Simulate until shutdown."""
-        self.frames_changed()
-        self.world_changed()
-        self.loop.run()
+        """Simulate until shutdown: clock ticks wait for the wall clock, lockstep control ticks for the controllers."""
+        simulator, time, controllers = self._simulator, self._simulation.time, self._simulation.controllers
+        time.restart(simulator.steps)
+        self._publish(set(Change) - {Change.TIME})
+        self._pace()
+        subscriptions = self._topics.subscriptions()
+        while not rospy.is_shutdown():
+            observed = simulator.advance(subscriptions, time.steps_left(simulator.steps))
+            if observed is not None:
+                self._publish_step(observed)
+                if observed.due.control and controllers.in_lockstep:
+                    self._await_controllers()
+            if time.end_span(simulator.steps) or (observed is not None and observed.due.clock):
+                self._warn()
+                self._pace()
+                self._report()
+                subscriptions = self._topics.subscriptions()
 
-    # -- called by the loop --
+    def _pace(self) -> None:
+        """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
+        jobs, time, simulator = self._simulation.jobs, self._simulation.time, self._simulator
+        jobs.run_queued()
+        self._publish_changes()
+        wait = time.hold(simulator.steps)
+        if 0.0 < wait < SHORT:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
+            jobs.sleep(wait)
+            time.pacer.waited(wait)
+            jobs.run_queued()
+            self._publish_changes()
+            wait = time.hold(simulator.steps)
+        if wait > 0.0:
+            self._hold(lambda: time.hold(simulator.steps))
 
-    def stopped(self) -> bool:
-        """Whether the node is shut down."""
-        return bool(rospy.is_shutdown())
+    def _await_controllers(self) -> None:
+        """Hold simulated time until the controllers have answered this tick, and apply their commands."""
+        controllers = self._simulation.controllers
+        controllers.begin_tick(self._answering)
+        self._hold(lambda: controllers.hold(self._connected))
+        report = controllers.end_tick()
+        robots = self._simulator.robots
+        for controller in report.gone:
+            rospy.logwarn("lockstep: %s disconnected; the robot is stopped", controller_name(controller, robots))
+        if report.late:
+            names = ", ".join(controller_name(controller, robots) for controller in report.late)
+            text = "lockstep: no answer from %s within %g s; simulated time continues without it"
+            rospy.logwarn(text, names, controllers.timeout)
 
-    def subscriptions(self) -> Subscriptions:
-        """The sensors that somebody subscribes to."""
-        return self._table.current()
+    def _hold(self, hold: Callable[[], float]) -> None:
+        """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
+        jobs, time = self._simulation.jobs, self._simulation.time
+        started = time.pacer.now()
+        wait = hold()
+        while wait > 0.0 and not rospy.is_shutdown():
+            jobs.run_next(wait)
+            self._publish_changes()
+            if time.repetition_due():  # for nodes that start while simulated time stands still
+                self._topics.publish_clock(self._simulator.stamp_ns)
+                self._simulation.controllers.enroll(self._answering)
+            self._report()
+            wait = hold()
+        time.pacer.waited(time.pacer.now() - started)
 
-    def publish(self, observations: Observations) -> None:
-        """All of one step with its stamp; the clock last, so that the data of a tick is there when the clock ticks."""
-        if observations.measured:
-            for robot in self._robots:
-                robot.publish(observations, self._outbox)
-        self._transforms.publish(observations, self._outbox)
-        self._outbox.flush()
-        if observations.control and self.simulator.moving:
-            self._world.publish_moving(self.simulator)
-        if observations.clock:
-            if self._gazebo is not None:
-                self._gazebo.publish(self.simulator)
-            self.publish_clock()
+    def _report(self) -> None:
+        """Publish and count what is due by the wall clock."""
+        if self._status.report():
+            self._topics.count()
 
-    def publish_clock(self) -> None:
-        """Publish simulated time, latched."""
-        set_latched(self._clock, Clock(convert.to_time(self.simulator.stamp_ns)))
-        send(self._clock, self._clock_message.update(stamp_of(self.simulator.stamp_ns)))
-
-    def report(self) -> None:
-        """Publish the status when it is due."""
-        self._status.report()
-
-    def status_changed(self) -> None:
-        """Publish the status now."""
-        self._status.publish()
-
-    def frames_changed(self) -> None:
-        """Publish the static transforms anew."""
-        self._transforms.publish_static(self.simulator)
-
-    def world_changed(self) -> None:
-        """Show the whole world anew."""
-        self._world.publish(self.simulator)
-
-    def connected(self, robot: int) -> AbstractSet[str]:
-        """Names of the nodes that are connected to a robot's inputs."""
+    def _connected(self, robot: int) -> AbstractSet[str]:
         return self._inputs[robot].connected()
 
-    def answering(self, robot: int) -> AbstractSet[str]:
-        """Names of the nodes that are connected to answer a robot's ticks."""
+    def _answering(self, robot: int) -> AbstractSet[str]:
         return self._inputs[robot].answering()
 
-    def command_refused(self, error: CommandError) -> None:
-        """Warn, not more than every 5 s."""
-        rospy.logwarn_throttle(5.0, "%s", error)
+    # -- publishing --
 
-    def controllers_late(self, controllers: Sequence[Controller]) -> None:
-        """Warn that simulated time continues without these."""
-        names = ", ".join(controller_name(controller, self.simulator.robots) for controller in controllers)
-        timeout = self.loop.controllers.timeout
-        rospy.logwarn("lockstep: no answer from %s within %g s; simulated time continues without it", names, timeout)
+    def _publish_step(self, observed: Observations) -> None:
+        """All of one step with its stamp."""
+        if observed.due.control and self._simulator.moving:
+            self._world.publish_moving(self._simulator)
+        if observed.due.clock and self._gazebo is not None:
+            self._gazebo.publish(self._simulator)
+        self._topics.publish(observed, observed.due.clock)
 
-    def controller_gone(self, controller: Controller) -> None:
-        """Warn that a controller disconnected."""
-        name = controller_name(controller, self.simulator.robots)
-        rospy.logwarn("lockstep: %s disconnected; the robot is stopped", name)
+    def _publish_changes(self) -> None:
+        """Publish anew what has changed other than by a step."""
+        changes = self._simulation.take_changes()
+        if changes:
+            self._publish(changes)
 
-    def placed_in_contact(self, robot: int) -> None:
-        """Warn that a robot was placed in contact with something."""
-        name, pose = self.simulator.robots[robot].name, self.simulator.world_from_footprint(robot)
-        rospy.logwarn(
-            "robot %sis placed in contact with an obstacle or another robot, at x %.2f y %.2f",
-            name and name + " ",
-            pose.x,
-            pose.y,
-        )
+    def _publish(self, changes: AbstractSet[Change]) -> None:
+        if Change.TIME in changes:
+            self._topics.publish_clock(self._simulator.stamp_ns)
+        if Change.FRAMES in changes:
+            self._topics.transforms.publish_static()
+        if Change.WORLD in changes:
+            self._world.publish(self._simulator)
+        if Change.STATUS in changes:
+            self._status.publish()
+
+    def _warn(self) -> None:
+        """Warn of commands that were refused, and of robots that were placed in contact with something."""
+        for error in self._simulation.controllers.take_refused():
+            rospy.logwarn_throttle(5.0, "%s", error)
+        for robot in self._simulator.newly_placed_in_contact():
+            name, pose = self._simulator.robots[robot].name, self._simulator.world_from_footprint(robot)
+            text = "robot %sis placed in contact with an obstacle or another robot, at x %.2f y %.2f"
+            rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
 
-def _serve_gazebo(loop: SimulationLoop, world_services: WorldServices) -> None:
+def _gazebo_topics(robots: Sequence[RobotSpec]) -> Any:
+    """Gazebo's topics, whose module is imported only where they are asked for."""
+    from .gazebo_topics import GazeboTopics
+
+    return GazeboTopics([robot.name for robot in robots])
+
+
+def _serve_gazebo(simulation: Simulation, world_services: WorldServices, set_factor: Callable[[float], None]) -> None:
     """Gazebo's services; their types exist only where somebody has built them."""
     try:
-        from .gazebo_services import GazeboControl, GazeboServices
+        from .gazebo_services import GazeboServices
     except ImportError as error:
         advice = "link compat/gazebo_msgs into the workspace, and build"
         raise ParameterError(f"gazebo_services: {error}; {advice}") from error
-    GazeboServices(loop, GazeboControl(loop, world_services))
+    GazeboServices(simulation, world_services, set_factor=set_factor)
 
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
-    with node("robocop_sim", disable_rostime=True):
-        p = param_server.load(SimParams)
-        with contextlib.closing(build_simulator(p)) as simulator:
-            radii = [footprint_radius(p, robot.model) for robot in simulator.robots]
-            SimNode(simulator, message_config(p), p.time(), p.lockstep(), p.drive, radii).run()
+    with node(SIMULATOR, disable_rostime=True):
+        with contextlib.closing(build_simulator(param_server.load(SimParams))) as simulator:
+            SimNode(simulator).run()

@@ -7,22 +7,22 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 
 from aro_robocop_goto_as.srv import SetPose, SetPoseRequest, SetPoseResponse
 
-from ...component_params import FrameNames
 from ...errors import FrameError, PlaceError
 from ...geometry import Pose2D, compose
-from ...simulation.loop import SimulationLoop
+from ...params import FrameNames
+from ...simulation.simulation import Simulation
 from .. import convert
-from .robot_topics import prefixed
+from ..names import prefixed
 
 
 class PoseInputs:
-    """Poses are resolved and robots placed in the loop's thread, between two steps."""
+    """Poses are resolved and robots placed in the owner's thread, between two steps."""
 
-    def __init__(self, loop: SimulationLoop, frames: FrameNames, initialpose: bool) -> None:
+    def __init__(self, simulation: Simulation, frames: FrameNames, initialpose: bool) -> None:
         """Without `initialpose` that topic is not subscribed to, so that amcl alone receives it."""
-        self._loop = loop
+        self._simulation = simulation
         self._frames = frames
-        self._names: List[str] = [robot.name for robot in loop.simulator.robots]
+        self._names: List[str] = [robot.name for robot in simulation.simulator.robots]
         for robot, name in enumerate(self._names if initialpose else []):
             self._subscribe(robot, name)
         rospy.Service("~set_pose", SetPose, self._on_set_pose)
@@ -37,7 +37,7 @@ class PoseInputs:
         rospy.Subscriber(
             prefixed(name, "initialpose"),
             PoseWithCovarianceStamped,
-            lambda message: self._loop.post(lambda: place(message)),
+            lambda message: self._simulation.jobs.post(lambda: place(message)),
         )
 
     def _on_set_pose(self, request: SetPoseRequest) -> SetPoseResponse:
@@ -46,25 +46,27 @@ class PoseInputs:
             return SetPoseResponse(False, f"robot {request.robot!r} is not one of: {known}")
         robot = self._names.index(request.robot)
         try:
-            pose = self._loop.call(lambda: self._place(robot, request.pose.header.frame_id, request.pose.pose))
+            placed = self._simulation.jobs.call(
+                lambda: self._place(robot, request.pose.header.frame_id, request.pose.pose)
+            )
         except (FrameError, PlaceError) as error:
             return SetPoseResponse(False, f"pose refused: {error}")
-        return SetPoseResponse(True, f"at x {pose.x:.3f} y {pose.y:.3f} yaw {pose.yaw:.3f} in the world")
+        return SetPoseResponse(True, f"at x {placed.x:.3f} y {placed.y:.3f} yaw {placed.yaw:.3f} in the world")
 
     def _place(self, robot: int, frame: str, pose: Any) -> Pose2D:
         """Place a robot at a geometry_msgs/Pose in world, map or its odom.
 
         FrameError for any other frame; PlaceError if something is there.
         """
-        target = self._in_world(robot, frame.lstrip("/"), convert.to_possible_pose(pose))
-        self._loop.place_with_room(target, robot)
+        target = self._in_world(robot, frame.lstrip("/"), convert.from_pose_msg(pose, unset_is_level=True))
+        self._simulation.place(target, robot)
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:
-        odom_frame = prefixed(self._names[robot], self._frames.odom)
-        if frame in (self._frames.world, self._frames.map):
+        odom_frame = prefixed(self._names[robot], self._frames.odom_frame)
+        if frame in (self._frames.world_frame, self._frames.map_frame):
             return pose
         if frame == odom_frame:
-            return compose(self._loop.simulator.map_from_odom(robot), pose)
-        known = f"{self._frames.map!r}, {odom_frame!r} or {self._frames.world!r}"
+            return compose(self._simulation.simulator.map_from_odom(robot), pose)
+        known = f"{self._frames.map_frame!r}, {odom_frame!r} or {self._frames.world_frame!r}"
         raise FrameError(f"its frame is {frame!r}; expected {known}")

@@ -1,138 +1,99 @@
 """The topics on which one robot's measurements are published, each message with the stamp of its step."""
 
-import itertools
-from dataclasses import dataclass
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict
 
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
 from std_msgs.msg import Bool
 
-from ...component_params import FrameNames, ImuNoise, Rates, TopicParams
 from ...robot.model import CAMERA_FRAME
-from ...sensors.camera import CameraSpec
-from ...sensors.scan_profiles import LidarSpec
-from ...simulation import observations as sensor_names
-from ...simulation.observations import Observations
+from ...simulation import observations
+from ...simulation.simulator import Simulator
 from .. import convert
-from ..outbox import Outbox
-from ..packed import PackedImu, PackedJointState, PackedOdometry, PackedScan, stamp_of
-from ..publishing import DirectPublisher, publisher
-from .camera_topics import CameraTopics
-
-
-@dataclass(frozen=True)
-class MessageConfig:
-    """What the messages of all robots have in common."""
-
-    frames: FrameNames
-    topics: TopicParams
-    rates: Rates
-    lidar: LidarSpec
-    imu_noise: ImuNoise
-
-
-def prefixed(robot: str, name: str) -> str:
-    """A topic or frame of a named robot; relative, so that the node's namespace and remappings apply to topics."""
-    return f"{robot}/{name}" if robot else name
+from ..covariances import ODOM_VARIANCES, TRUTH_VARIANCES, diagonal, imu_covariances
+from ..names import prefixed
+from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
+from ..publishing import publisher
 
 
 class RobotTopics:
     """Publishers in a robot's namespace; its frames carry its name as a prefix."""
 
-    def __init__(
-        self,
-        index: int,
-        name: str,
-        config: MessageConfig,
-        camera: Optional[CameraSpec],
-        on_change: Callable[[], None],
-    ) -> None:
-        """`camera`: None for a model without one.
+    def __init__(self, index: int, simulator: Simulator, on_change: Callable[[], None]) -> None:
+        """`on_change` is called when a subscriber of any topic connects or disconnects."""
+        p, observed = simulator.p, simulator.observed
+        name = simulator.robots[index].name
+        self._robot, self._simulator = index, simulator
+        self.odom_frame = prefixed(name, p.frames.odom_frame)
+        self.footprint_frame = prefixed(name, p.frames.base_frame)
+        self._scan_frame, self._imu_frame = prefixed(name, p.frames.scan_frame), prefixed(name, p.frames.imu_frame)
+        self._scans: Dict[int, PackedMessage] = {}  # by the number of beams, which varies with some scanners
+        self._scan_number = counter()
+        self.topics: Dict[str, Any] = {}  # by sensor
+        self.packed: Dict[str, PackedMessage] = {}  # by sensor, as scan_message()
+        self.publish: Dict[str, Callable[[], None]] = {}  # by sensor, of those that are published seldom
 
-        `on_change` is called when a subscriber of any topic connects or disconnects.
-        """
-        self.index = index
-        self.name = name
-        self.lidar = config.lidar
-        self.odom_frame, self.footprint_frame, self.scan_frame, self.imu_frame, camera_frame = (
-            prefixed(name, frame)
-            for frame in (
-                config.frames.odom,
-                config.frames.footprint,
-                config.frames.scan,
-                config.frames.imu,
-                CAMERA_FRAME,
-            )
-        )
-        rates, topics = config.rates, config.topics
+        def topic(sensor: str, relative: str, kind: Any) -> None:
+            self.topics[sensor] = publisher(prefixed(name, relative), kind, on_change=on_change)
 
-        def topic(relative: str, kind: Any) -> DirectPublisher:
-            return publisher(prefixed(name, relative), kind, on_change=on_change)
+        def odometry(frame: str, variances: Any, rows: Any) -> PackedMessage:
+            covariance = diagonal(variances)
+            return packed_odometry(frame, self.footprint_frame, covariance, rows.poses[index], rows.twists[index])
 
-        self.scan = topic("scan", LaserScan)
-        self.odom = topic("odom", Odometry)
-        self.by_sensor: Dict[str, Any] = {
-            sensor_names.SCAN: self.scan,
-            sensor_names.ODOM: self.odom,
-            sensor_names.JOINTS: topic("joint_states", JointState),
-            sensor_names.IMU: topic("imu", Imu),
-        }
-        if topics.ground_truth:
-            self.by_sensor[sensor_names.GROUND_TRUTH] = topic("ground_truth_odom", Odometry)
-        if rates.bumper:
-            self.by_sensor[sensor_names.BUMPER] = topic("bumper", Bool)
-        if rates.battery:
-            self.by_sensor[sensor_names.BATTERY] = topic("battery_state", BatteryState)
-        if rates.magnetic_field:
-            self.by_sensor[sensor_names.MAGNETIC_FIELD] = topic("magnetic_field", MagneticField)
-        self.camera: Optional[CameraTopics] = None
-        if camera is not None and rates.camera:
-            self.camera = CameraTopics(prefixed(name, ""), camera, camera_frame, on_change)
-            self.by_sensor[sensor_names.CAMERA] = self.camera
-        odom_variances = (0.0,) * 6 if topics.real_covariances else convert.ODOM_VARIANCES
-        self._odom_message = PackedOdometry(self.odom_frame, self.footprint_frame, convert.diagonal(odom_variances))
-        self._truth_message = PackedOdometry(
-            config.frames.world, self.footprint_frame, convert.diagonal(convert.TRUTH_VARIANCES)
-        )
-        covariances = convert.imu_covariances(config.imu_noise, topics.real_covariances)
-        self._imu_message = PackedImu(self.imu_frame, covariances)
-        self._joints_message = PackedJointState()
-        self._scan_messages: Dict[int, PackedScan] = {}  # by the number of beams, which varies with some scanners
-        self._scan_numbers = itertools.count(1)
+        real = p.topics.covariances == "real"
+        topic(observations.SCAN, "scan", LaserScan)
+        topic(observations.ODOM, "odom", Odometry)
+        variances = (0.0,) * 6 if real else ODOM_VARIANCES
+        self.packed[observations.ODOM] = odometry(self.odom_frame, variances, observed.odometry)
+        topic(observations.JOINTS, "joint_states", JointState)
+        angles, speeds = observed.joint_angles[index], observed.fleet.wheel_speeds[index]
+        self.packed[observations.JOINTS] = packed_joint_state(angles, speeds)
+        topic(observations.IMU, "imu", Imu)
+        covariances = imu_covariances(p.imu, real)
+        self.packed[observations.IMU] = packed_imu(self._imu_frame, covariances, observed.imus[index])
+        if p.topics.ground_truth:
+            topic(observations.GROUND_TRUTH, "ground_truth_odom", Odometry)
+            truth = odometry(p.frames.world_frame, TRUTH_VARIANCES, observed.fleet)
+            self.packed[observations.GROUND_TRUTH] = truth
+        if p.rates.bumper_rate:
+            topic(observations.BUMPER, "bumper", Bool)
+            self.publish[observations.BUMPER] = self._publish_bumper
+        if p.rates.battery_state_rate:
+            topic(observations.BATTERY, "battery_state", BatteryState)
+            self.publish[observations.BATTERY] = self._publish_battery
+        if p.rates.magnetic_field_rate:
+            topic(observations.MAGNETIC_FIELD, "magnetic_field", MagneticField)
+            self.publish[observations.MAGNETIC_FIELD] = self._publish_magnetic_field
+        camera = simulator.cameras.spec(index)
+        if camera is not None and p.rates.camera_rate:
+            from .camera_topics import CameraTopics
 
-    def publish(self, observed: Observations, outbox: Outbox) -> None:
-        """Send this robot's part of one step's observations, what is due often by way of the outbox."""
-        robot, topics = self.index, self.by_sensor
-        stamp = stamp_of(observed.stamp_ns)
-        if robot in observed.ground_truth:
-            state = observed.ground_truth[robot]
-            message = self._truth_message.update(state.world_from_footprint, state.twist, stamp)
-            outbox.put(topics[sensor_names.GROUND_TRUTH], message)
-        if robot in observed.imus:
-            outbox.put(topics[sensor_names.IMU], self._imu_message.update(observed.imus[robot], stamp))
-        if robot in observed.joints:
-            outbox.put(topics[sensor_names.JOINTS], self._joints_message.update(observed.joints[robot], stamp))
-        if robot in observed.odometry:
-            odometry = observed.odometry[robot]
-            outbox.put(self.odom, self._odom_message.update(odometry.odom_from_footprint, odometry.twist, stamp))
-        if robot in observed.scans:
-            ranges = observed.scans[robot]
-            outbox.put(self.scan, self._scan_message(len(ranges)).update(ranges, stamp))
-        if robot in observed.bumpers:
-            topics[sensor_names.BUMPER].publish(observed.bumpers[robot])
-        if robot in observed.magnetic_fields:
-            field = observed.magnetic_fields[robot]
-            time = convert.to_time(observed.stamp_ns)
-            topics[sensor_names.MAGNETIC_FIELD].publish(convert.to_magnetic_field(field, time, self.imu_frame))
-        if robot in observed.batteries:
-            time = convert.to_time(observed.stamp_ns)
-            topics[sensor_names.BATTERY].publish(convert.to_battery(time, self.footprint_frame))
-        if robot in observed.images and self.camera is not None:
-            self.camera.publish(observed.images[robot], convert.to_time(observed.stamp_ns))
+            frame = prefixed(name, CAMERA_FRAME)
+            self.topics[observations.CAMERA] = CameraTopics(prefixed(name, ""), camera, frame, on_change)
+            self.publish[observations.CAMERA] = self._publish_image
 
-    def _scan_message(self, beams: int) -> PackedScan:
-        if beams not in self._scan_messages:
-            spec = self.lidar if beams == self.lidar.samples else self.lidar.with_samples(beams)
-            self._scan_messages[beams] = PackedScan(spec, self.scan_frame, self._scan_numbers)
-        return self._scan_messages[beams]
+    def scan_message(self) -> PackedMessage:
+        """The message of the newest scan."""
+        ranges = self._simulator.observed.scans[self._robot]
+        beams = len(ranges)
+        if beams not in self._scans:
+            spec = self._simulator.lidar.spec
+            spec = spec if beams == spec.samples else spec.with_samples(beams)
+            self._scans[beams] = packed_scan(spec, self._scan_frame, ranges, self._scan_number)
+        return self._scans[beams]
+
+    def _publish_bumper(self) -> None:
+        self.topics[observations.BUMPER].publish(self._simulator.observed.bumpers[self._robot])
+
+    def _publish_battery(self) -> None:
+        stamp = convert.to_time(self._simulator.stamp_ns)
+        self.topics[observations.BATTERY].publish(convert.to_battery(stamp, self.footprint_frame))
+
+    def _publish_magnetic_field(self) -> None:
+        field, stamp = self._simulator.observed.magnetic_fields[self._robot], convert.to_time(self._simulator.stamp_ns)
+        self.topics[observations.MAGNETIC_FIELD].publish(convert.to_magnetic_field(field, stamp, self._imu_frame))
+
+    def _publish_image(self) -> None:
+        images = self._simulator.observed.images
+        if self._robot in images:
+            self.topics[observations.CAMERA].publish(images[self._robot], convert.to_time(self._simulator.stamp_ns))

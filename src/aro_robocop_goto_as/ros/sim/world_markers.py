@@ -6,6 +6,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
+from ...world.ground import is_in_ground
 from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # translucent: walls must not hide the scan and the robot behind them
@@ -49,9 +50,9 @@ def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
 def world_markers(world: World, frame: str, time: float, moving: bool = False) -> List[Marker]:
     """One marker per obstacle, or per moving obstacle, where it is at a time [s], in the world's `frame`.
 
-    Planes and the walls of a map are left out: RViz's grid shows the floor and its Map display the map.
+    Ground, planes and the walls of a map are left out: RViz's grid shows the ground and its Map display the map.
     """
-    solid = [obstacle for obstacle in world.obstacles if not isinstance(obstacle.geometry, (Plane, Walls))]
+    solid = [o for o in world.obstacles if not (isinstance(o.geometry, (Plane, Walls)) or is_in_ground(o))]
     return [
         _marker(number, frame, obstacle, time)
         for number, obstacle in enumerate(solid)

@@ -1,1 +1,1 @@
-"""robocop_web: the page of package `web`, fed from topics and tf, and its requests as topics and service calls."""
+"""robocop_web: the page of package `web`, one module per part; `node` makes and updates them."""

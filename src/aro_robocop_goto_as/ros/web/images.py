@@ -5,21 +5,18 @@ from typing import Any, Optional
 import numpy as np
 from sensor_msgs.msg import Image, LaserScan
 
-from ...geometry import Pose3D, rotation_matrix
-
 LARGEST_MAP = 2000  # cells along a side; larger maps are thinned out
 UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 255)  # red, green, blue, opacity
 
 
-def scan_points(scan: LaserScan, fixed_from_scan: Pose3D) -> np.ndarray:
-    """Points (n, 3) [m] of the valid returns, in the fixed frame."""
+def scan_points(scan: LaserScan) -> np.ndarray:
+    """Points (n, 3) [m] of the valid returns, in the scanner's frame."""
     ranges = np.array(scan.ranges, dtype=float)
     angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
     with np.errstate(invalid="ignore"):
         valid = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max) & (ranges > 0.0)
     ranges, angles = ranges[valid], angles[valid]
-    points = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
-    return points @ rotation_matrix(fixed_from_scan.orientation).T + np.array(fixed_from_scan.position)
+    return np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
 
 
 def map_image(data: Any, columns: int, rows: int) -> np.ndarray:

@@ -6,8 +6,10 @@ from typing import Callable, Dict, Optional, Sequence, Tuple, Union
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ...errors import FrameError
 from ...geometry import Pose3D, compose3
 from ...web.shapes import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Shape
+from ..convert import from_quaternion
 
 KINDS = {
     Marker.CUBE: BOX,
@@ -22,13 +24,12 @@ Marked = Tuple[str, Shape, Pose3D]  # frame, shape, pose in that frame
 
 
 def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
-    """A pose in space with a unit quaternion, None if the numbers are no pose."""
-    length = math.sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)
-    if not all(math.isfinite(value) for value in (p.x, p.y, p.z, length)):
+    """A pose in space with a unit quaternion, None if the numbers are no pose; all zeros mean level, as in RViz."""
+    try:
+        orientation = from_quaternion(q, unset_is_level=True)
+    except FrameError:
         return None
-    if length < 1e-6:  # what RViz treats as no rotation, with a warning
-        return Pose3D((p.x, p.y, p.z))
-    return Pose3D((p.x, p.y, p.z), (q.x / length, q.y / length, q.z / length, q.w / length))
+    return Pose3D((p.x, p.y, p.z), orientation) if all(map(math.isfinite, (p.x, p.y, p.z))) else None
 
 
 def to_shape(marker: Marker) -> Optional[Shape]:
@@ -66,10 +67,6 @@ class MarkerStore:
                 self._markers.pop(key, None)
             else:
                 self._markers[key] = (marker.header.frame_id.lstrip("/"), shape, pose)
-
-    def clear(self) -> None:
-        """Forget all markers."""
-        self._markers.clear()
 
     def placed(self, lookup: Callable[[str], Optional[Pose3D]], skip: Sequence[str] = ()) -> Group:
         """Shapes with poses in the frame of `lookup`, which returns fixed_from_frame, without some namespaces."""

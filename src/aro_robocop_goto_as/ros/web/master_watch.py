@@ -1,13 +1,14 @@
-"""Watches the ROS master, from a thread of its own, since it may hang."""
+"""Watches the ROS master: whether it answers, which robots it knows, and whether it still knows this node."""
 
-import threading
 import time
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
 import rospy
 
 from ...bootstrap import master
 from ...errors import MasterError
+from ...web.state import SharedState
+from .daemon import start_daemon
 
 PERIOD = 2.0  # [s, wall]
 ODOMETRY, ODOM = "nav_msgs/Odometry", "/odom"
@@ -24,39 +25,38 @@ def robots_of(types: Dict[str, str], publishers: List[Tuple[str, List[str]]]) ->
     )
 
 
-class MasterWatch:
-    """What was found last; a daemon thread looks again every two seconds until shutdown."""
+def watch_master(state: SharedState, show_problem: Callable[[str], None]) -> None:
+    """Start to look every two seconds, in a thread of its own, since the master may hang.
 
-    def __init__(self, show_problem: Callable[[str], None]) -> None:
-        """`show_problem` is called by the thread after each look, with an empty string if the master answers."""
-        self.problem = "it has not been asked yet"
-        self.registered = False  # set by the node: from now on the master should know it
-        self.forgotten = False  # the master answers, but is another one than this node registered with
-        self.robots: Optional[Tuple[str, ...]] = None
-        self._show_problem = show_problem
-        threading.Thread(target=self._run, daemon=True, name="master watch").start()
+    `show_problem` is called after each look, with an empty string if the master answers.
+    """
 
-    def _run(self) -> None:
-        while not rospy.is_shutdown():
-            self.problem = self._look()
-            self._show_problem(self.problem)
-            time.sleep(PERIOD)
+    def step() -> None:
+        problem = look(state)
+        state.change(master_problem=problem)
+        show_problem(problem)
+        time.sleep(PERIOD)
 
-    def _look(self) -> str:
-        """Why there is no ROS master, or an empty string."""
-        uri, registered = master.master_uri(), self.registered
-        try:
-            types, state = (master.ask_master(uri, request) for request in ("getTopicTypes", "getSystemState"))
-        except MasterError as error:
-            return str(error)
-        except OSError:
-            return f"no ROS master at {uri}"
-        if types is None or state is None:
-            return f"the ROS master at {uri} reports a failure"
-        publishers, _, services = state
-        self.robots = robots_of(dict(types), publishers)
-        self.forgotten = registered and not _knows_this_node(services)
-        return f"the ROS master at {uri} was restarted, connecting to it" if self.forgotten else ""
+    start_daemon("master watch", step)
+
+
+def look(state: SharedState) -> str:
+    """Why no ROS master answers, or an empty string; updates the robots and `forgotten` in the state."""
+    uri, registered = master.master_uri(), state.now.registered
+    try:
+        types, system = (master.ask_master(uri, request) for request in ("getTopicTypes", "getSystemState"))
+    except MasterError as error:
+        return str(error)
+    except OSError:
+        return f"no ROS master at {uri}"
+    if types is None or system is None:
+        return f"the ROS master at {uri} reports a failure"
+    publishers, _, services = system
+    forgotten = registered and not _knows_this_node(services)
+    known = dict(types)
+    topics = tuple(sorted((topic, known.get(topic, "")) for topic, nodes in publishers if nodes))
+    state.change(robots=robots_of(known, publishers) or ("",), topics=topics, forgotten=forgotten)
+    return f"the ROS master at {uri} was restarted, connecting to it" if forgotten else ""
 
 
 def _knows_this_node(services: List[Any]) -> bool:

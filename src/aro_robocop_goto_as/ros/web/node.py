@@ -1,39 +1,49 @@
 """robocop_web: shows the system in a browser, and sends what a visitor asks for."""
 
-import contextlib
-import io
 import os
-import socket
 import sys
 import threading
 import time
-from typing import Any, Callable, Dict, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
-import rospkg
 import rospy
 import yaml
 
-from ...errors import ParameterError, RobocopError, WebError
-from ...geometry import Twist2D
+from ...errors import ParameterError, RobocopError
 from ...param_loading import from_dict
 from ...params import WebParams
 from ...web import access
-from ...web.dead_man import DeadMan
-from ...web.page import Actions, Page
-from ...web.replay_panel import Replay
-from ...web.scene import Scene
-from .. import private_api
+from ...web.frames import FrameTree
+from ...web.page import set_up
+from ...web.report import failures
+from ...web.scene import PageScene
+from ...web.state import PageState, SharedState
+from ..names import WEB
 from ..node_main import node
-from .commands import Commands, Driver
-from .master_watch import MasterWatch
+from .goals import Goals
+from .inbox import Inbox
+from .lab import Lab
+from .log import Log
+from .master_watch import watch_master
+from .part import Context, Part
 from .player import Player
+from .plots import Plots, RecordedPlots
+from .replay import Replay
+from .requests import Requests
+from .robots import Robots
+from .server import start_server
+from .simulation import Simulation
+from .status import Status
+from .surroundings import Surroundings
+from .teleop import Teleop
+from .topics import Topics
 from .view import View
 
-NAME = "robocop_web"
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
-IDLE_PERIOD = 1.0  # [s, wall] between two looks without a visitor
+IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
 TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
-MASTER_PERIOD = 0.1  # [s, wall]
+MASTER_PERIOD = 0.1  # [s, wall] between two checks for a ROS master at the start
+ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
 
 def load_params(arguments: Sequence[str]) -> WebParams:
@@ -45,165 +55,132 @@ def load_params(arguments: Sequence[str]) -> WebParams:
     for argument in arguments:
         name, given, value = argument.partition(":=")
         if not given:
-            raise ParameterError(f"arguments of {NAME}: expected NAME:=VALUE, got {argument!r}")
+            raise ParameterError(f"arguments of {WEB}: expected NAME:=VALUE, got {argument!r}")
         if name.startswith(("_", "/")) or not value:
             continue
         try:
             raw[name] = value if name in TEXTS else yaml.safe_load(value)
         except yaml.YAMLError as error:
-            raise ParameterError(f"arguments of {NAME}: {name}: {error}") from error
-    return from_dict(WebParams, raw, f"arguments of {NAME}")
+            raise ParameterError(f"arguments of {WEB}: {name}: {error}") from error
+    return from_dict(WebParams, raw, f"arguments of {WEB}")
 
 
-def start_server(p: WebParams) -> Any:
-    """The page's HTTP and WebSocket server; WebError if its address can't be used."""
-    try:
-        import viser
-    except ImportError as error:
-        raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
-    listening = None
-    if access.SOCKET_VARIABLE in os.environ:
-        listening = socket.socket(fileno=int(os.environ[access.SOCKET_VARIABLE]))
-    else:
-        _require_free(p.web_host, p.web_port)
-    names, origins = [socket.gethostname(), p.web_host], p.web_origins.split()
-
-    def refusal(headers: Any) -> str:
-        return access.refusal(headers.get_all("Host"), headers.get_all("Origin"), names, origins)
-
-    answers = {
-        "Content-Security-Policy": access.CONTENT_POLICY,
-        "X-Content-Type-Options": "nosniff",
-        "Referrer-Policy": "no-referrer",
-    }
-    with private_api.checked_requests(refusal, answers, listening):
-        with contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
-            server = viser.ViserServer(host=p.web_host, port=p.web_port, label="robocop", verbose=False)
-    if server.get_port() != p.web_port:  # viser goes on to the next port that is free
-        server.stop()
-        raise WebError(f"port {p.web_port} has just been taken by another program; choose another one with web_port:=N")
-    return server
-
-
-def _require_free(host: str, port: int) -> None:
-    try:
-        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
-            with socket.socket(family, kind, protocol) as probe:
-                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-                probe.bind(address)
-    except OSError as error:
-        raise WebError(
-            f"can't open {host}:{port}: {error.strerror or error}; choose another address with web_host:=ADDRESS, "
-            "or another port with web_port:=N"
-        ) from error
+def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[Part]:
+    """Add what the panel shows below the status: goals, tabs."""
+    live, goals = context.state.now.live, Goals(context)
+    failed = [] if player is None else failures(player.path)
+    parts: List[Part] = [goals] if player is None else [Replay(context, player, failed), goals]
+    tabs = context.server.gui.add_tab_group()
+    with tabs.add_tab("Control" if live else "Goals"):
+        goals.add_history()
+        parts += [Simulation(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
+    with tabs.add_tab("Plots"):
+        parts.append(Plots(context) if player is None else RecordedPlots(context, player, failed))
+        if not p.view_only:
+            parts.append(Log(context))
+    if not p.view_only:  # a page that is only looked at subscribes to nothing that it does not need for the scene
+        with tabs.add_tab("Topics"):
+            parts.append(Topics(context))
+    if live:
+        with tabs.add_tab("Lab"):
+            parts.append(Lab(context))
+    with tabs.add_tab("View"):
+        parts.append(View(context))
+    return parts
 
 
 class WebNode:
-    """Connects the page with ROS. Visitors' requests arrive in viser's threads; everything else is done by `run`.
+    """Updates all parts of the page. Visitors' requests arrive in viser's threads; `run` does everything else.
 
     With a player it shows a recording. To a recording, and if `view_only` is set, nobody can send requests.
     """
 
     def __init__(self, server: Any, p: WebParams, player: Optional[Player] = None) -> None:
-        import viser
-
-        self._p = p
         self._server = server
-        self._player = player
-        self._live = player is None and not p.view_only
-        self._wake = threading.Event()
-        self._wanted = ""  # the robot that was chosen last
-        self._commands = Commands()
-        self._driver = Driver(DeadMan(), p.web_linear_velocity, p.web_angular_velocity)
-        actions = Actions(
-            click=self._with_ros(self._click),
-            drive=self._with_ros(self._drive),
-            release=self._driver.release,
-            stop=self._driver.stop,
-            cancel=self._with_ros(lambda: self._commands.cancel(self._wanted)),
-            pause=self._with_ros(self._commands.pause),
-            step=self._with_ros(self._commands.step),
-            reset=self._with_ros(self._commands.reset),
-            set_factor=self._with_ros(self._commands.set_factor),
-            select=self._select,
-            visitors=self._wake.set,
-        )
-        replay = None
+        self._player, self._waits = player, p.replay_waits
+        self._state = SharedState(PageState(live=player is None and not p.view_only, recorded=player is not None))
+        scene, requests = PageScene(server.scene), Requests(self._state)
+        context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
+        set_up(server)
+        status = Status(context)
+        self._parts = [Robots(context), status, *add_parts(context, p, player), Surroundings(context)]
+        self._system, self._detail = Inbox(), Inbox()  # topics of the system, of the selected robot
+        self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are
+        self._asked = 0.0  # [s, wall] when the parts asked the master last
+        self._visitors = threading.Event()  # a browser has come or gone
+        server.on_client_connect(lambda _: self._visitors.set())
+        server.on_client_disconnect(lambda _: self._visitors.set())
         if player is not None:
-            replay = Replay(player.duration, p.replay_speed, player.play, player.seek, player.set_speed)
-        self._page = Page(server, viser, actions, replay, self._live)
-        self._view = View(self._page, Scene(server.scene), p.web_frame, rospkg.RosPack(), replay is not None)
-        if player is not None:
-            player.on_seek = self._view.forget
-        self._master = MasterWatch(self._page.show_master_problem)
-
-    def _with_ros(self, action: Callable[..., None]) -> Callable[..., None]:
-        """The action, ignored while there is no ROS master, which the page says, and where nobody may send requests."""
-
-        def act(*arguments: Any) -> None:
-            if self._live and self._master.registered and not self._master.problem:
-                action(*arguments)
-
-        return act
-
-    # -- requests --
-
-    def _click(self, x: float, y: float, place: bool) -> None:
-        if place:
-            pose = self._view.robot_pose
-            yaw = 0.0 if pose is None else pose.on_plane().yaw
-            self._commands.place(self._wanted, self._p.web_frame, x, y, yaw, self._view.system.sim is not None)
-        else:
-            self._commands.send_goal(self._wanted, self._p.web_frame, x, y)
-
-    def _drive(self, page: int, share: Twist2D) -> None:
-        if self._driver.drive(page, self._wanted, share) and self._view.executing:
-            self._commands.cancel(self._wanted)  # or the server would go on commanding the robot as well
-
-    def _select(self, robot: str) -> None:
-        self._wanted = robot
-        self._wake.set()
-
-    # -- the main thread --
+            player.on_seek = self._forget
+        watch_master(self._state, status.show_master_problem)
 
     def wait_for_master(self) -> None:
         """Return when a ROS master answers; meanwhile the page says that there is none."""
-        while self._master.problem:
+        while self._state.now.master_problem:
             time.sleep(MASTER_PERIOD)
 
     def run(self) -> bool:
         """Serve until shutdown; True if the master has been replaced by one that does not know this node."""
-        watch, view = self._master, self._view
-        watch.registered = True
-        rospy.on_shutdown(self._driver.end)
-        if self._player is not None:
-            self._player.start()
+        self._state.change(registered=True)
+        rospy.on_shutdown(self._end)
+        player = self._player
+        if player is not None:
+            player.start()
         while not rospy.is_shutdown():
-            if watch.forgotten:
-                self._driver.end()
+            if self._state.now.forgotten:
+                self._end()
                 return True
-            robots = watch.robots or ("",)
-            if self._wanted not in robots:
-                self._wanted = robots[0]
-            if self._page.visited:
-                if not watch.problem:  # without a master, connections that exist go on
-                    view.connect(robots, self._wanted)
-                with self._server.atomic():
-                    view.update(robots, self._commands.answer)
-                    if self._player is not None and self._page.replay_panel is not None:
-                        self._page.replay_panel.show(self._player.state)
+            visited = bool(self._server.get_clients())
+            if player is not None and (visited or not self._waits):
+                player.begin()
+            if not self._state.now.master_problem:  # otherwise, connections that exist go on
+                self._connect(visited)
+            if visited:
+                self._show()
                 time.sleep(1.0 / RATE)
             else:
-                if not watch.problem:
-                    view.close()
-                    view.watch_goals(robots)
-                self._wake.wait(IDLE_PERIOD)
-                self._wake.clear()
+                self._visitors.wait(IDLE_PERIOD)
+                self._visitors.clear()
         return False
+
+    def _connect(self, visited: bool) -> None:
+        """Subscribe to what is to be shown, if it is. Only this needs the ROS master, and may wait for it."""
+        state = self._state.now
+        wanted = state.selected if visited else None
+        if wanted is None:
+            self._system.close()
+        elif self._detailed is None:
+            for part in self._parts:
+                part.subscribe(self._system)
+        if wanted != self._detailed:
+            self._detailed = wanted
+            self._detail.close()
+            for part in self._parts if wanted is not None else ():
+                part.subscribe_to_robot(self._detail, state.selected)
+        if time.monotonic() - self._asked >= ASK_PERIOD:
+            self._asked = time.monotonic()
+            for part in self._parts:
+                part.ask_master(state)
+
+    def _show(self) -> None:
+        self._system.deliver()
+        self._detail.deliver()
+        with self._server.atomic():
+            for part in self._parts:
+                part.show(self._state.now)
+
+    def _end(self) -> None:
+        for part in self._parts:
+            part.end()
+
+    def _forget(self) -> None:
+        self._detail.clear()
+        for part in self._parts:
+            part.forget()
 
 
 def warn_of_strangers(p: WebParams) -> None:
-    """A page that other machines can reach lets them drive the robot, unless it takes no requests."""
+    """Warn if other machines can reach the page and drive the robot with it."""
     if not access.is_loopback(p.web_host) and not p.view_only:
         rospy.logwarn(
             "the page listens on %s:%d without a password: every machine that reaches it can drive the robot",
@@ -219,12 +196,12 @@ def main() -> None:
         player = Player(p.replay, p.replay_speed) if p.replay else None
         server = start_server(p)
     except RobocopError as error:
-        sys.exit(f"{NAME}: {error.code}: {error}")
-    print(f"{NAME}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
+        sys.exit(f"{WEB}: {error.code}: {error}")
+    print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
     web = WebNode(server, p, player)
     web.wait_for_master()
     replaced = False
-    with node(NAME, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
+    with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
         warn_of_strangers(p)
         replaced = web.run()
     if replaced:  # this closes the port, and browsers connect again by themselves

@@ -10,6 +10,7 @@ import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...errors import WebError
+from ...web.samples import Samples
 from ...web.state import ReplayState
 
 LEAD = 1.0  # [s, recorded] before the moment that is sought, for topics with more messages than one in this time
@@ -47,12 +48,12 @@ class _Newcomers(rospy.SubscribeListener):
 
 
 class Player:
-    """Publishes from a thread of its own, the only one to read the bag. A subscriber that comes late gets the past."""
+    """Publishes from a thread of its own, once it is to begin; late subscribers get the present state."""
 
     def __init__(self, path: str, speed: float) -> None:
         """WebError if the file is no bag, or has no messages."""
         try:
-            self._bag = rosbag.Bag(path)
+            self.path, self._bag = path, rosbag.Bag(path)
             self._start, end = self._bag.get_start_time(), self._bag.get_end_time()
         except (OSError, rosbag.ROSBagException) as error:
             raise WebError(f"{path} can't be played: {error}") from error
@@ -60,19 +61,30 @@ class Player:
         self.duration = end - self._start
         self.on_seek: Callable[[], None] = lambda: None  # called before another moment is published
         few = max(FEW, self.duration / LEAD)
-        self._kept = {name for name, it in topics.items() if it.message_count <= few or it.msg_type == MARKERS}
-        self._marked = [name for name, it in topics.items() if it.msg_type == MARKERS]
+        self._marked = [name for name, topic in topics.items() if topic.msg_type == MARKERS]
+        self._kept = {*self._marked, *(name for name, topic in topics.items() if topic.message_count <= few)}
         self._topics = list(topics)
         self._publishers: Dict[str, rospy.Publisher] = {}
         self._changed = threading.Condition()
+        self._begun = threading.Event()
         self._clock = _Clock(0.0, time.monotonic(), False, speed)
         self._sought: Optional[float] = None
         self._newcomers: List[Tuple[str, Callable[[Any], None]]] = []
 
+    def samples(self, topic: str, figures: Callable[[Any], Tuple[float, ...]]) -> Samples:
+        """Figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
+        with rosbag.Bag(self.path) as bag:
+            found = bag.read_messages([topic])
+            return tuple((stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found)
+
     # -- controls, from any thread --
 
+    def begin(self) -> None:
+        """Play, unless that has begun already."""
+        self._begun.set()
+
     def play(self, playing: bool) -> None:
-        """Go on, from the beginning if the end was reached, or pause."""
+        """Continue, from the beginning if the end was reached, or pause."""
         if playing and self._clock.position() >= self.duration:
             self.seek(0.0)
         with self._changed:
@@ -84,7 +96,7 @@ class Player:
             self._set(speed=speed)
 
     def seek(self, position: float) -> None:
-        """Go on from a moment [s] after the beginning."""
+        """Continue from a moment [s] after the beginning."""
         self.on_seek()
         with self._changed:
             self._sought = min(max(position, 0.0), self.duration)
@@ -118,6 +130,7 @@ class Player:
             self._changed.notify()
 
     def _work(self) -> None:
+        self._begun.wait()
         time.sleep(CONNECT)
         self.play(True)
         position = 0.0

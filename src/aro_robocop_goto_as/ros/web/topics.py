@@ -1,178 +1,103 @@
-"""What is received for the page. Callbacks only store; subscriptions exist only while a browser shows the page."""
+"""The topics, with their rates and newest messages, as `rostopic list`, `hz` and `echo` show them."""
 
 import time
 from collections import deque
-from typing import Any, Callable, Deque, List, Optional, Tuple
+from typing import Any, Deque, Dict, Tuple
 
 import rospy
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import OccupancyGrid
-from sensor_msgs.msg import Image, LaserScan
-from std_msgs.msg import String
-from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.msg import (
-    GoToPositionActionFeedback,
-    GoToPositionActionGoal,
-    GoToPositionActionResult,
-    SimStatus,
-)
+from ...web import text
+from ...web.elements import Html
+from ...web.state import PageState
+from ..names import absolute
+from .messages import brief, class_of, full
+from .part import Context, Part
 
-from ...web.frames import FrameTree
-from ...web.series import Series
-from ...web.state import GoalHistory, SimState
-from ..action import ACTION
-from ..client.goal_handle import STATES
-from .marker_shapes import to_pose
-
-SIMULATOR = "/robocop_sim"
-SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"
-CAMERA = "camera/rgb/image_raw"
-FEEDBACK_AGE = 1.0  # [s, wall] after which a goal without feedback counts as ended
+PERIOD = 0.5  # [s, wall] between two updates
+SPAN = 5.0  # [s, wall] over which a rate is measured
+MOST = 1000  # messages of this time: 200 Hz
+COSTLY = ("sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/PointCloud2")  # only where it is chosen
+DEFAULT = "cmd_vel"
 
 
-def absolute(robot: str, name: str) -> str:
-    """A robot's topic; "" is the robot without a namespace."""
-    return f"/{robot}/{name}" if robot else f"/{name}"
+class _Listener:
+    """The newest message of one topic, and when messages came."""
 
+    def __init__(self, topic: str, kind: str) -> None:
+        self._times: Deque[float] = deque(maxlen=MOST)  # [s, wall]
+        self.newest: Any = None
+        self._subscriber = rospy.Subscriber(topic, class_of(kind), self._on_message, queue_size=1)
 
-class _Subscriptions:
-    """Subscriptions that are opened and closed together."""
+    def _on_message(self, message: Any) -> None:
+        self.newest = message
+        self._times.append(time.monotonic())
 
-    def __init__(self) -> None:
-        self._open: List[rospy.Subscriber] = []
-
-    def add(self, topic: str, kind: Any, callback: Callable[[Any], None], queue_size: Optional[int] = 1) -> None:
-        self._open.append(rospy.Subscriber(topic, kind, callback, queue_size=queue_size))
+    def rate(self) -> float:
+        """Messages per second [Hz, wall]; 0 while there are fewer than two."""
+        times = [at for at in list(self._times) if time.monotonic() - at <= SPAN]
+        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 and times[-1] > times[0] else 0.0
 
     def close(self) -> None:
-        for subscription in self._open:
-            subscription.unregister()
-        self._open = []
+        self._subscriber.unregister()
 
 
-class SystemTopics:
-    """Transforms, the world, the map and the simulator's report."""
+class Topics(Part):
+    """One topic in full, and the list of all. While a browser is open it is subscribed to what is shown."""
 
-    def __init__(self) -> None:
-        self.frames = FrameTree()
-        self.markers: Deque[MarkerArray] = deque()
-        self.map: Optional[OccupancyGrid] = None
-        self.sim: Optional[SimState] = None
-        self._subscriptions = _Subscriptions()
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        gui = context.server.gui
+        self._choice = gui.add_dropdown("Topic", (absolute("", DEFAULT),), hint="as rostopic hz and rostopic echo")
+        self._echo = Html(gui)
+        self._all = gui.add_checkbox("Listen to all", False, hint="except cameras; takes some processor time")
+        self._list = Html(gui)
+        self._listeners: Dict[str, _Listener] = {}
+        self._shown_at = 0.0  # [s, wall]
+        self._robot = ""
 
-    def open(self) -> None:
-        """Subscribe."""
-        add = self._subscriptions.add
-        add("/tf", TFMessage, self._on_tf, queue_size=100)
-        add("/tf_static", TFMessage, self._on_tf, queue_size=None)
-        add(f"{SIMULATOR}/world", MarkerArray, self.markers.append, queue_size=None)
-        add(f"{SIMULATOR}/status", SimStatus, self._on_status)
-        add("/map", OccupancyGrid, self._on_map)
+    def ask_master(self, state: PageState) -> None:
+        """Subscribe to what is chosen; here, since this is done also after the last browser has gone."""
+        visited, chosen, every = bool(self.context.server.get_clients()), self._choice.value, self._all.value
+        wanted = {
+            topic: kind for topic, kind in state.topics if visited and (topic == chosen or every and kind not in COSTLY)
+        }
+        for topic in set(self._listeners) - set(wanted):
+            self._listeners.pop(topic).close()
+        for topic in set(wanted) - set(self._listeners):
+            self._listeners[topic] = _Listener(topic, wanted[topic])
 
-    def close(self) -> None:
-        """Unsubscribe."""
-        self._subscriptions.close()
+    def show(self, state: PageState) -> None:
+        if time.monotonic() - self._shown_at < PERIOD:
+            return
+        self._shown_at = time.monotonic()
+        self._offer(state)
+        self._echo.show(text.block(self._full(state)))
+        rows = [(topic, kind, *self._brief(topic, state)) for topic, kind in state.topics]
+        self._list.show(text.topics(rows))
 
-    def _on_tf(self, message: TFMessage) -> None:
-        for stamped in message.transforms:
-            transform = stamped.transform
-            pose = to_pose(transform.translation, transform.rotation)
-            if pose is not None:
-                self.frames.update(stamped.header.frame_id.lstrip("/"), stamped.child_frame_id.lstrip("/"), pose)
+    def _offer(self, state: PageState) -> None:
+        names, default = tuple(topic for topic, _ in state.topics), absolute(state.selected, DEFAULT)
+        chosen = default if state.selected != self._robot else self._choice.value
+        self._robot = state.selected
+        options = tuple(sorted({*names, default, chosen}))
+        if self._choice.options != options:
+            self._choice.options = options
+        if self._choice.value != chosen:
+            self._choice.value = chosen
 
-    def _on_map(self, message: OccupancyGrid) -> None:
-        self.map = message
+    def _rate(self, listener: _Listener, state: PageState) -> str:
+        """As `rostopic hz` with simulated time."""
+        rate = listener.rate()
+        return f"{rate / state.factor:.1f} Hz" if rate else ""
 
-    def _on_status(self, message: SimStatus) -> None:
-        self.sim = SimState(
-            at=time.monotonic(),
-            time=message.stamp.to_sec(),
-            world=message.world,
-            robots=tuple(message.robots),
-            seed=message.seed,
-            drive=message.drive,
-            sync=message.sync,
-            paused=message.paused,
-            factor_asked=message.factor_asked,
-            factor_reached=message.factor_reached,
-        )
+    def _full(self, state: PageState) -> str:
+        listener = self._listeners.get(self._choice.value)
+        if listener is None or listener.newest is None:
+            return "no message yet"
+        return f"{self._rate(listener, state) or 'no message for some seconds'}\n{full(listener.newest)}"
 
-
-class RobotTopics:
-    """What the page shows of the selected robot only."""
-
-    def __init__(self, robot: str) -> None:
-        self.robot = robot
-        self.scan: Optional[LaserScan] = None
-        self.image: Optional[Image] = None
-        self.bridge = ""
-        self.markers: Deque[MarkerArray] = deque()
-        self.errors = Series(2)
-        self.commands = Series(2)
-        self._feedback: Optional[Tuple[float, Tuple[float, float, str]]] = None
-        self._subscriptions = _Subscriptions()
-
-    def open(self) -> None:
-        """Subscribe."""
-        self._add("scan", LaserScan, self._on_scan)
-        self._add(CAMERA, Image, self._on_image)
-        self._add(f"{SERVER}/markers", MarkerArray, self.markers.append, queue_size=None)
-        self._add(f"{BRIDGE}/status", String, self._on_bridge)
-        self._add(f"{ACTION}/feedback", GoToPositionActionFeedback, self._on_feedback)
-        self._add("cmd_vel", Twist, self._on_command)
-
-    def _add(self, name: str, kind: Any, callback: Callable[[Any], None], queue_size: Optional[int] = 1) -> None:
-        self._subscriptions.add(absolute(self.robot, name), kind, callback, queue_size)
-
-    def close(self) -> None:
-        """Unsubscribe."""
-        self._subscriptions.close()
-
-    def feedback(self, now: float) -> Optional[Tuple[float, float, str]]:
-        """The newest feedback, None while no goal is executed."""
-        newest = self._feedback
-        return newest[1] if newest is not None and now - newest[0] < FEEDBACK_AGE else None
-
-    def _on_scan(self, message: LaserScan) -> None:
-        self.scan = message
-
-    def _on_image(self, message: Image) -> None:
-        self.image = message
-
-    def _on_bridge(self, message: String) -> None:
-        self.bridge = message.data
-
-    def _on_feedback(self, message: GoToPositionActionFeedback) -> None:
-        now, feedback = time.monotonic(), message.feedback
-        self._feedback = (now, (feedback.position_error, feedback.angle_error, feedback.message))
-        self.errors.add(now, feedback.position_error, feedback.angle_error)
-
-    def _on_command(self, message: Twist) -> None:
-        self.commands.add(time.monotonic(), message.linear.x, message.angular.z)
-
-
-class GoalTopics:
-    """Goals and results of all robots; always subscribed, as both are rare and the history outlives a page."""
-
-    def __init__(self) -> None:
-        self.history = GoalHistory()
-        self._robots: Tuple[str, ...] = ()
-
-    def watch(self, robots: Tuple[str, ...]) -> None:
-        """Subscribe to the action servers of robots that are new."""
-        for robot in robots:
-            if robot not in self._robots:
-                name = absolute(robot, ACTION)
-                rospy.Subscriber(f"{name}/goal", GoToPositionActionGoal, self._on_goal)
-                rospy.Subscriber(f"{name}/result", GoToPositionActionResult, self._on_result, robot)
-                self._robots = (*self._robots, robot)
-
-    def _on_goal(self, message: GoToPositionActionGoal) -> None:
-        position = message.goal.position
-        self.history.sent(message.goal_id.id, position.x, position.y)
-
-    def _on_result(self, message: GoToPositionActionResult, robot: str) -> None:
-        state = STATES.get(message.status.status, "")
-        self.history.ended(robot, message.status.goal_id.id, state, message.result.message)
+    def _brief(self, topic: str, state: PageState) -> Tuple[str, str]:
+        listener = self._listeners.get(topic)
+        if listener is None or listener.newest is None:
+            return "", ""
+        return self._rate(listener, state), brief(listener.newest)

@@ -3,58 +3,47 @@
 from typing import Tuple
 
 from ...geometry import Pose3D, compose3, inverse3
+from ...reading import Element
 from . import xml
 
 _OWN_FRAME = {"sdf": "world", "world": "world", "model": "__model__"}  # SDF's name for an element's own frame
 _NAMED = ("frame", "include", "joint", "link", "model")  # children of a world or a model that a pose can be relative to
 MAX_CHAIN = 100  # of poses, each relative to the next
 
-Chain = Tuple[xml.Element, ...]  # elements whose poses are being resolved
+Chain = Tuple[Element, ...]  # elements whose poses are being resolved
 
 
-def placed(element: xml.Element, world_from_parent: Pose3D) -> Pose3D:
+def placed(element: Element, world_from_parent: Pose3D) -> Pose3D:
     """world_from_element of a model, include, link or collision, by its <pose> and the frame that the <pose> names.
 
     WorldError if that frame is unknown or defined by itself.
     """
-    if element.find("pose") is not None and element.find("pose").get("relative_to") == "world":
-        return xml.pose_of(element)
-    if element.getparent() is not None and element.getparent().tag == "link":
-        return compose3(world_from_parent, _in_link(element))
-    return compose3(world_from_parent, _in_scope(element, ()))
-
-
-def _in_link(collision: xml.Element) -> Pose3D:
-    """link_from_collision."""
-    name = _frame_name(collision)
-    pose = xml.own_pose(collision)
+    (_, name), scope = _frame_of(element), element.getparent()
+    if name == "world" and element.find("pose").get("relative_to") == "world":
+        return xml.pose_in_world(element)
+    if scope is None or scope.tag != "link":
+        return compose3(world_from_parent, _in_scope(element, ()))
     if not name:
-        return pose
-    link = collision.getparent()
-    link_from_model = inverse3(_in_scope(link, ()))
-    if name == "__model__":
-        return compose3(link_from_model, pose)
-    return compose3(link_from_model, compose3(_referred(collision, name, link.getparent(), ()), pose))
+        return compose3(world_from_parent, xml.pose_of(element))
+    # The collision of a link; what its frame is named after is beside the link.
+    model_from_frame = Pose3D() if name == "__model__" else _referred(element, name, scope.getparent(), ())
+    world_from_model = compose3(world_from_parent, inverse3(_in_scope(scope, ())))
+    return compose3(world_from_model, compose3(model_from_frame, xml.pose_of(element)))
 
 
-def _in_scope(element: xml.Element, chain: Chain) -> Pose3D:
+def _in_scope(element: Element, chain: Chain) -> Pose3D:
     """Pose of a child of a world or a model in that one's frame."""
     if element in chain:
         raise xml.error(element, f"the pose of <{element.tag} name='{_name(element)}'> is relative to itself")
     if len(chain) >= MAX_CHAIN:
         raise xml.error(element, f"more than {MAX_CHAIN} poses relative to one another; supported: {MAX_CHAIN}")
-    name, pose, scope = _frame_name(element), xml.own_pose(element), element.getparent()
+    (_, name), pose, scope = _frame_of(element), xml.pose_of(element), element.getparent()
     if name in ("", "" if scope is None else _OWN_FRAME.get(str(scope.tag), "")):
         return pose
     return compose3(_referred(element, name, scope, (*chain, element)), pose)
 
 
-def _frame_name(element: xml.Element) -> str:
-    """The frame that an element's <pose> is given in; empty for its parent's."""
-    return _frame_reference(element)[1]
-
-
-def _frame_reference(element: xml.Element) -> Tuple[str, str]:
+def _frame_of(element: Element) -> Tuple[str, str]:
     """How an element names the frame that its <pose> is given in, for messages, and that frame's name, or empty."""
     pose = xml.optional_child(element, "pose")
     for key in ("relative_to", "frame"):
@@ -70,7 +59,7 @@ def _frame_reference(element: xml.Element) -> Tuple[str, str]:
     return "", ""
 
 
-def _referred(element: xml.Element, name: str, scope: xml.Element, chain: Chain) -> Pose3D:
+def _referred(element: Element, name: str, scope: Element, chain: Chain) -> Pose3D:
     """Pose of what a <pose> is relative to, in the frame of the world or model `scope`."""
     pose = xml.optional_child(element, "pose")
     siblings = [] if scope is None or (pose is not None and pose.get("frame")) else scope.iterchildren(*_NAMED)
@@ -81,12 +70,12 @@ def _referred(element: xml.Element, name: str, scope: xml.Element, chain: Chain)
             return _in_scope(sibling, chain)
     raise xml.error(
         element if pose is None else pose,
-        f"{_frame_reference(element)[0]} is not supported; supported: a pose in the parent's frame, or relative_to a "
+        f"{_frame_of(element)[0]} is not supported; supported: a pose in the parent's frame, or relative_to a "
         "<link>, <model>, <joint>, <frame> or named <include> beside it, or to the world",
     )
 
 
-def _name(element: xml.Element) -> str:
+def _name(element: Element) -> str:
     """An element's name; an include's is its <name>."""
     if element.tag == "include":
         name = xml.optional_child(element, "name")

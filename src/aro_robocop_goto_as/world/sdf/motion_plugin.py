@@ -4,20 +4,21 @@ import math
 from typing import List, Optional
 
 from ...geometry import Pose3D
+from ...reading import Element
 from ..model import Cylinder, Geometry, Sphere
 from ..scripted_motion import Motion, Waypoint
 from . import xml
 
 PLUGIN = "robocop_motion"
-LEVEL = 1e-9  # largest |qx| + |qy| of an orientation that counts as level
+CLOSED = 1e-9  # [m] from the start, within which the last waypoint has to be
 
 
-def is_motion(element: xml.Element) -> bool:
+def is_motion(element: Element) -> bool:
     """Whether an element is a <plugin> of this package."""
     return bool(element.tag == "plugin" and element.get("filename") == PLUGIN)
 
 
-def motion_of(model: xml.Element, world_from_model: Pose3D) -> Optional[Motion]:
+def motion_of(model: Element, world_from_model: Pose3D) -> Optional[Motion]:
     """The motion that a model's plugin describes, or None if it has no such plugin; WorldError if it is impossible."""
     plugins = [plugin for plugin in model.iterchildren("plugin") if is_motion(plugin)]
     if not plugins:
@@ -26,30 +27,27 @@ def motion_of(model: xml.Element, world_from_model: Pose3D) -> Optional[Motion]:
     if len(plugins) > 1:
         raise xml.error(plugins[1], f"a second <plugin filename='{PLUGIN}'>; supported: one")
     xml.require_known_children(plugin, read=("turn", "waypoint"))
-    if abs(world_from_model.orientation[0]) + abs(world_from_model.orientation[1]) > LEVEL:
-        raise xml.error(
-            plugin, "the model that it moves is tilted; supported: level models, which turn about the vertical"
-        )
+    if not world_from_model.is_upright():
+        raise xml.error(plugin, "the model that it moves is tilted; supported: upright models")
     turn = xml.optional_child(plugin, "turn")
     turn_rate = 0.0 if turn is None else xml.numbers(turn, 1)[0]
     return Motion(world_from_model.on_plane(), turn_rate, tuple(_waypoints(plugin)))
 
 
-def _waypoints(plugin: xml.Element) -> List[Waypoint]:
+def _waypoints(plugin: Element) -> List[Waypoint]:
     waypoints: List[Waypoint] = []
     for element in plugin.iterchildren("waypoint"):
         time, x, y = xml.numbers(element, 3)
         if time <= (waypoints[-1][0] if waypoints else 0.0):
             raise xml.error(element, f"<waypoint> at {time:g} s, expected a time later than that of the previous one")
         waypoints.append((time, x, y))
-    if waypoints and math.hypot(*waypoints[-1][1:]) > LEVEL:
+    if waypoints and math.hypot(*waypoints[-1][1:]) > CLOSED:
         _, x, y = waypoints[-1]
         raise xml.error(plugin, f"the last <waypoint> is at '{x:g} {y:g}', expected 0 0, where the cycle starts again")
     return waypoints
 
 
-def require_movable_shape(collision: xml.Element, geometry: Geometry, pose: Pose3D) -> None:
+def require_movable_shape(collision: Element, geometry: Geometry, pose: Pose3D) -> None:
     """WorldError unless the scanners and both engines support motion of a shape."""
-    upright = abs(pose.orientation[0]) + abs(pose.orientation[1]) <= LEVEL
-    if not (isinstance(geometry, Sphere) or (isinstance(geometry, Cylinder) and upright)):
+    if not (isinstance(geometry, Sphere) or (isinstance(geometry, Cylinder) and pose.is_upright())):
         raise xml.error(collision, f"a model moved by {PLUGIN} has this shape; supported: upright cylinders, spheres")

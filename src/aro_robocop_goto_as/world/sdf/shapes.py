@@ -5,9 +5,10 @@ from typing import Callable, Dict, Optional
 
 import numpy as np
 
-from ...errors import WorldError
+from ...reading import Element, file_of
 from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
-from . import meshes, uris, xml
+from . import uris, xml
+from .large_meshes import load_triangles
 
 
 class Shapes:
@@ -15,7 +16,7 @@ class Shapes:
 
     def __init__(self) -> None:
         self._triangles: Dict[str, np.ndarray] = {}
-        self._readers: Dict[str, Callable[[xml.Element], Optional[Geometry]]] = {
+        self._readers: Dict[str, Callable[[Element], Optional[Geometry]]] = {
             "box": _box,
             "cylinder": _cylinder,
             "empty": lambda _: None,
@@ -24,7 +25,7 @@ class Shapes:
             "sphere": _sphere,
         }
 
-    def read(self, geometry: xml.Element) -> Optional[Geometry]:
+    def read(self, geometry: Element) -> Optional[Geometry]:
         """The shape in a <geometry>; None for <empty>. WorldError for unsupported shapes, such as <heightmap>."""
         xml.require_known_children(geometry, read=self._readers)
         shapes = [child for child in geometry if child.tag in self._readers]
@@ -33,15 +34,13 @@ class Shapes:
             raise xml.error(geometry, f"<geometry> has {len(shapes)} shapes; supported: exactly one of {known}")
         return self._readers[shapes[0].tag](shapes[0])
 
-    def _mesh(self, mesh: xml.Element) -> Mesh:
+    def _mesh(self, mesh: Element) -> Mesh:
         xml.require_known_children(mesh, read=("scale", "uri"))
         uri = xml.required_child(mesh, "uri")
-        path = uris.find_file(xml.text_of(uri), uri)
-        if path not in self._triangles:
-            try:
-                self._triangles[path] = meshes.load_triangles(path)
-            except WorldError as exc:
-                raise xml.error(uri, str(exc)) from exc
+        with xml.about(uri):
+            path = uris.locate(xml.text_of(uri), file_of(uri))
+            if path not in self._triangles:
+                self._triangles[path] = load_triangles(path)
         scale = xml.optional_child(mesh, "scale")
         factors = (1.0, 1.0, 1.0) if scale is None else xml.numbers(scale, 3)
         if 0.0 in factors:
@@ -49,17 +48,16 @@ class Shapes:
         return Mesh(self._triangles[path] * factors, path)
 
 
-def _box(box: xml.Element) -> Box:
-    x, y, z = xml.sizes(xml.required_child(box, "size"), 3)
+def _box(box: Element) -> Box:
+    x, y, z = xml.numbers(xml.required_child(box, "size"), 3, positive=True)
     return Box((x, y, z))
 
 
-def _cylinder(cylinder: xml.Element) -> Cylinder:
-    (radius,), (length,) = (xml.sizes(xml.required_child(cylinder, tag), 1) for tag in ("radius", "length"))
-    return Cylinder(radius, length)
+def _cylinder(cylinder: Element) -> Cylinder:
+    return Cylinder(_length(cylinder, "radius"), _length(cylinder, "length"))
 
 
-def _plane(plane: xml.Element) -> Plane:
+def _plane(plane: Element) -> Plane:
     # <size> only applies to a visual: a plane's collision is infinite.
     normal = xml.optional_child(plane, "normal")
     x, y, z = (0.0, 0.0, 1.0) if normal is None else xml.numbers(normal, 3)
@@ -69,6 +67,10 @@ def _plane(plane: xml.Element) -> Plane:
     return Plane((x / length, y / length, z / length))
 
 
-def _sphere(sphere: xml.Element) -> Sphere:
-    (radius,) = xml.sizes(xml.required_child(sphere, "radius"), 1)
-    return Sphere(radius)
+def _sphere(sphere: Element) -> Sphere:
+    return Sphere(_length(sphere, "radius"))
+
+
+def _length(shape: Element, tag: str) -> float:
+    """The length [m], greater than 0, that a shape's child with this tag gives."""
+    return xml.numbers(xml.required_child(shape, tag), 1, positive=True)[0]

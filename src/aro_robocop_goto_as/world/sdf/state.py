@@ -1,20 +1,22 @@
 """Read the <state> that Gazebo saves with a world: where its models and links were at that time."""
 
-from typing import Dict, Iterator, Tuple
+from typing import Callable, Dict, Iterator, Tuple
 
 from ...geometry import Pose3D
+from ...reading import Element
 from . import xml
 
 _SKIPPED = ("deletions", "insertions", "iterations", "light", "real_time", "sim_time", "wall_time")
 _SKIPPED_OF_MODELS = ("acceleration", "collision", "joint", "static", "velocity", "wrench")
 
-SavedPoses = Dict[str, Tuple[Pose3D, xml.Element]]  # model or link name: its pose in the world and its element
+SavedPoses = Dict[str, Tuple[Pose3D, Element]]  # model or link name: its pose in the world and its element
 
 
-def state_poses(world: xml.Element) -> SavedPoses:
+def state_poses(world: Element, report: Callable[[str, Element], None]) -> SavedPoses:
     """The poses in a world's <state> elements, which override those of its models and links, as in Gazebo.
 
-    Names are `model`, `model/link`, `model/nested`. WorldError if a state scales, adds or removes something.
+    Names are `model`, `model/link`, `model/nested`. Scales are reported and left out: Gazebo saves them in addition to
+    shapes that are already scaled. WorldError if a state adds or removes something.
     """
     poses: SavedPoses = {}
     for state in world.iterchildren("state"):
@@ -22,17 +24,19 @@ def state_poses(world: xml.Element) -> SavedPoses:
             if xml.text_of(change):
                 raise xml.error(change, f"<{change.tag}> in <state> is supported only if it is empty")
         xml.require_known_children(state, ("model",), _SKIPPED)
-        poses.update(_poses(state, ""))
+        poses.update(_poses(state, "", report))
     return poses
 
 
-def _poses(parent: xml.Element, prefix: str) -> Iterator[Tuple[str, Tuple[Pose3D, xml.Element]]]:
+def _poses(
+    parent: Element, prefix: str, report: Callable[[str, Element], None]
+) -> Iterator[Tuple[str, Tuple[Pose3D, Element]]]:
     for element in parent.iterchildren("model", "link"):
         xml.require_known_children(element, ("link", "model", "pose", "scale"), _SKIPPED_OF_MODELS)
+        name = prefix + xml.name_of(element)
         scale = xml.optional_child(element, "scale")
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
-            raise xml.error(scale, f"<scale> is '{xml.text_of(scale)}', supported: 1 1 1")
-        name = prefix + xml.name_of(element)
+            report(f"<scale> {xml.text_of(scale)} in the state of '{name}' is left out", scale)
         if xml.optional_child(element, "pose") is not None:
-            yield name, (xml.pose_of(element), element)
-        yield from _poses(element, name + "/")
+            yield name, (xml.pose_in_world(element), element)
+        yield from _poses(element, name + "/", report)

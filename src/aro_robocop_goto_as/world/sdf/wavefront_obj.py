@@ -5,14 +5,13 @@ end of the file rather than from the face, and lines that are indented or separa
 index 0 as the last vertex, refuses comments after a face and bytes that are not UTF-8, and its errors name no line.
 """
 
-import math
+import re
 from typing import List, Tuple
 
 import numpy as np
 
 from ...errors import WorldError
-
-Face = Tuple[int, ...]  # vertex indices, from 0
+from ...reading import finite_numbers
 
 
 def read_obj(content: bytes, path: str) -> np.ndarray:
@@ -21,19 +20,21 @@ def read_obj(content: bytes, path: str) -> np.ndarray:
     path: the file's name for messages. WorldError names it, the line, the text found there and what was expected.
     """
     vertices: List[Tuple[float, ...]] = []
-    faces: List[Tuple[int, Face]] = []  # with the line number: a face may use vertices that are defined later
+    fans: List[Tuple[int, int, int]] = []  # indices of vertices, from 0
+    last, last_line = -1, 0  # the largest index so far, and its line: a face may use vertices that are defined later
     for number, line in _lines(content):
-        words = line.split()
-        if words[:1] == [b"v"]:
-            vertices.append(_vertex(words[1:4], f"{path}:{number}"))
-        elif words[:1] == [b"f"]:
-            faces.append((number, _face(words[1:], len(vertices), f"{path}:{number}")))
-    for number, face in faces:
-        if max(face) >= len(vertices):
-            raise WorldError(
-                f"{path}:{number}: f has vertex {max(face) + 1}, expected one of the file's {len(vertices)}"
-            )
-    fans = [(face[0], b, c) for _, face in faces for b, c in zip(face[1:], face[2:])]
+        kind, *words = line.split() or [b""]
+        try:
+            if kind == b"v":
+                vertices.append(finite_numbers(b" ".join(words[:3]).decode("ascii", "replace"), 3))
+            elif kind == b"f":
+                face = _face(words, len(vertices))
+                fans += [(face[0], second, third) for second, third in zip(face[1:], face[2:])]
+                last, last_line = max((last, last_line), (max(face), number))
+        except ValueError as exc:
+            raise WorldError(f"{path}:{number}: {kind.decode()} is '{_quoted(words)}', {exc}") from exc
+    if last >= len(vertices):
+        raise WorldError(f"{path}:{last_line}: f has vertex {last + 1}, expected one of the file's {len(vertices)}")
     return np.array(vertices, dtype=float).reshape(-1, 3)[np.array(fans, dtype=int).reshape(-1, 3)]
 
 
@@ -50,28 +51,13 @@ def _lines(content: bytes) -> List[Tuple[int, bytes]]:
     return lines
 
 
-def _vertex(words: List[bytes], place: str) -> Tuple[float, ...]:
-    try:
-        values = tuple(float(word) for word in words)
-    except ValueError:
-        values = ()
-    if len(values) != 3 or not all(math.isfinite(value) for value in values):
-        raise WorldError(f"{place}: v is '{_quoted(words)}', expected 3 finite numbers")
-    return values
-
-
-def _face(words: List[bytes], defined: int, place: str) -> Face:
+def _face(words: List[bytes], defined: int) -> List[int]:
     """A face's vertices: 1 is the file's first one, -1 the last one defined before the face; `/...` is skipped."""
-    try:
+    if len(words) >= 3 and all(re.fullmatch(rb"-?\d+(/.*)?", word) for word in words):
         indices = [int(word.partition(b"/")[0]) for word in words]
-    except ValueError:
-        indices = []
-    if len(indices) < 3 or not all(index > 0 or -defined <= index < 0 for index in indices):
-        raise WorldError(
-            f"{place}: f is '{_quoted(words)}', expected 3 or more vertices, whole numbers from 1 on or, "
-            f"below 0, of the {defined} before it"
-        )
-    return tuple(index - 1 if index > 0 else defined + index for index in indices)
+        if all(index > 0 or -defined <= index < 0 for index in indices):
+            return [index - 1 if index > 0 else defined + index for index in indices]
+    raise ValueError(f"expected 3 or more vertices, whole numbers from 1 on or, below 0, of the {defined} before it")
 
 
 def _quoted(words: List[bytes]) -> str:

@@ -1,24 +1,16 @@
-"""Parse XML files safely and read validated values from SDF elements, with errors that name file, line and element.
+"""Read validated values from SDF elements, with errors that name file, line and element.
 
 The grammar of SDF is that of http://sdformat.org/spec, versions 1.4 to 1.8.
 """
 
-import math
-import os
-import re
-from typing import Any, Iterable, Optional, Sequence, Set, Tuple
-from urllib.parse import quote, unquote
-
-from lxml import etree
+from contextlib import contextmanager
+from typing import Iterable, Iterator, Optional, Sequence, Set, Tuple
 
 from ...errors import WorldError
 from ...geometry import Pose3D
+from ...reading import Element, file_of, finite_numbers, parse_xml, reading
 
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "1.8")
-Element = Any  # lxml.etree._Element, which is private and has no type hints
-
-# float() alone would accept "1_000" and "infinity".
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -31,9 +23,13 @@ def error(element: Element, message: str) -> WorldError:
     return WorldError(f"{place}: in '{where}': {message}" if where else f"{place}: {message}")
 
 
-def file_of(element: Element) -> str:
-    """The file that contains an element, by the path that it was read from."""
-    return unquote(element.getroottree().docinfo.URL)
+@contextmanager
+def about(element: Element) -> Iterator[None]:
+    """Raise a WorldError of this block as an error about an element."""
+    try:
+        yield
+    except WorldError as exc:
+        raise error(element, str(exc)) from exc
 
 
 def read_root(path: str, expected: Sequence[str]) -> Element:
@@ -59,31 +55,11 @@ def root_of(root: Element, expected: Sequence[str]) -> Element:
     return children[0]
 
 
-def parse(path: str) -> Element:
-    """The root element of an XML file; WorldError if it can't be read, is not XML, or has a DOCTYPE."""
-    try:
-        # Not etree.parse(path), which would also accept a URL.
-        with open(path, "rb") as file:
-            return parse_text(file.read(), path)
-    except OSError as exc:
-        raise WorldError(f"{path}: can't read the file: {exc.strerror or exc}") from exc
-
-
-def parse_text(text: bytes, path: str) -> Element:
-    """The root element of an XML text; path: its name for messages. WorldError as parse."""
-    # World files are not trusted: a DTD could include other files, or expand its entities without bound.
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
-    )
-    try:
-        # Quoted here because libxml2 quotes only some paths; file_of unquotes it.
-        root = etree.fromstring(text, parser, base_url=quote(os.fsencode(path)))
-    except etree.XMLSyntaxError as exc:
-        raise WorldError(f"{path}:{exc.lineno}: not well-formed XML: {exc.msg}") from exc
-    info = root.getroottree().docinfo
-    if info.doctype or info.internalDTD is not None:
-        raise WorldError(f"{path}: '{info.doctype}' is not supported; expected a file without DOCTYPE and entities")
-    return root
+def parse(path: str, lenient: bool = False) -> Element:
+    """The root element of an XML file, see parse_xml; WorldError if it can't be read, is not XML, or has a DOCTYPE."""
+    # Not etree.parse(path), which would also accept a URL.
+    with reading(path, WorldError, "an XML file"), open(path, "rb") as file:
+        return parse_xml(file.read(), path, WorldError, lenient)
 
 
 def require_known_children(element: Element, read: Iterable[str], skipped: Iterable[str] = ()) -> None:
@@ -103,14 +79,10 @@ def require_unique_names(elements: Iterable[Element]) -> None:
     """WorldError for the second of two elements with the same name."""
     used: Set[str] = set()
     for element in elements:
-        claim_name(name_of(element), element, used)
-
-
-def claim_name(name: str, element: Element, used: Set[str]) -> None:
-    """Add an element's name to those in use; WorldError if it is already in use."""
-    if name in used:
-        raise error(element, f"the name '{name}' of this <{element.tag}> is already taken; expected another name")
-    used.add(name)
+        name = name_of(element)
+        if name in used:
+            raise error(element, f"the name '{name}' of this <{element.tag}> is already taken; expected another name")
+        used.add(name)
 
 
 def optional_child(element: Element, tag: str) -> Optional[Element]:
@@ -158,62 +130,34 @@ def boolean(element: Element, tag: str) -> Optional[bool]:
     return value
 
 
-def numbers(element: Element, count: int) -> Tuple[float, ...]:
+def numbers(element: Element, count: int, positive: bool = False) -> Tuple[float, ...]:
     """The element's `count` finite numbers, in SDF's units."""
-    words = text_of(element).split()
-    if len(words) == count and all(_NUMBER.fullmatch(word) for word in words):
-        values = tuple(float(word) for word in words)
-        if all(math.isfinite(value) for value in values):
-            return values
-    raise error(element, f"<{element.tag}> is '{' '.join(words)}', expected {_finite(count)}")
-
-
-def sizes(element: Element, count: int) -> Tuple[float, ...]:
-    """The element's `count` lengths [m], each greater than zero."""
-    values = numbers(element, count)
-    if min(values) <= 0.0:
-        text = " ".join(text_of(element).split())
-        raise error(element, f"<{element.tag}> is '{text}', expected {_finite(count)} greater than 0")
-    return values
-
-
-def _finite(count: int) -> str:
-    return "one finite number" if count == 1 else f"{count} finite numbers"
-
-
-def pose_numbers(element: Element) -> Tuple[float, ...]:
-    """x, y, z [m], roll, pitch, yaw [rad] of the element's <pose> in the world; zeros if there is no <pose>.
-
-    WorldError if the <pose> names another frame.
-    """
-    pose = optional_child(element, "pose")
-    if pose is None:
-        return (0.0,) * 6
-    for key in ("frame", "relative_to"):
-        if pose.get(key, "") not in ("", "world"):
-            raise error(pose, f"<pose {key}='{pose.get(key)}'> is not supported here; supported: a pose in the world")
-    return _pose_numbers(pose)
-
-
-def _pose_numbers(pose: Element) -> Tuple[float, ...]:
-    """Zeros for a <pose> without text, as `gz sdf` writes it for a link that coincides with its joint."""
-    for key, value in pose.attrib.items():
-        if key not in ("frame", "relative_to") and (key, _BOOLEANS.get(value.lower())) != ("degrees", False):
-            raise error(pose, f"<pose {key}='{value}'> is not supported; supported: metres and radians")
-    return numbers(pose, 6) if text_of(pose) else (0.0,) * 6
+    text = " ".join(text_of(element).split())
+    try:
+        return finite_numbers(text, count, positive)
+    except ValueError as exc:
+        raise error(element, f"<{element.tag}> is '{text}', {exc}") from exc
 
 
 def pose_of(element: Element) -> Pose3D:
-    """The element's <pose> in the world, as pose_numbers."""
-    return _to_pose(pose_numbers(element))
+    """The element's <pose> in whichever frame it is given; the identity without a <pose>, or without text in it.
 
-
-def own_pose(element: Element) -> Pose3D:
-    """The element's <pose> in whichever frame it is given; the identity if there is none."""
+    `gz sdf` writes a <pose> without text for a link that coincides with its joint.
+    """
     pose = optional_child(element, "pose")
-    return Pose3D() if pose is None else _to_pose(_pose_numbers(pose))
-
-
-def _to_pose(values: Tuple[float, ...]) -> Pose3D:
-    x, y, z, roll, pitch, yaw = values
+    if pose is None:
+        return Pose3D()
+    for key, value in pose.attrib.items():
+        if key not in ("frame", "relative_to") and (key, _BOOLEANS.get(value.lower())) != ("degrees", False):
+            raise error(pose, f"<pose {key}='{value}'> is not supported; supported: metres and radians")
+    x, y, z, roll, pitch, yaw = numbers(pose, 6) if text_of(pose) else (0.0,) * 6
     return Pose3D.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
+
+
+def pose_in_world(element: Element) -> Pose3D:
+    """As pose_of; WorldError if the <pose> names a frame other than the world."""
+    pose = optional_child(element, "pose")
+    for key in ("frame", "relative_to"):
+        if pose is not None and pose.get(key, "") not in ("", "world"):
+            raise error(pose, f"<pose {key}='{pose.get(key)}'> is not supported here; supported: a pose in the world")
+    return pose_of(element)

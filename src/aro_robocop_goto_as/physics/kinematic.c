@@ -1,0 +1,338 @@
+/* Ideal differential drives as discs that walls and other discs block; kinematic.py describes the model.
+ *
+ * The structures are mirrored in kinematic.py; ARO_FLEET_VERSION changes with them.
+ */
+
+#include <math.h>
+#include <stddef.h>
+
+#include "../raycast/grid.h"
+#include "../robot/fleet.h"
+
+#define MARGIN 1e-6 /* [m] kept free, so that rounding never moves a disc into a wall */
+#define NEARBY 1.0  /* [m] the range within which walls are looked up in a grid */
+
+/* A world's cross-sections at all heights of a robot's body, in one plane. */
+struct outlines {
+    int64_t n_segments, n_circles;
+    const double *segments;  /* (n_segments, 2, 2) [m] */
+    const double *circles;   /* (n_circles, 3) x, y, radius [m] */
+    const struct grid *grid; /* of the segments; NULL: all are near everywhere */
+};
+
+struct kinematic {
+    struct fleet *fleet;
+    const struct outlines *walls;
+    const int64_t *walls_of; /* (n,) index of each robot's walls */
+    double *clearances;      /* (n,) [m] that a robot can travel before walls must be looked at; a lower bound */
+    uint8_t *blocked;        /* (n,) whether a robot was blocked or pushed in its last step */
+    uint8_t *crowded;        /* (n,) whether a robot may meet another one in this step */
+    double separation;       /* [m] that any two robots can travel together before they meet; a lower bound */
+};
+
+/* The segments near a point, one after the other; from a grid some may come twice. */
+struct nearby {
+    const struct outlines *walls;
+    int64_t row, last_row, first_column, last_column;
+    int64_t next, end; /* in members, in everywhere, or in segments */
+    int stage;         /* 0: everywhere or all segments, 1: rows of tiles */
+};
+
+/* The number of a tile, at least -1 and at most `count`; -1 for NaN, as where a pose has overflowed. */
+static int64_t tile_within(double length, double side, int64_t count)
+{
+    double tile = length / side;
+    return (int64_t)floor(tile > -1.0 ? fmin(tile, (double)count) : -1.0);
+}
+
+/* The segments within a square of half a side [m] around a point, and perhaps others. */
+static struct nearby segments_near(const struct outlines *walls, double x, double y, double half)
+{
+    const struct grid *grid = walls->grid;
+    struct nearby near = {walls, 0, -1, 0, -1, 0, 0, 0};
+    int64_t first, last;
+    if (!grid) {
+        near.end = walls->n_segments;
+        return near;
+    }
+    near.end = grid->n_everywhere;
+    first = tile_within(x - half - grid->x, grid->side, grid->columns);
+    last = tile_within(x + half - grid->x, grid->side, grid->columns);
+    near.first_column = first > 0 ? first : 0;
+    near.last_column = last < grid->columns - 1 ? last : grid->columns - 1;
+    first = tile_within(y - half - grid->y, grid->side, grid->rows);
+    last = tile_within(y + half - grid->y, grid->side, grid->rows);
+    near.row = first > 0 ? first : 0;
+    near.last_row = last < grid->rows - 1 ? last : grid->rows - 1;
+    return near;
+}
+
+/* The next segment [ax, ay, bx, by] [m]; NULL after the last one. */
+static const double *next_segment(struct nearby *near)
+{
+    const struct grid *grid = near->walls->grid;
+    int64_t number;
+    while (near->next >= near->end) {
+        const int32_t *starts;
+        if (!grid || near->row > near->last_row || near->first_column > near->last_column)
+            return NULL;
+        starts = grid->starts + near->row * grid->columns;
+        near->stage = 1;
+        near->next = starts[near->first_column];
+        near->end = starts[near->last_column + 1];
+        near->row++;
+    }
+    number = !grid ? near->next : near->stage ? grid->members[near->next] : grid->everywhere[near->next];
+    near->next++;
+    return near->walls->segments + 4 * number;
+}
+
+static double distance_to_segment(double x, double y, const double *segment)
+{
+    double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1];
+    double dx = x - segment[0], dy = y - segment[1], squared = along_x * along_x + along_y * along_y;
+    double nearest = (dx * along_x + dy * along_y) / (squared > 1e-30 ? squared : 1e-30);
+    nearest = nearest < 0.0 ? 0.0 : nearest > 1.0 ? 1.0 : nearest;
+    return hypot(dx - nearest * along_x, dy - nearest * along_y);
+}
+
+/* Distance [m] from a robot's rim to the nearest wall, with a grid at most NEARBY; negative inside a wall. */
+static double gap(const struct kinematic *kin, int64_t robot, double length)
+{
+    const struct outlines *walls = kin->walls + kin->walls_of[robot];
+    const double *pose = kin->fleet->poses + 3 * robot, *segment;
+    double radius = kin->fleet->radii[robot], nearest = walls->grid ? radius + NEARBY : INFINITY;
+    struct nearby near = segments_near(walls, pose[0], pose[1], radius + length + NEARBY);
+    int64_t k;
+    while ((segment = next_segment(&near)) != NULL)
+        nearest = fmin(nearest, distance_to_segment(pose[0], pose[1], segment));
+    for (k = 0; k < walls->n_circles; k++) {
+        const double *circle = walls->circles + 3 * k;
+        nearest = fmin(nearest, hypot(circle[0] - pose[0], circle[1] - pose[1]) - circle[2]);
+    }
+    return nearest - radius;
+}
+
+/* A displacement from a point, and the fraction of it that is free as far as is known. */
+struct motion {
+    double x, y, dx, dy; /* [m] */
+    double length;       /* [m] */
+    double free;         /* 0 to 1 */
+};
+
+/* Stop the motion where it first enters a circle; it may leave one freely. */
+static void stop_at_circle(struct motion *motion, double x, double y, double radius)
+{
+    double off_x = x - motion->x, off_y = y - motion->y, squared, towards, root, fraction;
+    towards = off_x * motion->dx + off_y * motion->dy;
+    squared = motion->dx * motion->dx + motion->dy * motion->dy;
+    root = towards * towards - squared * ((off_x * off_x + off_y * off_y) - radius * radius);
+    if (!(squared > 0.0 && root > 0.0 && towards > 0.0))
+        return;
+    fraction = (towards - sqrt(root)) / squared;
+    motion->free = fmin(motion->free, fmax(0.0, fraction));
+}
+
+/* Stop the motion where it first comes within a radius [m] of a segment, beside which it is. */
+static void stop_at_side(struct motion *motion, const double *segment, double radius)
+{
+    double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1], length = hypot(along_x, along_y);
+    double off_x = motion->x - segment[0], off_y = motion->y - segment[1], distance, approach, fraction, position;
+    if (length == 0.0)
+        return;
+    along_x /= length;
+    along_y /= length;
+    distance = -off_x * along_y + off_y * along_x;
+    approach = -(motion->dy * along_x - motion->dx * along_y) * (distance >= 0.0 ? 1.0 : -1.0);
+    if (!(approach > 0.0))
+        return;
+    fraction = fmax((fabs(distance) - radius) / approach, 0.0);
+    position = (off_x + fraction * motion->dx) * along_x + (off_y + fraction * motion->dy) * along_y;
+    if (fraction < 1.0 && position >= 0.0 && position <= length)
+        motion->free = fmin(motion->free, fraction);
+}
+
+/* Keep the contact margin before what was met; the fraction that was free `before` is the most. */
+static void keep_margin(struct motion *motion, double before)
+{
+    if (motion->free < 1.0)
+        motion->free = fmax(0.0, motion->free - MARGIN / motion->length);
+    motion->free = fmin(motion->free, before);
+}
+
+/* Stop a robot's motion at walls, and renew its clearance. */
+static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *motion)
+{
+    const struct outlines *walls = kin->walls + kin->walls_of[robot];
+    double radius = kin->fleet->radii[robot], room = gap(kin, robot, motion->length) - MARGIN, before = motion->free;
+    const double *segment;
+    struct nearby near;
+    int64_t k;
+    kin->clearances[robot] = room - motion->length;
+    if (room >= motion->length)
+        return;
+    motion->free = 1.0;
+    for (k = 0; k < walls->n_circles; k++) {
+        const double *circle = walls->circles + 3 * k;
+        stop_at_circle(motion, circle[0], circle[1], circle[2] + radius);
+    }
+    near = segments_near(walls, motion->x, motion->y, radius + motion->length + NEARBY);
+    while ((segment = next_segment(&near)) != NULL) {
+        stop_at_circle(motion, segment[0], segment[1], radius);
+        stop_at_circle(motion, segment[2], segment[3], radius);
+        stop_at_side(motion, segment, radius);
+    }
+    keep_margin(motion, before);
+}
+
+/* Stop a robot's motion at the other robots. */
+static void stop_at_robots(const struct kinematic *kin, int64_t robot, struct motion *motion)
+{
+    const struct fleet *fleet = kin->fleet;
+    double before = motion->free;
+    int64_t k;
+    motion->free = 1.0;
+    for (k = 0; k < fleet->n; k++)
+        if (k != robot)
+            stop_at_circle(motion, fleet->poses[3 * k], fleet->poses[3 * k + 1],
+                           fleet->radii[k] + (fleet->radii[robot] + MARGIN));
+    keep_margin(motion, before);
+}
+
+/* Velocity v [m/s], w [rad/s] of a robot whose wheels turn as they are asked to and that nothing blocks. */
+static void free_twist(const struct fleet *fleet, int64_t robot, double *v, double *w)
+{
+    double left = fleet->targets[2 * robot], right = fleet->targets[2 * robot + 1];
+    *v = (left + right) * fleet->wheels[2 * robot] / 2.0;
+    *w = (right - left) * fleet->wheels[2 * robot] / fleet->wheels[2 * robot + 1];
+}
+
+/* Mark the robots that may meet another one in this step. */
+static void find_crowded(struct kinematic *kin, double dt)
+{
+    const struct fleet *fleet = kin->fleet;
+    double longest = 0.0, v, w;
+    int64_t i, k;
+    for (i = 0; i < fleet->n; i++) {
+        free_twist(fleet, i, &v, &w);
+        longest = fmax(longest, fabs(v));
+        kin->crowded[i] = 0;
+    }
+    longest *= dt;
+    kin->separation -= 2.0 * longest;
+    if (fleet->n < 2 || kin->separation >= 0.0)
+        return;
+    kin->separation = INFINITY;
+    for (i = 0; i < fleet->n; i++)
+        for (k = 0; k < i; k++) {
+            double between = hypot(fleet->poses[3 * i] - fleet->poses[3 * k],
+                                   fleet->poses[3 * i + 1] - fleet->poses[3 * k + 1]);
+            double room = between - (fleet->radii[i] + fleet->radii[k]) - 2.0 * (longest + MARGIN);
+            kin->separation = fmin(kin->separation, room);
+            if (room < 0.0)
+                kin->crowded[i] = kin->crowded[k] = 1;
+        }
+}
+
+/* Move all robots by one step, one after the other; each meets the others where they are by then. */
+static void move(struct kinematic *kin, double dt)
+{
+    struct fleet *fleet = kin->fleet;
+    int64_t i;
+    find_crowded(kin, dt);
+    for (i = 0; i < fleet->n; i++) {
+        double *pose = fleet->poses + 3 * i, v, w;
+        int k;
+        kin->blocked[i] = 0;
+        free_twist(fleet, i, &v, &w);
+        for (k = 0; k < 2; k++) {
+            fleet->wheel_speeds[2 * i + k] = fleet->targets[2 * i + k];
+            fleet->wheel_angles[2 * i + k] += fleet->targets[2 * i + k] * dt;
+        }
+        fleet->twists[2 * i] = v;
+        fleet->twists[2 * i + 1] = w;
+        if (v != 0.0) {
+            struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+            aro_arc(pose[2], v * dt, w * dt, &motion.dx, &motion.dy);
+            kin->clearances[i] -= fabs(v * dt); /* no chord is longer than its arc */
+            if (kin->clearances[i] < 0.0 || kin->crowded[i]) {
+                motion.length = hypot(motion.dx, motion.dy);
+                if (kin->clearances[i] < 0.0)
+                    stop_at_walls(kin, i, &motion);
+                if (kin->crowded[i])
+                    stop_at_robots(kin, i, &motion);
+            }
+            pose[0] += motion.free * motion.dx;
+            pose[1] += motion.free * motion.dy;
+            if (motion.free < 1.0) {
+                fleet->twists[2 * i] = v * motion.free;
+                kin->blocked[i] = 1;
+            }
+        }
+        pose[2] = aro_wrap(pose[2] + w * dt);
+    }
+}
+
+/* Base controllers and motion, for `steps` steps from step number `first` on, of which there are `rate` a second. */
+void aro_kinematic_advance(struct kinematic *kin, int64_t first, int64_t steps, int64_t rate)
+{
+    double dt = 1.0 / (double)rate;
+    int64_t step;
+    for (step = first; step < first + steps; step++) {
+        aro_control(kin->fleet, (double)step / (double)rate, dt);
+        move(kin, dt);
+    }
+}
+
+/* Walls have moved by at most `travelled` [m]: push each robot radially out of the circle that overlaps it most, though
+ * not into walls or other robots. */
+void aro_kinematic_push(struct kinematic *kin, double travelled)
+{
+    struct fleet *fleet = kin->fleet;
+    int64_t i, k;
+    for (i = 0; i < fleet->n; i++) {
+        const struct outlines *walls = kin->walls + kin->walls_of[i];
+        double *pose = fleet->poses + 3 * i, deepest = 0.0, away = 0.0;
+        struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+        kin->clearances[i] -= travelled;
+        if (kin->clearances[i] >= 0.0)
+            continue;
+        for (k = 0; k < walls->n_circles; k++) {
+            const double *circle = walls->circles + 3 * k;
+            double dx = pose[0] - circle[0], dy = pose[1] - circle[1], distance = hypot(dx, dy);
+            double depth = circle[2] + fleet->radii[i] + MARGIN - distance;
+            if (depth > deepest) {
+                deepest = depth;
+                away = distance;
+                motion.dx = dx;
+                motion.dy = dy;
+            }
+        }
+        if (!(deepest > 0.0 && away > 0.0))
+            continue;
+        motion.dx *= deepest / away;
+        motion.dy *= deepest / away;
+        motion.length = deepest;
+        stop_at_walls(kin, i, &motion);
+        stop_at_robots(kin, i, &motion);
+        kin->separation = 0.0;
+        pose[0] += motion.free * motion.dx;
+        pose[1] += motion.free * motion.dy;
+        kin->blocked[i] = 1;
+    }
+}
+
+/* Whether a robot was blocked or pushed in the last step, or overlaps a wall or another robot. */
+int aro_kinematic_touching(const struct kinematic *kin, int64_t robot)
+{
+    const struct fleet *fleet = kin->fleet;
+    const double *pose = fleet->poses + 3 * robot;
+    int64_t k;
+    if (kin->blocked[robot] || gap(kin, robot, 0.0) < 0.0)
+        return 1;
+    for (k = 0; k < fleet->n; k++)
+        if (k != robot && hypot(fleet->poses[3 * k] - pose[0], fleet->poses[3 * k + 1] - pose[1])
+                              < fleet->radii[k] + fleet->radii[robot])
+            return 1;
+    return 0;
+}

@@ -1,0 +1,142 @@
+"""A goal that is sent from the command line and followed to its end, with its progress on the screen."""
+
+import argparse
+import sys
+import time
+from typing import Callable, List, Optional
+
+import actionlib
+import rospy
+from geometry_msgs.msg import Point, PoseStamped
+from nav_msgs.msg import Odometry
+
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback
+
+from ...errors import FrameError
+from ...process import signals
+from .. import log_handlers
+from ..client import discovery
+from ..client.goal_frame import GoalTransformer
+from ..client.goal_handle import SentGoal
+from ..names import ACTION, absolute_if_named, prefixed
+from ..ticker import wait_until
+from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
+
+ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
+PAUSE_PATIENCE = 1.0  # [s, wall] without a change of simulated time
+PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
+
+
+class _ProgressLine:
+    """On a terminal, one line that is overwritten; elsewhere, one line for each new phase."""
+
+    def __init__(self) -> None:
+        self.on_terminal = sys.stdout.isatty()
+        self.phase = ""
+
+    def show(self, feedback: GoToPositionFeedback) -> None:
+        errors = f"distance {feedback.position_error:6.2f} m   angle {feedback.angle_error:+6.2f} rad"
+        line = f"{errors}   {feedback.message}"
+        if self.on_terminal:
+            print("\r\033[K" + line, end="", flush=True)
+            return
+        phase = feedback.message.split(",")[0]
+        if phase != self.phase:
+            print(line, flush=True)
+        self.phase = phase
+
+    def close(self) -> None:
+        if self.on_terminal:
+            print("\r\033[K", end="")
+
+
+class _PauseNotice:
+    """Prints a notice once when simulated time stops advancing."""
+
+    def __init__(self) -> None:
+        self.time = rospy.get_rostime()
+        self.since = time.monotonic()
+        self.printed = False
+
+    def poll(self) -> None:
+        now = rospy.get_rostime()
+        if now != self.time:
+            self.time, self.since, self.printed = now, time.monotonic(), False
+        elif time.monotonic() - self.since > PAUSE_PATIENCE and not self.printed:
+            self.printed = True
+            complain(PAUSED)
+
+
+def _frame(robot: str, frame: str) -> str:
+    """The robot's own frame of that name; shared frames such as map are unchanged."""
+    return prefixed(robot, frame) if frame in ROBOT_FRAMES else frame
+
+
+def go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool] = lambda: False) -> int:
+    """Transform the goal, send it to the server and wait for its end; returns the exit status.
+
+    `ended`: whether the system has ended, so that its server will not come.
+    """
+    try:
+        return _go_to(args, patience, ended)
+    finally:
+        rospy.signal_shutdown("done")
+
+
+def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool]) -> int:
+    log_handlers.use()
+    rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
+    started = rospy.get_rostime()
+    latest: List[Optional[Odometry]] = [None]
+    rospy.Subscriber(
+        absolute_if_named(args.robot, "odom"), Odometry, lambda message: latest.__setitem__(0, message), queue_size=1
+    )
+    odom = _frame(args.robot, "odom")
+    transformer = GoalTransformer(odom, odom, SERVER_PATIENCE, lambda: latest[0])
+    action = absolute_if_named(args.robot, ACTION)
+    client = actionlib.ActionClient(action, GoToPositionAction)
+    missing = discovery.wait_or_explain(client, action, patience, ended)
+    signals.reraise_if_interrupted()  # rospy may have swallowed it
+    if missing:
+        complain(missing)
+        return NOT_REACHED
+    pose = PoseStamped()
+    pose.header.frame_id = _frame(args.robot, args.frame)
+    pose.pose.position = Point(args.x, args.y, 0.0)
+    try:
+        position = transformer.resolve(pose)
+    except FrameError as error:
+        signals.reraise_if_interrupted()
+        complain(str(error))
+        if args.frame == DEFAULT_FRAME:
+            complain("--frame odom gives X and Y relative to where the robot's odometry started")
+        if rospy.get_rostime() == started:
+            complain(PAUSED)
+        return NOT_REACHED
+    given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
+    print(f"goal {given}" + (f", x {position.x:.2f} y {position.y:.2f} in {odom}" if given.split()[-1] != odom else ""))
+    return _follow(client, position)
+
+
+def _follow(client: actionlib.ActionClient, position: Point) -> int:
+    """Send a position in odom, show feedback, cancel on Ctrl-C."""
+    progress, pause = _ProgressLine(), _PauseNotice()
+    goal: Optional[SentGoal] = None
+    try:
+        with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
+            goal = SentGoal(client, position, on_feedback=progress.show)
+        while not goal.done.wait(0.1):
+            signals.reraise_if_interrupted()
+            pause.poll()
+            if not discovery.is_up(client):
+                progress.close()
+                complain("the server is gone")
+                return NOT_REACHED
+    except KeyboardInterrupt:
+        if goal is None:
+            raise
+        goal.cancel()
+        wait_until(goal.done.is_set, SERVER_PATIENCE)
+    progress.close()
+    print(goal.ending or "no answer from the server")
+    return REACHED if goal.result is not None and goal.result.success else NOT_REACHED

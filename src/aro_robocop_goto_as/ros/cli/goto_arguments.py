@@ -1,0 +1,49 @@
+"""The arguments of robocop goto, and what its parts share. It imports nothing of ROS."""
+
+import argparse
+import math
+import sys
+from typing import List
+
+from ...limits import FARTHEST
+from .argparse_internals import accept_scientific_notation
+
+SERVER_PATIENCE = 5.0  # [s, wall] for the server of a running system
+START_PATIENCE = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
+REACHED, NOT_REACHED = 0, 1
+DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
+
+
+def parse(argv: List[str]) -> argparse.Namespace:
+    """The arguments; ends the program with exit status 2 if they are wrong."""
+    parser = argparse.ArgumentParser(
+        prog="robocop goto",
+        description="Send one goal and follow it; exit status 0 when it is reached, 1 when not.",
+        epilog="Uses the running ROS system; without one it starts a headless simulator for this goal.",
+    )
+    accept_scientific_notation(parser)
+    parser.add_argument("x", type=_metres, help="[m]")
+    parser.add_argument("y", type=_metres, help="[m]")
+    parser.add_argument(
+        "--frame",
+        default=DEFAULT_FRAME,
+        help="of X and Y: map (default; as a click in RViz), odom, base_footprint (relative to the robot), ...",
+    )
+    parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
+    parser.add_argument("--world", help="world of the simulator, if one has to be started")
+    return parser.parse_args(argv)
+
+
+def _metres(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not abs(value) <= FARTHEST:  # true for NaN
+        raise argparse.ArgumentTypeError(f"expected a number of metres within +-{FARTHEST:g}, got {text!r}")
+    return value
+
+
+def complain(text: str) -> None:
+    """Print a message to standard error."""
+    print(f"robocop goto: {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,74 @@
+"""The arguments of a launch file as they are typed: NAME:=VALUE..., and --verbose."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import List, Sequence, Tuple
+from xml.etree import ElementTree
+
+from ...suggestions import did_you_mean
+from .program import refuse
+
+TRUE = ("true", "True", "1")
+# What other simulators, and people, call an argument.
+OTHER_NAMES = {
+    "speed": "real_time_factor",
+    "factor": "real_time_factor",
+    "rtf": "real_time_factor",
+    "map": "world",
+    "world_file": "world",
+    "robot": "model",
+    "position": "spawn",
+    "pose": "spawn",
+    "headless": "rviz",
+}
+
+
+def names(file: Path) -> List[str]:
+    """The arguments that a launch file lets its user choose: those with a default."""
+    return [
+        entry.attrib["name"] for entry in ElementTree.parse(file).getroot().findall("arg") if "default" in entry.attrib
+    ]
+
+
+@dataclass(frozen=True)
+class LaunchArguments:
+    """What was typed, with the paths of files made absolute: the nodes run in another folder."""
+
+    file: Path
+    words: Tuple[str, ...]
+    verbose: bool
+
+    @classmethod
+    def parse(cls, file: Path, words: Sequence[str]) -> "LaunchArguments":
+        """Refuse, by ending the program, words that roslaunch would take for files or would silently ignore."""
+        known = names(file)
+        given = [_absolute(word) for word in words if word != "--verbose"]
+        for word in given:
+            name, separator, _ = word.partition(":=")
+            if not separator and not word.startswith("-"):
+                refuse(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
+            if separator and not name.startswith("__") and name not in known:
+                there_are = f"there is no argument {name}; there are: {' '.join(known)}"
+                refuse(f"{there_are}{_meant(name, known)}")
+        return cls(file, tuple(given), "--verbose" in words)
+
+    def value(self, name: str) -> str:
+        """The value that was given last; empty if there is none."""
+        return next((word.partition(":=")[2] for word in reversed(self.words) if word.startswith(f"{name}:=")), "")
+
+    def is_true(self, name: str) -> bool:
+        """Whether an argument was given as true."""
+        return self.value(name) in TRUE
+
+
+def _meant(name: str, known: List[str]) -> str:
+    other = OTHER_NAMES.get(name)
+    return f"; did you mean {other}?" if other in known else did_you_mean(name, known)
+
+
+def _absolute(word: str) -> str:
+    name, separator, value = word.partition(":=")
+    # A plain word is the name of a world, also where there is a file of that name.
+    is_file = separator and ("/" in value or "." in value) and os.path.isfile(value)
+    return f"{name}:={os.path.realpath(value)}" if is_file else word

@@ -1,0 +1,84 @@
+"""Turns ./robocop into another program: installs what that program needs, then replaces this process by it.
+
+The shell script `robocop` is called back for both: `_set_up PART...`, and `_start PROGRAM...` in the workspace.
+"""
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import List, NoReturn
+
+ROOT = Path(__file__).resolve().parents[4]
+SCRIPT = str(ROOT / "robocop")
+PACKAGE = "aro_robocop_goto_as"
+
+
+def say(text: str) -> None:
+    """Print a message to standard error."""
+    print(f"robocop: {text}", file=sys.stderr, flush=True)
+
+
+def refuse(text: str) -> NoReturn:
+    """End with a message and exit status 1."""
+    raise SystemExit(f"robocop: {text}")
+
+
+def is_dry_run() -> bool:
+    """Whether nothing may be installed, built or started."""
+    return bool(os.environ.get("ROBOCOP_DRY_RUN"))
+
+
+def state() -> Path:
+    """The folder of everything that is built."""
+    return Path(os.environ["ROBOCOP_STATE"])
+
+
+def module(name: str, *arguments: str) -> List[str]:
+    """The command line of a Python module in the virtual environment."""
+    return [str(state() / "venv" / "bin" / "python"), "-m", name, *arguments]
+
+
+def set_up(*parts: str) -> bool:
+    """Install and build what is missing, also for these parts (lists in deb-packages/); whether that succeeded."""
+    interrupted: List[int] = []  # Ctrl-C also ends the set-up, which is waited for
+    handler = signal.signal(signal.SIGINT, lambda number, _: interrupted.append(number))
+    status = subprocess.call([SCRIPT, "_set_up", *parts])
+    signal.signal(signal.SIGINT, handler)
+    if interrupted:
+        os.kill(os.getpid(), signal.SIGINT)
+    return status == 0
+
+
+def need(*parts: str) -> None:
+    """Like set_up, but end this program on a failure, which has been reported."""
+    if not set_up(*parts):
+        sys.exit(1)
+
+
+def start(*command: str) -> NoReturn:
+    """Become a program in the workspace; in a dry run, show it."""
+    if is_dry_run():
+        for name in ("ROS_HOSTNAME", "ROS_IP", "ROS_MASTER_URI"):
+            if name in os.environ:
+                print(f"{name}={os.environ[name]}")
+        become(*command)
+    become(SCRIPT, "_start", *command)
+
+
+def start_script(name: str, *arguments: str) -> NoReturn:
+    """Become one of the package's scripts."""
+    # Ctrl-C while Python starts would print a traceback; the scripts unblock it before their imports.
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    start(f"{os.environ['ROBOCOP_WS']}/lib/{PACKAGE}/{name}", *arguments)
+
+
+def become(*command: str) -> NoReturn:
+    """Replace this process by a program; in a dry run, print it."""
+    if is_dry_run():
+        print(shlex.join(command))
+        sys.exit()
+    sys.stdout.flush()
+    os.execvp(command[0], command)

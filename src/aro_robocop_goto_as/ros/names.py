@@ -1,0 +1,23 @@
+"""Names in the ROS graph: the lab's nodes and action, and what belongs to a robot. It imports nothing of ROS."""
+
+SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
+SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"  # nodes, fixed by the handout
+COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
+RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
+ACTION = "robocop_goto_as"  # fixed by the handout
+ACTION_TYPE = "aro_robocop_goto_as/GoToPositionAction"
+
+
+def prefixed(robot: str, name: str) -> str:
+    """A robot's topic or frame, NAME or ROBOT/NAME; topics are relative, so namespaces and remappings apply to them."""
+    return f"{robot}/{name}" if robot else name
+
+
+def absolute(robot: str, name: str) -> str:
+    """A topic of a robot, or of a node in its place: /NAME or /ROBOT/NAME, whatever this node's namespace."""
+    return "/" + prefixed(robot.strip("/"), name)
+
+
+def absolute_if_named(robot: str, name: str) -> str:
+    """The topic /ROBOT/NAME of a robot that a user named; without a robot, NAME in this node's namespace."""
+    return absolute(robot, name) if robot else name

@@ -1,0 +1,131 @@
+"""Everything that uses private parts of rospy and genpy, each with the reason."""
+
+import contextlib
+import socket
+import threading
+from typing import Any, List, Optional, Set, Tuple
+
+import rospy
+
+
+def sender(message: Any) -> str:
+    """Name of the node that published a received message; rospy exposes it only in the connection header."""
+    return str(message._connection_header["callerid"])
+
+
+def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
+    """Names of the nodes a subscriber is connected to; rospy's public API only counts connections."""
+    return {link.callerid_pub for link in subscriber.impl.connections}
+
+
+def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
+    """Whether a publisher is connected to this node; rospy's public API only counts connections."""
+    return bool(publisher.impl.has_connection(node))
+
+
+def is_topic_connected_to(topic: str, node: str) -> bool:
+    """Whether this process publishes a topic, by its resolved name, and is connected to this node for it."""
+    implementation = rospy.topics.get_topic_manager().get_publisher_impl(topic)
+    return implementation is not None and bool(implementation.has_connection(node))
+
+
+def connections_of(publisher: rospy.Publisher) -> List[Tuple[Any, socket.socket]]:
+    """A publisher's connections that are open, with their sockets.
+
+    rospy offers no socket options but the subscriber's TCP_NODELAY, and no way to send to several topics at once.
+    """
+    topic = publisher.impl
+    connections = [] if topic is None else topic.connections
+    open_ones = [(connection, getattr(connection, "socket", None)) for connection in connections]
+    return [(connection, connected) for connection, connected in open_ones if connected is not None]
+
+
+def disconnect(publisher: rospy.Publisher, connection: Any) -> None:
+    """Disconnect a subscriber, unless that has happened already.
+
+    After a connection's own close(), rospy fails to stop watching its socket, as that is closed. While a duplicate is
+    open, the system reports the old descriptor's number, and rospy disconnects the next subscriber that gets it.
+    """
+    topic = publisher.impl
+    if topic is not None:
+        with topic.c_lock, contextlib.suppress(Exception):  # whatever it is, as rospy
+            if connection in topic.connections:
+                topic.remove_connection(connection)
+
+
+def count_messages(publisher: rospy.Publisher, number: int, size: int) -> None:
+    """Count messages of `size` bytes that were sent to a publisher's subscribers; rospy's statistics show them."""
+    topic = publisher.impl
+    if topic is not None:
+        topic.seq += number
+        topic.message_data_sent += number * size
+
+
+def count_sent(connection: Any, number: int, size: int) -> None:
+    """Count messages of `size` bytes that were sent to one subscriber, as rospy's write_data does."""
+    connection.stat_bytes += number * size
+    connection.stat_num_msg += number
+
+
+def latch_lock(publisher: rospy.Publisher) -> Optional[threading.RLock]:
+    """The lock under which rospy sends the message of a latching topic to a new subscriber; None if it doesn't latch.
+
+    Without it, a subscriber could get an older message after a newer one.
+    """
+    topic = publisher.impl
+    return None if topic is None or not topic.is_latch else topic.publock
+
+
+def set_latched(publisher: rospy.Publisher, message: Any) -> None:
+    """Set the message that a latching topic sends to new subscribers: anything with genpy's serialize()."""
+    publisher.impl.latch = message
+
+
+def message_definition(kind: Any) -> Tuple[str, str]:
+    """Type name of a message class, and its definition with those of its parts; genpy has no public names for them."""
+    return kind._type, kind._full_text
+
+
+def clock_condition() -> Optional[threading.Condition]:
+    """The condition that rospy notifies at each /clock message; None on wall-clock time.
+
+    rospy.sleep and rospy.Rate wait on it as well, but neither can be interrupted while /clock is paused.
+    """
+    return None if rospy.rostime.is_wallclock() else rospy.rostime.get_rostime_cond()
+
+
+def shutdown_has_begun() -> bool:
+    """Whether shutdown was requested; rospy.is_shutdown() turns true only after the on_shutdown hooks."""
+    return bool(rospy.core.is_shutdown_requested())
+
+
+def stop_registering_on_shutdown() -> None:
+    """Have rospy give up on a master that is gone as soon as shutdown is requested.
+
+    It keeps trying until rospy.is_shutdown(), with the lock that the hooks before that wait for: for ever.
+    """
+    rospy.impl.registration.is_shutdown = rospy.core.is_shutdown_requested
+
+
+def log_without_the_master() -> None:
+    """Have rospy's logging not ask the master, as it does for each line unless this parameter is set; after init_node.
+
+    A master that hangs would stop the caller. And the master takes the question of a node that is ending because
+    another one has its name for a registration, and ends the other one.
+    """
+    name = "/rosout_disable_topics_generation"
+    rospy.impl.paramserver.get_param_server_cache().set(name, rospy.get_param(name, False))
+
+
+def lengthen_queue(publisher: rospy.Publisher, count: int) -> None:
+    """Keep at least this many messages for a slow subscriber; each older one is lost for good.
+
+    The length is otherwise an argument of the constructor, which a library that makes the publisher may not offer.
+    """
+    topic = publisher.impl
+    if topic.queue_size == 0 or topic.queue_size > count:  # 0: all
+        return
+    with topic.c_lock:
+        topic.set_queue_size(count)
+        for connection in topic.connections:  # of subscribers that came before
+            connection._queue_size = count

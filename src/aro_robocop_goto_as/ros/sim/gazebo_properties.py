@@ -1,0 +1,204 @@
+"""Gazebo's services about links, joints and physics; those that have no meaning on a plane answer with success false.
+
+A client that waits for one of them therefore gets an answer instead of waiting forever.
+"""
+
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+import rospy
+from gazebo_msgs.msg import LinkState
+from gazebo_msgs.srv import (
+    ApplyBodyWrench,
+    ApplyJointEffort,
+    BodyRequest,
+    GetJointProperties,
+    GetJointPropertiesRequest,
+    GetJointPropertiesResponse,
+    GetLinkProperties,
+    GetLinkState,
+    GetLinkStateRequest,
+    GetLinkStateResponse,
+    GetModelProperties,
+    GetModelPropertiesRequest,
+    GetModelPropertiesResponse,
+    GetPhysicsProperties,
+    GetPhysicsPropertiesResponse,
+    JointRequest,
+    SetJointProperties,
+    SetLinkProperties,
+    SetLinkState,
+    SetModelConfiguration,
+    SetPhysicsProperties,
+    SetPhysicsPropertiesRequest,
+    SetPhysicsPropertiesResponse,
+)
+from geometry_msgs.msg import Vector3
+
+from ...errors import FrameError
+from ...geometry import STANDARD_GRAVITY, STANDSTILL, Pose3D, compose3, inverse3
+from ...robot.model import WHEEL_JOINTS
+from ...simulation.simulation import Simulation
+from .. import convert
+from .gazebo_topics import WORLD_FRAMES, State, in_gazebo, links, relative_twist
+
+SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
+GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
+
+PUSHED = "only /cmd_vel, the wheels' motors and contacts move a robot, and the world's models stand still"
+REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
+    "apply_body_wrench": (ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
+    "apply_joint_effort": (ApplyJointEffort, f"efforts are not simulated: {PUSHED}"),
+    "get_link_properties": (GetLinkProperties, "masses of links are not kept; a robot's are in /robot_description"),
+    "set_joint_properties": (SetJointProperties, "joints are as in the robot's URDF"),
+    "set_link_properties": (SetLinkProperties, "links are as in the robot's URDF and the world's file"),
+    "set_link_state": (SetLinkState, "links do not move by themselves; /gazebo/set_model_state moves a whole model"),
+    "set_model_configuration": (
+        SetModelConfiguration,
+        "joints cannot be set: wheels turn as the robot drives, and the world's models have no joints that move",
+    ),
+}
+
+
+class GazeboProperties:
+    """Every request is answered by the simulation's owner, between two steps."""
+
+    def __init__(self, simulation: Simulation, set_factor: Optional[Callable[[float], None]], refusal: str) -> None:
+        """set_factor: changes the real-time factor; without it, that is refused with this reason."""
+        self._simulation = simulation
+        self._simulator = simulation.simulator
+        self._set_factor, self._refusal = set_factor, refusal
+        self._serve("get_joint_properties", GetJointProperties, self._get_joint_properties)
+        self._serve("get_link_state", GetLinkState, self._get_link_state)
+        self._serve("get_model_properties", GetModelProperties, self._get_model_properties)
+        self._serve("get_physics_properties", GetPhysicsProperties, self._get_physics_properties)
+        rospy.Service("/gazebo/set_physics_properties", SetPhysicsProperties, self._on_set_physics_properties)
+        for name, (kind, reason) in REFUSED.items():
+            rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
+        # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
+        rospy.Service("/gazebo/clear_body_wrenches", BodyRequest, lambda _: [])
+        rospy.Service("/gazebo/clear_joint_forces", JointRequest, lambda _: [])
+
+    def _serve(self, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
+        def serve(request: Any) -> Any:
+            try:
+                return self._simulation.jobs.call(lambda: answer(request))
+            except FrameError as error:
+                return {"success": False, "status_message": str(error)}
+
+        rospy.Service(f"/gazebo/{name}", kind, serve)
+
+    # -- in the owner's thread --
+
+    def _link(self, name: str) -> State:
+        """Name, pose and twist of a link or of the world; FrameError if there is no such link.
+
+        The links of the world's models are not kept apart: each is where its model is, as on /gazebo/link_states.
+        """
+        standing = convert.to_twist_msg(STANDSTILL)
+        if name in WORLD_FRAMES:
+            return name, in_gazebo(Pose3D(), -self._simulator.world.ground), standing
+        known = {state[0]: state for state in links(self._simulator)}
+        model = name.partition("::")[0]
+        if name not in known and model != name and model in self._simulator.world.models:
+            return name, self._simulator.world.models[model], standing
+        if name not in known:
+            raise FrameError(f"link [{name}] does not exist; there are: {', '.join(known)}")
+        return known[name]
+
+    def _get_link_state(self, request: GetLinkStateRequest) -> GetLinkStateResponse:
+        _, world_from_link, twist = self._link(request.link_name)
+        _, world_from_reference, of_reference = self._link(request.reference_frame)
+        pose = compose3(inverse3(world_from_reference), world_from_link)
+        yaw = world_from_reference.on_plane().yaw
+        state = LinkState(
+            request.link_name,
+            convert.to_pose_msg(pose),
+            relative_twist(twist, of_reference, yaw),
+            request.reference_frame or "world",
+        )
+        return GetLinkStateResponse(state, True, "GetLinkState: got state")
+
+    def _get_model_properties(self, request: GetModelPropertiesRequest) -> GetModelPropertiesResponse:
+        name = request.model_name
+        response = GetModelPropertiesResponse(success=True, status_message="GetModelProperties: got properties")
+        if name in self._simulator.world.models:
+            # MODEL/LINK/COLLISION, or MODEL/NESTED/LINK/COLLISION
+            parts = [o.name.split("/") for o in self._simulator.world.obstacles if o.name.startswith(name + "/")]
+            response.body_names = _each([part[1] for part in parts if len(part) == 3])
+            response.geom_names = [part[2] for part in parts if len(part) == 3]
+            response.child_model_names = _each([part[1] for part in parts if len(part) > 3])
+            response.is_static = True
+        else:
+            model = self._robot(name)
+            response.body_names = [
+                link.rpartition("::")[2] for link, _, _ in links(self._simulator) if link.startswith(name + "::")
+            ]
+            response.geom_names = [obstacle.name for obstacle in self._simulator.robots[model].model.collisions]
+            response.joint_names = list(WHEEL_JOINTS)
+        response.canonical_body_name = response.body_names[0] if response.body_names else ""
+        return response
+
+    def _get_joint_properties(self, request: GetJointPropertiesRequest) -> GetJointPropertiesResponse:
+        robot, _, joint = request.joint_name.rpartition("::")
+        if joint not in WHEEL_JOINTS:
+            raise FrameError(f"joint [{request.joint_name}] does not exist; there are: {', '.join(WHEEL_JOINTS)}")
+        self._simulator.engine.read()
+        state = self._simulator.fleet.state(self._robot(robot) if robot else 0)
+        side = WHEEL_JOINTS.index(joint)
+        return GetJointPropertiesResponse(
+            GetJointPropertiesResponse.REVOLUTE,  # as gazebo_ros says of every joint
+            [0.0],
+            [state.wheel_angles[side]],
+            [state.wheel_velocities[side]],
+            True,
+            "GetJointProperties: got properties",
+        )
+
+    def _robot(self, name: str) -> int:
+        """A robot's index; FrameError if there is none of that name."""
+        names = [robot.name or robot.model.name for robot in self._simulator.robots]
+        if name not in names:
+            known = ", ".join([*self._simulator.world.models, *names])
+            raise FrameError(f"model [{name}] does not exist; there are: {known}")
+        return names.index(name)
+
+    def _get_physics_properties(self, _request: Any) -> GetPhysicsPropertiesResponse:
+        rate, time = self._simulator.rate, self._simulation.time
+        return GetPhysicsPropertiesResponse(
+            time_step=1.0 / rate,
+            pause=time.paused,
+            max_update_rate=rate * time.pacer.factor,  # in Gazebo, too, 0 is as fast as possible
+            gravity=Vector3(0.0, 0.0, -STANDARD_GRAVITY),
+            success=True,
+            status_message="GetPhysicsProperties: got properties",
+        )
+
+    # -- in the service's thread --
+
+    def _on_set_physics_properties(self, request: SetPhysicsPropertiesRequest) -> SetPhysicsPropertiesResponse:
+        """Only how fast simulated time passes can be changed."""
+
+        def refused(reason: str) -> SetPhysicsPropertiesResponse:
+            return SetPhysicsPropertiesResponse(False, f"SetPhysicsProperties: {reason}")
+
+        now = self._simulation.jobs.call(lambda: self._get_physics_properties(None))
+        if self._set_factor is None:
+            return refused(self._refusal)
+        if abs(request.time_step - now.time_step) > SLOP:
+            return refused(f"time_step is {now.time_step:g} s, by the parameter physics_rate; it cannot be changed")
+        gravity = (request.gravity.x, request.gravity.y, request.gravity.z)
+        if max(abs(gravity[0]), abs(gravity[1]), abs(gravity[2] + STANDARD_GRAVITY)) > GRAVITY_SLOP:
+            return refused(f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed")
+        if not 0.0 <= request.max_update_rate < 1e9:
+            return refused(f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more")
+        self._set_factor(request.max_update_rate * now.time_step)
+        return SetPhysicsPropertiesResponse(True, "SetPhysicsProperties: max_update_rate set; the rest is as it was")
+
+
+def _refuser(name: str, reason: str) -> Callable[[Any], Dict[str, Any]]:
+    return lambda _request: {"success": False, "status_message": f"{name}: {reason}"}
+
+
+def _each(names: List[str]) -> List[str]:
+    """Names in their order, each once."""
+    return list(dict.fromkeys(names))

@@ -1,0 +1,143 @@
+"""Goals: sent by a click, cancelled, with their feedback and their results. A click can also place the robot."""
+
+import time
+from typing import Any, List, Optional, Set, Tuple
+
+from actionlib_msgs.msg import GoalID, GoalStatusArray
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
+from aro_robocop_goto_as.srv import SetPose
+
+from ...web import text
+from ...web.elements import Html, add_button
+from ...web.goal_history import Ended, GoalHistory
+from ...web.pick import floor_point
+from ...web.state import PageState
+from .. import convert
+from ..client.goal_handle import STATES
+from ..covariances import diagonal
+from ..names import ACTION, absolute
+from .inbox import Inbox
+from .part import Context, Part
+from .requests import Requests
+
+SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
+POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.5 m and 15 degrees, squared
+FEEDBACK_AGE = 1.0  # [s, wall] after which a goal without feedback counts as ended
+STATUS_AGE = 3.0  # [s, wall] without a server's status, sent five times a second, after which it counts as gone
+
+
+def cancel(requests: Requests) -> None:
+    """Cancel all goals of the selected robot's server."""
+    requests.publish("cancel", f"{ACTION}/cancel", GoalID(), ": is the server running?")
+
+
+class Goals(Part):
+    """The goals of all robots. Their results are received also without a browser, for the history of later visitors."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        gui, live = context.server.gui, context.state.now.live
+        self._feedback_html = Html(gui)
+        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
+        add_button(gui, "Cancel goal", "x", lambda: cancel(context.requests), live)
+        self._history_html: Optional[Html] = None
+        self._status: Optional[Tuple[float, GoalStatusArray]] = None  # when it was received [s, wall], and the message
+        self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
+        self._history = GoalHistory()
+        self._results = Inbox()
+        self._watched: Set[str] = set()
+        context.server.scene.on_click()(self._on_click)
+
+    def add_history(self) -> None:
+        """Show the last goals in the part of the panel that is open now."""
+        gui = self.context.server.gui
+        with gui.add_folder("Goals"):
+            self._history_html = Html(gui)
+
+    def _on_click(self, event: Any) -> None:
+        point = floor_point(event.ray_origin, event.ray_direction)
+        if point is None:
+            return
+        state, requests, frame = self.context.state.now, self.context.requests, self.context.fixed_frame
+        place, pose = self._mode.value == PLACE_ROBOT, PoseStamped()
+        pose.header.frame_id = frame  # with time zero, which means the newest transforms
+        pose.pose.position.x, pose.pose.position.y = point
+        pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)
+        where = f"({point[0]:.2f}, {point[1]:.2f}) in {frame}"
+        if not place:  # a 2D Nav Goal, which the bridge makes a goal of
+            requests.publish(f"goal {where}", "move_base_simple/goal", pose, ": is the bridge running?")
+        elif state.simulated:
+            requests.call(f"pose {where}", "set_pose", SetPose, state.selected, pose)
+        else:  # for a localization
+            estimate = PoseWithCovarianceStamped(header=pose.header)
+            estimate.pose.pose = pose.pose
+            variances = (POSITION_VARIANCE, POSITION_VARIANCE, 0.0, 0.0, 0.0, YAW_VARIANCE)
+            estimate.pose.covariance = diagonal(variances)
+            requests.publish(f"pose {where}", "initialpose", estimate)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        self._feedback = self._status = None
+        inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
+        inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
+
+    def ask_master(self, state: PageState) -> None:
+        for robot in set(state.robots) - self._watched:
+            self._watched.add(robot)
+            name = absolute(robot, ACTION)
+            self._results.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
+            self._results.subscribe(f"{name}/result", GoToPositionActionResult, self._result_handler(robot), None)
+        self._results.deliver()
+
+    def _on_feedback(self, at: float, message: GoToPositionActionFeedback) -> None:
+        self._feedback = (at, message.feedback)
+
+    def _on_status(self, at: float, message: GoalStatusArray) -> None:
+        self._status = (at, message)
+
+    def _on_goal(self, _: float, message: GoToPositionActionGoal) -> None:
+        self._history.sent(message.goal_id.id, message.goal.position.x, message.goal.position.y)
+
+    def _result_handler(self, robot: str) -> Any:
+        def on_result(_: float, message: GoToPositionActionResult) -> None:
+            state, goal_id = STATES.get(message.status.status, ""), message.status.goal_id.id
+            self._history.ended(robot, goal_id, state, message.result.message)
+
+        return on_result
+
+    def show(self, state: PageState) -> None:
+        self._results.deliver()
+        if self._feedback is not None and time.monotonic() - self._feedback[0] >= FEEDBACK_AGE:
+            self._feedback = None
+        if self._status is not None and time.monotonic() - self._status[0] >= STATUS_AGE and not state.recorded:
+            self._status = None
+        self.context.state.change(executing=self._feedback is not None, answering=self._status is not None)
+        rows = self._goal_rows(state.selected)
+        if self._feedback is not None:
+            feedback = self._feedback[1]
+            errors = f"{feedback.position_error:.2f} m", f"{feedback.angle_error:.2f} rad"
+            rows += [("position error", errors[0]), ("angle error", errors[1]), ("feedback", feedback.message)]
+        self._feedback_html.show(text.table(rows) if rows else "")
+        if self._history_html is not None:
+            several = len(state.robots) > 1
+            self._history_html.show(text.history(self._ended(ended, several) for ended in self._history.latest()))
+
+    def _goal_rows(self, robot: str) -> List[Tuple[str, str]]:
+        """The newest goal's state, as actionlib names it, and its position."""
+        known = self._status[1].status_list if self._status is not None else ()
+        if not known:
+            return []
+        newest = max(known, key=lambda entry: entry.goal_id.stamp)
+        goal = self._history.position(newest.goal_id.id)
+        where = "" if goal is None else f" {self.context.place(robot, *goal)}"
+        return [("goal", f"{STATES.get(newest.status, '')}{where}")]
+
+    def _ended(self, ended: Ended, several: bool) -> Tuple[bool, str]:
+        goal = "goal" if ended.goal is None else self.context.place(ended.robot, *ended.goal)
+        robot = f"{ended.robot} " if several else ""
+        return ended.state == "SUCCEEDED", f"{robot}{goal}: {ended.message or ended.state}"
+
+    def forget(self) -> None:
+        self._results.clear()
+        self._history, self._feedback, self._status = GoalHistory(), None, None

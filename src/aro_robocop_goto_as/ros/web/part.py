@@ -1,0 +1,66 @@
+"""What the parts of the page have in common. Each part has its topics, its elements of the panel and its shapes."""
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from ...geometry import Pose3D, compose3
+from ...web.frames import FrameTree
+from ...web.scene import PageScene
+from ...web.state import PageState, SharedState
+from .inbox import Inbox
+from .requests import Requests
+
+
+@dataclass(frozen=True)
+class Context:
+    """What the parts of a page share."""
+
+    server: Any  # of viser
+    scene: PageScene
+    state: SharedState
+    requests: Requests
+    frames: FrameTree
+    fixed_frame: str  # of goals, and of the scene where it is known
+
+    def locate(self, frame: str) -> Optional[Pose3D]:
+        """The pose of a frame in the one that the scene is drawn in."""
+        return self.frames.lookup(self.state.now.root, frame.lstrip("/"))
+
+    def place(self, robot: str, x: float, y: float) -> str:
+        """A position in a robot's odom [m] in words: in the fixed frame where that is known, with the frame's name."""
+        odom = self.frame_of(robot, "odom")
+        fixed_from_odom = self.frames.lookup(self.fixed_frame, odom)
+        if fixed_from_odom is None:
+            return f"({x:.2f}, {y:.2f}) in {odom}"
+        x, y, _ = compose3(fixed_from_odom, Pose3D((x, y, 0.0))).position
+        return f"({x:.2f}, {y:.2f}) in {self.fixed_frame}"
+
+    def frame_of(self, robot: str, link: str) -> str:
+        """A link's frame, which has the robot's name as a prefix if there are several robots."""
+        prefixed = f"{robot}/{link}"
+        return prefixed if robot and self.frames.knows(prefixed) else link
+
+
+class Part:
+    """A part of the page; everything but callbacks of viser runs in the node's main thread."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def subscribe(self, inbox: Inbox) -> None:
+        """Subscribe to topics of the system, when a browser opens the page."""
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        """Forget the previous robot, and subscribe to the topics of the one that is selected now."""
+
+    def ask_master(self, state: PageState) -> None:
+        """Ask the ROS master for what is needed; called once a second, also without a browser."""
+
+    def show(self, state: PageState) -> None:
+        """Show what was received in panel and scene."""
+
+    def forget(self) -> None:
+        """Forget what was received, because another moment of a recording is shown."""
+
+    def end(self) -> None:
+        """Do what has to be done before topics are closed."""

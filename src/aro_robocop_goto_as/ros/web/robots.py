@@ -1,0 +1,102 @@
+"""The robots, drawn from their descriptions where tf says that their links are."""
+
+import xmlrpc.client
+from typing import Dict, Optional, Set
+
+import rosgraph
+import rospkg
+import rospy
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+
+from ...errors import RobotModelError
+from ...web.shapes import Group, Shape
+from ...web.state import PageState
+from ...web.urdf import read_links
+from ..names import absolute
+from .inbox import Inbox
+from .marker_shapes import to_pose
+from .part import Context, Part
+
+DESCRIPTION = "robot_description"
+BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that exists
+TRANSFORMS = 1000  # messages that wait at most while the ROS master keeps the main thread waiting
+
+
+class Robots(Part):
+    """Also determines the selected robot's pose. The first of the parts, since all others need transforms."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
+        self._packages = rospkg.RosPack()
+        self._moved: Set[str] = set()  # frames with a transform on tf
+
+    def subscribe(self, inbox: Inbox) -> None:
+        inbox.subscribe("/tf", TFMessage, self._on_tf, TRANSFORMS)
+        inbox.subscribe("/tf_static", TFMessage, self._on_tf, None)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
+
+    def _on_odometry(self, _: float, message: Odometry) -> None:
+        """The same as a transform, for where nobody publishes that one, as in the original lab."""
+        parent, child = message.header.frame_id.lstrip("/"), message.child_frame_id.lstrip("/")
+        pose = to_pose(message.pose.pose.position, message.pose.pose.orientation)
+        if pose is not None and child not in self._moved:
+            self.context.frames.update(parent, child, pose)
+
+    def _on_tf(self, _: float, message: TFMessage) -> None:
+        for stamped in message.transforms:
+            pose = to_pose(stamped.transform.translation, stamped.transform.rotation)
+            if pose is not None:
+                parent, child = stamped.header.frame_id.lstrip("/"), stamped.child_frame_id.lstrip("/")
+                self.context.frames.update(parent, child, pose)
+                self._moved.add(child)
+
+    def show(self, state: PageState) -> None:
+        """Draw all robots. Where nobody publishes the fixed frame, as without localization, odom takes its place."""
+        context = self.context
+        known = context.frames.knows(context.fixed_frame)
+        context.state.change(root=context.fixed_frame if known else context.frame_of(state.selected, "odom"))
+        group: Group = {}
+        for robot, links in self._links.items():
+            for link, shape in links.items():
+                pose = context.locate(context.frame_of(robot, link))
+                if pose is not None:
+                    group[(robot, link)] = (shape, pose)
+        context.scene.show("robots", group)
+        poses = (context.locate(context.frame_of(state.selected, base)) for base in BASES)
+        context.state.change(pose=next((pose for pose in poses if pose is not None), None))
+
+    def ask_master(self, state: PageState) -> None:
+        found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in state.robots}
+        self._links = {robot: links for robot, links in found.items() if links is not None}
+
+    def _load(self, robot: str) -> Optional[Dict[str, Shape]]:
+        """A robot's links by name, from its own description or one that all share; None as long as there is none."""
+        try:
+            name = rospy.search_param(absolute(robot, DESCRIPTION)) or f"/{DESCRIPTION}"
+            text = rospy.get_param(name, "")
+        except (OSError, rosgraph.MasterException, xmlrpc.client.Error):  # the master has just gone
+            return None
+        if not isinstance(text, str) or not text:
+            return None
+        try:
+            return read_links(text, self._find_mesh)
+        except RobotModelError as error:
+            rospy.logwarn_throttle(60.0, "the robot %r is not drawn: %s", robot, error)
+            return {}
+
+    def _find_mesh(self, uri: str) -> Optional[str]:
+        """The file of a mesh: package://NAME/PATH or file:///PATH."""
+        scheme, _, path = uri.partition("://")
+        if scheme == "file":
+            return path
+        if scheme != "package":
+            return None
+        package, _, path = path.partition("/")
+        try:
+            return f"{self._packages.get_path(package)}/{path}"
+        except rospkg.ResourceNotFound:
+            return None

@@ -1,0 +1,50 @@
+"""The controls of simulated time."""
+
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure
+from std_srvs.srv import Trigger
+
+from aro_robocop_goto_as.msg import SimStatus
+from aro_robocop_goto_as.srv import Reset, Step
+
+from ...web.elements import Slider, set_visible
+from ...web.state import PageState
+from ..names import SIMULATOR, absolute
+from .inbox import Inbox
+from .part import Context, Part
+
+STEP = 0.1  # [s] of simulated time: one control tick
+
+
+class Simulation(Part):
+    """Pause, run, step, reset (with the same seed) and the real-time factor; hidden where there is no simulator."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        gui, call = context.server.gui, context.requests.call
+        act = {
+            "Pause": lambda: call("pause", "pause", Trigger),
+            "Run": lambda: call("continue", "unpause", Trigger),
+            "Step": lambda: call("step", "step", Step, STEP),
+            "Reset": lambda: call("reset", "reset", Reset, 0),
+        }
+        self._factor_asked = 0.0
+        self._folder = gui.add_folder("Time", visible=False)
+        with self._folder:
+            gui.add_button_group("Simulation", tuple(act)).on_click(lambda event: act[event.target.value]())
+            self._factor = Slider(gui, "Factor", 10.0, 1.0, "simulated seconds per second", self._set_factor)
+
+    def _set_factor(self, factor: float) -> None:
+        config = Config(doubles=[DoubleParameter("real_time_factor", factor)])
+        self.context.requests.call(f"factor {factor:g}", "set_parameters", Reconfigure, config)
+
+    def subscribe(self, inbox: Inbox) -> None:
+        inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_status)
+
+    def _on_status(self, _: float, message: SimStatus) -> None:
+        self._factor_asked = message.factor_asked
+
+    def show(self, state: PageState) -> None:
+        set_visible(self._folder, state.live and state.simulated)
+        if self._factor_asked > 0.0:
+            self._factor.show(self._factor_asked)

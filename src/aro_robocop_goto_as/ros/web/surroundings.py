@@ -1,0 +1,76 @@
+"""What is around the robots: the simulator's and the server's markers, the scan and the map."""
+
+from dataclasses import replace
+from typing import Any, Optional
+
+from nav_msgs.msg import OccupancyGrid
+from sensor_msgs.msg import LaserScan
+from visualization_msgs.msg import MarkerArray
+
+from ...geometry import Pose3D, compose3
+from ...web.shapes import IMAGE, POINTS, Shape
+from ...web.state import PageState
+from ..names import SERVER, SIMULATOR, absolute
+from .images import map_image, scan_points
+from .inbox import Inbox
+from .marker_shapes import MarkerStore, to_pose
+from .part import Context, Part
+
+DRAWN_BY_MODEL = ("robots", "noses")  # markers of the simulator that stand for robots whose model is drawn
+SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
+MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
+
+
+class Surroundings(Part):
+    """Scan and map wait until their frames are known, and are drawn once."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._world, self._server = MarkerStore(), MarkerStore()
+        self._scan: Optional[LaserScan] = None  # that is not drawn yet, as the map
+        self._map: Optional[OccupancyGrid] = None
+        self._robot = ""
+
+    def subscribe(self, inbox: Inbox) -> None:
+        self._world = MarkerStore()
+        inbox.subscribe(absolute(SIMULATOR, "world"), MarkerArray, lambda _, message: self._world.apply(message), None)
+        inbox.subscribe("/map", OccupancyGrid, self._on_map)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        self._server, self._scan = MarkerStore(), None
+        if robot != self._robot:
+            self._robot = robot
+            self.context.scene.show("scan", {})
+        markers = absolute(robot, f"{SERVER}/markers")
+        inbox.subscribe(markers, MarkerArray, lambda _, message: self._server.apply(message), None)
+        inbox.subscribe(absolute(robot, "scan"), LaserScan, self._on_scan)
+
+    def _on_map(self, _: float, message: OccupancyGrid) -> None:
+        self._map = message
+
+    def _on_scan(self, _: float, message: LaserScan) -> None:
+        self._scan = message
+
+    def show(self, state: PageState) -> None:
+        scene, locate = self.context.scene, self.context.locate
+        scene.show("world", self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ()))
+        scene.show("server", self._server.placed(locate))
+        pose = None if self._scan is None else locate(self._scan.header.frame_id)
+        if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was received
+            rows: Any = scan_points(self._scan).tolist()
+            points = tuple((x, y, z) for x, y, z in rows)
+            scene.show("scan", {"scan": (replace(SCAN, points=points), pose)} if points else {})
+            self._scan = None
+        pose = None if self._map is None else locate(self._map.header.frame_id)
+        if self._map is not None and pose is not None:
+            self._draw_map(self._map, pose)
+            self._map = None
+
+    def _draw_map(self, message: OccupancyGrid, fixed_from_map: Pose3D) -> None:
+        info = message.info
+        origin = to_pose(info.origin.position, info.origin.orientation)
+        if origin is not None and info.width and len(message.data) == info.width * info.height:
+            width, height = info.width * info.resolution, info.height * info.resolution
+            half = Pose3D((width / 2.0, height / 2.0, MAP_HEIGHT))
+            image = Shape(IMAGE, (width, height, 0.0), image=map_image(message.data, info.width, info.height))
+            self.context.scene.show("map", {object(): (image, compose3(compose3(fixed_from_map, origin), half))})

@@ -1,0 +1,126 @@
+"""The buttons and keys that drive a robot while they are held."""
+
+import threading
+import time
+from typing import Any, Callable, Dict
+
+import rospy
+from geometry_msgs.msg import Twist
+
+from ...geometry import Twist2D
+from ...web.dead_man import DeadMan
+from ...web.elements import Html, add_button
+from .. import convert
+from ..names import absolute
+from ..ticker import wait_until
+from .daemon import start_daemon
+from .goals import cancel
+from .part import Context, Part
+
+HOLD_RATE = 10.0  # [Hz] at which a page renews the request of a button that is held
+END_PATIENCE = 0.5  # [s, wall]
+PERIOD = 0.1  # [s, wall]
+LINGER = 3.0  # [s, wall] without driving until cmd_vel is given up
+PAD = (  # in the order of CROSS
+    # label, hot key, share of the full speed
+    ("Forward (I)", "I", Twist2D(1.0, 0.0)),
+    ("Left (J)", "J", Twist2D(0.0, 1.0)),
+    ("Stop", None, None),
+    ("Right (L)", "L", Twist2D(0.0, -1.0)),
+    ("Back (K)", "K", Twist2D(-1.0, 0.0)),
+)
+# The panel has no rows of buttons: this arranges those of the folder that it is in.
+CROSS = """<style class="cross">
+div:has(> div > .cross) {
+  display: grid; grid-template-columns: repeat(3, 1fr); padding: 0.6em 0.3em 0;
+  & > div { margin-inline: 0.2em !important; button { padding-inline: 0; touch-action: none; } }
+  & > :nth-child(1) { display: none; }
+  & > :nth-child(2), & > :nth-child(6) { grid-column: 2; }
+  & > :nth-child(3) { grid-column: 1; }
+}
+</style>"""
+
+
+class Teleop(Part):
+    """Publishes cmd_vel while somebody drives, from a thread of its own, so that nothing else can delay a stop.
+
+    Otherwise there is no publisher: a simulator in lockstep treats every publisher of cmd_vel as a controller.
+    """
+
+    def __init__(self, context: Context, linear: float, angular: float) -> None:
+        """Full speed: linear [m/s], angular [rad/s]."""
+        super().__init__(context)
+        self._full = (linear, angular)
+        self._dead_man = DeadMan()
+        self._wake = threading.Condition()
+        self._publishers: Dict[str, rospy.Publisher] = {}  # by robot
+        self._used = 0.0  # [s, wall] when the last command was sent
+        gui = context.server.gui
+        with gui.add_folder("Drive", visible=context.state.now.live):
+            Html(gui).show(CROSS)
+            for label, key, share in PAD:
+                if share is None:
+                    add_button(gui, label, "hand-stop", self.stop)
+                    continue
+                button = gui.add_button(label, hint="drives while it is held")
+                button.on_hold(self._holder(share), callback_hz=HOLD_RATE)
+                button.on_click(self._on_release)  # over its button; if released elsewhere, the requests just stop
+                command = gui.add_command(label, hotkey=key, description="drives while the key is held")
+                command.on_trigger(self._holder(share))
+        context.server.on_client_disconnect(self._on_release)
+        start_daemon("driver", self._step)
+
+    def _holder(self, share: Twist2D) -> Callable[[Any], Any]:
+        twist = Twist2D(share.v * self._full[0], share.w * self._full[1])
+
+        # Coroutines run one after the other in viser's event loop; functions would run in its thread pool, where a late
+        # request could overtake the release.
+        async def hold(event: Any) -> None:
+            self.drive(event.client_id, twist)
+
+        return hold
+
+    async def _on_release(self, event: Any) -> None:
+        with self._wake:
+            self._dead_man.release(event.client_id)
+            self._wake.notify()
+
+    def drive(self, page: int, twist: Twist2D) -> None:
+        """Drive the selected robot; a goal is cancelled, or the server would go on commanding the robot as well."""
+        state = self.context.state.now
+        if not state.accepts_requests:
+            return
+        with self._wake:
+            begins = self._dead_man.request(page, state.selected, twist, time.monotonic())
+            if begins:
+                self._wake.notify()
+        if begins and state.executing:
+            cancel(self.context.requests)
+
+    def stop(self) -> None:
+        """Stop now, whichever page is driving."""
+        with self._wake:
+            self._dead_man.stop()
+            self._wake.notify()
+
+    def end(self) -> None:
+        """Before topics are closed: stop the robot that is being driven, and wait until that has been sent."""
+        self.stop()
+        wait_until(lambda: not self._dead_man.active, END_PATIENCE)
+
+    def _step(self) -> None:
+        with self._wake:
+            self._wake.wait(PERIOD if self._dead_man.active else LINGER if self._publishers else None)
+            command = self._dead_man.command(time.monotonic())
+        if command is not None:
+            self._used = time.monotonic()
+            if command.robot not in self._publishers:
+                topic = absolute(command.robot, "cmd_vel")
+                self._publishers[command.robot] = rospy.Publisher(topic, Twist, queue_size=1)
+            try:
+                self._publishers[command.robot].publish(convert.to_twist_msg(command.twist))
+            except rospy.ROSException as error:  # the node is shutting down
+                rospy.logdebug("cmd_vel: %s", error)
+        elif time.monotonic() - self._used >= LINGER:
+            while self._publishers:
+                self._publishers.popitem()[1].unregister()

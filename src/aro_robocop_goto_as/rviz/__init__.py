@@ -1,1 +1,0 @@
-"""What RViz shows, as the text of its configuration file: displays, camera, window. Pure; nothing here starts RViz."""

@@ -1,0 +1,102 @@
+"""What other threads ask of the thread that owns a simulation, run by that thread between two steps."""
+
+import contextlib
+import queue
+import time
+from concurrent.futures import Future, TimeoutError
+from typing import Callable, Protocol, TypeVar
+
+from ..errors import RobocopError, ShutdownError
+
+Job = Callable[[], object]
+# Not SimpleQueue: before Python 3.12 its get(timeout) blocks for ever when a signal handler runs past the timeout.
+Queue = queue.Queue  # of Job
+CALL_POLL = 0.1  # [s, wall] between two checks for a shutdown while another thread waits for its job
+
+T = TypeVar("T")
+
+
+class Clock(Protocol):
+    """A monotonic clock, and the ways in which the owner waits; tests have one that they move themselves."""
+
+    def now(self) -> float:
+        """Seconds from an arbitrary origin."""
+
+    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
+        """The next job; raises queue.Empty when none has come within `timeout` [s]."""
+
+    def sleep(self, seconds: float) -> None:
+        """Wait without looking for jobs."""
+
+
+class WallClock:
+    """The machine's own clock."""
+
+    def now(self) -> float:
+        """Seconds from an arbitrary origin."""
+        return time.monotonic()
+
+    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
+        """The next job; raises queue.Empty when none has come within `timeout` [s]."""
+        return jobs.get(timeout=timeout) if timeout > 0.0 else jobs.get_nowait()
+
+    def sleep(self, seconds: float) -> None:
+        """Wait without looking for jobs."""
+        time.sleep(seconds)
+
+
+class Jobs:
+    """Any thread may use `post`, `call` and `wait_for`; all else is for the owner's thread."""
+
+    def __init__(self, clock: Clock, stopped: Callable[[], bool] = lambda: False) -> None:
+        """`stopped`: whether the owner's loop has ended, so that nobody will run jobs any more."""
+        self._clock = clock
+        self._stopped = stopped
+        self._queue: Queue[Job] = queue.Queue()
+
+    def post(self, job: Job) -> None:
+        """Have the owner run a job."""
+        self._queue.put(job)
+
+    def call(self, function: Callable[[], T]) -> T:
+        """Have the owner run a function; returns what it returns, raises the RobocopError that it raises.
+
+        Any other exception is a programming error and ends the owner's loop.
+        """
+        future: Future[T] = Future()
+
+        def job() -> None:
+            try:
+                future.set_result(function())
+            except RobocopError as error:
+                future.set_exception(error)
+
+        self.post(job)
+        return self.wait_for(future)
+
+    def wait_for(self, future: "Future[T]") -> T:
+        """The result that the owner sets; ShutdownError when its loop has ended instead."""
+        while not self._stopped():
+            with contextlib.suppress(TimeoutError):
+                return future.result(timeout=CALL_POLL)
+        raise ShutdownError("the simulator is shutting down")
+
+    def __len__(self) -> int:
+        return self._queue.qsize()
+
+    def run_next(self, timeout: float) -> None:
+        """Run the next job, if there is one within `timeout` [s, wall]."""
+        try:
+            job = self._clock.get(self._queue, timeout)
+        except queue.Empty:
+            return
+        job()
+
+    def sleep(self, seconds: float) -> None:
+        """Wait [s, wall], while jobs queue up."""
+        self._clock.sleep(seconds)
+
+    def run_queued(self) -> None:
+        """Run the jobs that are queued now, and no more: their senders may be faster than the owner."""
+        for _ in range(len(self)):
+            self._queue.get_nowait()()

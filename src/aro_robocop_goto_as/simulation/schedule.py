@@ -1,0 +1,48 @@
+"""The steps on which sensors and ticks are due, in integer arithmetic, so that nothing drifts."""
+
+from typing import List, Mapping, NamedTuple, Tuple
+
+NANOSECONDS = 1000000000
+
+
+def stamp_ns(step: int, physics_rate: int) -> int:
+    """Simulated time [ns] of a step at physics_rate [Hz], rounded down."""
+    return step * NANOSECONDS // physics_rate
+
+
+def due(step: int, rate: int, physics_rate: int) -> bool:
+    """Whether something at `rate` [Hz] is due on this step: the first step at or after each multiple of its period.
+
+    If the rate divides physics_rate the period is exact; otherwise the mean rate is exact, and each is less than
+    one step late.
+    """
+    return (step * rate) // physics_rate != ((step - 1) * rate) // physics_rate
+
+
+class Due(NamedTuple):
+    """The next step on which something is due: how many steps it is ahead, and what is due."""
+
+    steps: int
+    names: Tuple[str, ...]  # in the order of the schedule
+
+
+class Schedule:
+    """What is due when; every second is alike, as all rates are whole numbers."""
+
+    def __init__(self, rates: Mapping[str, int], physics_rate: int) -> None:
+        """`rates` [Hz] by the names of what is due; 0: never. One of them at least must divide physics_rate."""
+        self._physics_rate = physics_rate
+        names = [
+            tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
+            for step in range(1, physics_rate + 1)
+        ]
+        self._after: List[Due] = []  # by the number of the step within its second
+        first = next(filter(None, names))
+        following = Due(names.index(first) + 1, first)
+        for step in reversed(range(physics_rate)):
+            following = Due(1, names[step]) if names[step] else Due(following.steps + 1, following.names)
+            self._after.insert(0, following)
+
+    def after(self, step: int) -> Due:
+        """What is due first after a step."""
+        return self._after[step % self._physics_rate]

@@ -1,0 +1,82 @@
+"""A simulation: what its owner steps and runs in a loop of its own.
+
+The owner is the ROS node, the grader, or a test. Its loop, of which every part returns values:
+
+    jobs.run_next(time.hold(...))       what other threads ask for, while the wall clock is waited for
+    simulator.advance(subscriptions)    -> observations, which the owner publishes
+    controllers.hold(connected)         in lockstep: how long to wait for answers to a control tick
+    take_changes()                      -> what has jumped, which the owner publishes anew
+"""
+
+import enum
+from typing import Callable, Optional, Set
+
+from ..geometry import Pose2D
+from ..params import SimParams
+from ..world.model import World
+from .controllers import Controllers
+from .jobs import Clock, Jobs, WallClock
+from .simulator import Simulator
+from .time_control import TimeControl
+
+
+class Change(enum.Enum):
+    """What has changed other than by a step."""
+
+    STATUS = "paused, resumed, or reset"
+    FRAMES = "map -> odom of a robot has jumped"
+    TIME = "simulated time was set back"
+    WORLD = "the world was replaced"
+
+
+class Simulation:
+    """The simulator, its time, its controllers and other threads' jobs; all methods are for the owner's thread."""
+
+    def __init__(
+        self, simulator: Simulator, clock: Optional[Clock] = None, stopped: Callable[[], bool] = lambda: False
+    ) -> None:
+        """`stopped`: whether the owner's loop has ended; by the wall clock unless another one is given."""
+        p: SimParams = simulator.p
+        clock = clock or WallClock()
+        self.simulator = simulator
+        self.jobs = Jobs(clock, stopped)
+        self.time = TimeControl(p.time, simulator.rate, clock)
+        self.controllers = Controllers(simulator, p.lockstep, clock)
+        self._reset_time = p.time.reset_time
+        self._changes: Set[Change] = set()
+
+    def take_changes(self) -> Set[Change]:
+        """What has changed since the last call."""
+        changes = self._changes
+        if changes:
+            self._changes = set()
+        return changes
+
+    def set_paused(self, paused: bool) -> None:
+        """Pause or resume simulated time; during a span, from its end on."""
+        self.time.set_paused(paused, self.simulator.steps)
+        self._changes.add(Change.STATUS)
+
+    def reset(self, seed: Optional[int] = None) -> None:
+        """Robots to their spawn poses, odometry to zero, noise to its start; None keeps the seed."""
+        before = self.simulator.steps
+        self.simulator.reset(seed, restart_time=self._reset_time)
+        self.time.shift_span(before - self.simulator.steps)
+        self.time.restart(self.simulator.steps)
+        self.controllers.restart()
+        self._changes |= {Change.FRAMES, Change.STATUS} | ({Change.TIME} if self._reset_time else set())
+
+    def place(self, world_from_footprint: Pose2D, robot: int = 0, *, anywhere: bool = False) -> None:
+        """Place a robot elsewhere, at rest.
+
+        PlaceError, naming the obstacle, if it would overlap something, unless it may be placed `anywhere`.
+        """
+        place = self.simulator.place if anywhere else self.simulator.place_with_room
+        place(world_from_footprint, robot)
+        self.controllers.drop_command(robot)
+        self._changes.add(Change.FRAMES)
+
+    def change_world(self, edit: Callable[[World], World]) -> None:
+        """Replace the world by what `edit` makes of it."""
+        self.simulator.change_world(edit(self.simulator.world))
+        self._changes.add(Change.WORLD)

@@ -1,0 +1,54 @@
+"""Elements of the panel that several sections use."""
+
+import time
+from typing import Any, Callable
+
+SETTLED = 2.0  # [s, wall] after a visitor has moved a slider: until then what is reported may be older than that
+Mover = Callable[[float], None]
+
+
+class Html:
+    """HTML that is sent when it changes, and hidden while it is empty."""
+
+    def __init__(self, gui: Any) -> None:
+        self._handle = gui.add_html("", visible=False)
+        self._content = ""
+
+    def show(self, content: str) -> None:
+        """Show this HTML."""
+        if content != self._content:
+            self._handle.content = self._content = content
+            self._handle.visible = bool(content)
+
+
+class Slider:
+    """A slider that visitors move, and that otherwise follows what is reported."""
+
+    def __init__(self, gui: Any, label: str, high: float, start: float, hint: str, moved: Mover, low: float = 0.1):
+        """`moved` is called with the value that a visitor has chosen, a multiple of 0.1."""
+        self._handle = gui.add_slider(label, low, high, 0.1, start, hint=hint)
+        self._moved_at = 0.0  # [s, wall]
+
+        async def on_update(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
+            if event.client is not None:
+                self._moved_at = time.monotonic()
+                moved(event.target.value)
+
+        self._handle.on_update(on_update)
+
+    def show(self, value: float) -> None:
+        """Show the value within the bounds, unless a visitor's own may still be on its way."""
+        value = min(max(value, self._handle.min), self._handle.max)
+        if time.monotonic() - self._moved_at > SETTLED and abs(self._handle.value - value) > 1e-6:
+            self._handle.value = value
+
+
+def add_button(gui: Any, label: str, icon: str, action: Callable[[], None], visible: bool = True) -> None:
+    """Add a button that makes a request when it is clicked."""
+    gui.add_button(label, icon=icon, visible=visible).on_click(lambda _event: action())
+
+
+def set_visible(handle: Any, visible: bool) -> None:
+    """Show or hide an element; sent only if that changes."""
+    if handle.visible != visible:
+        handle.visible = visible

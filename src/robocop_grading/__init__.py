@@ -1,0 +1,20 @@
+"""The grader: runs a student's go-to server and bridge and awards points with reasons.
+
+Data flows in this order; only session/ and agent/ use ROS:
+
+    submission        path -> the scripts to grade, built in a sandbox (sandbox/)
+    plan              config/grading.yaml -> scenarios, limits, points
+    job               what a session is to do: one part of a hand-in, in all scenarios or some
+    session/          runs the scenarios with the hand-in's node, in the ordinary simulation -> records
+    agent/            in the node's process: keeps it in simulated time, and says when its turn is over
+    record            the recording of one scenario
+    checks/           record -> verdict, one function for each contract of the handout
+    judge             records + plan -> grade
+    report/           grade -> report.html, report.json, junit.xml, summary.md, classroom.json
+    runner, grader    one part, and all of this for one submission
+    cli               robocop grade
+    classroom/        robocop grade-class: many submissions on dask workers
+    hosting/          other people's packages, built; also for robocop sim --with
+
+handout holds the handout's names and figures, checks.limits the tolerances around them.
+"""

@@ -1,0 +1,13 @@
+"""Runs inside the hand-in's process: its threads live in simulated time, and the grader learns when they all wait.
+
+    python agent CHANNEL SCRIPT [ARGUMENT...]
+
+    scheduler    which threads run, and for what the others wait; simulated time
+    locks, clock, io, threads    Python's ways to wait, each of which tells the scheduler
+    stuck        threads that wait in a way that none of these sees; other processes
+    ros          calls to the grader's own ports, whose answers come without simulated time
+    channel      the grader's requests to go on until a simulated time, and the answers
+
+It imports nothing but the standard library, so that it runs in any environment that the hand-in was built in. A hand-in
+that deceives it harms only itself: points come from what the grader sees on topics.
+"""

@@ -1,0 +1,61 @@
+"""Usage: python agent CHANNEL SCRIPT [ARGUMENT...]; CHANNEL is a descriptor and the grader's ports, by commas."""
+
+import importlib.util
+import os
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+NAME = "robocop_agent"
+
+
+def load() -> Any:
+    """This folder as a package with a name of its own: nothing else of the grader's comes into the node's path."""
+    folder = Path(__file__).resolve().parent
+    spec = importlib.util.spec_from_file_location(
+        NAME, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    assert spec is not None and spec.loader is not None
+    module = sys.modules[NAME] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return importlib.import_module(f"{NAME}.start")
+
+
+def run(script: str) -> None:
+    """Run the script as the main module."""
+    module: Any = types.ModuleType("__main__")
+    module.__file__, module.__builtins__ = script, __builtins__
+    sys.modules["__main__"] = module
+    sys.path[0] = os.path.dirname(os.path.realpath(script))
+    with open(script, "rb") as file:
+        source = file.read()
+    exec(compile(source, script, "exec"), module.__dict__)
+
+
+def main() -> None:
+    """Take over this process's time, then become the script."""
+    descriptor, *ports = map(int, sys.argv[1].split(","))
+    os.set_inheritable(descriptor, False)
+    del sys.path[0]
+    start = load()
+    start.install(descriptor, set(ports))
+    sys.path.insert(0, "")
+    script, sys.argv = sys.argv[2], sys.argv[2:]
+    try:
+        run(script)
+    except Exception as error:
+        trace = error.__traceback__
+        for _ in range(2):  # main() and run()
+            trace = trace.tb_next if trace is not None and trace.tb_next is not None else trace
+        sys.excepthook(type(error), error.with_traceback(trace), trace)
+        status = 1
+    else:
+        status = 0
+    finally:
+        start.leave()
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""The grader's requests to go on until a simulated time, and the answers when everything is done.
+
+A request and an answer are each a line of JSON.
+
+    {"until": [ns], "sent": [[PORT OF THIS PROCESS, PORT OF THE GRADER, BYTES]...]}
+    {"done": [ns], "next": [ns], "busy": BOOL, "sent": [[...]...], "topics": {...}}
+"""
+
+import json
+import os
+from typing import Any, Dict, Iterator, List, Set
+
+from . import ros, scheduler, stuck
+
+STARTING = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
+PATIENCE = 0.5  # [s] likewise for what it does at one time ...
+IMPATIENCE = 0.002  # [s] ... and if it did not come to an end the last times
+TIMES = 3
+LOOK = 0.005  # [s, wall] between two looks at the processor time
+
+
+class Channel:
+    """Answers the grader, in a thread of its own that nothing else knows of."""
+
+    def __init__(self, descriptor: int, ports: Set[int]) -> None:
+        self._descriptor, self._ports = descriptor, ports
+        self._allowance = STARTING
+        self._exhausted = 0  # requests in a row at whose end the node still ran
+
+    def serve(self) -> None:
+        """Until the grader closes its end, which it does only after it has killed this process."""
+        try:
+            self._serve()
+        finally:
+            os.close(self._descriptor)  # the grader need not wait for an answer
+
+    def _serve(self) -> None:
+        calls = -1
+        for request in self._requests():
+            scheduler.expected.update(((port, of), count) for port, of, count in request["sent"])
+            busy = not self._go_on(request["until"])
+            answer = {"done": scheduler.now_ns, "next": scheduler.next_deadline(), "busy": busy, "sent": self._sent()}
+            if scheduler.calls != calls:  # it may have told the master, or connected to a topic
+                calls, answer["topics"] = scheduler.calls, ros.topics(self._ports)
+            self._write(json.dumps(answer).encode() + b"\n")
+
+    def _write(self, data: bytes) -> None:
+        while data:
+            data = data[os.write(self._descriptor, data) :]
+
+    def _requests(self) -> Iterator[Dict[str, Any]]:
+        data = b""
+        while True:
+            more = os.read(self._descriptor, 65536)
+            if not more:
+                return
+            *lines, data = (data + more).split(b"\n")
+            yield from map(json.loads, lines)
+
+    def _go_on(self, until_ns: int) -> bool:
+        """Let simulated time go on, and everything happen until then; False if the node has not come to an end."""
+        rested = True
+        while True:
+            rested = self._rest() and rested
+            if scheduler.next_deadline() > until_ns:
+                scheduler.advance(until_ns)
+                return rested
+            scheduler.wake_next()
+
+    def _rest(self) -> bool:
+        """Wait until all threads wait, and nothing is on its way to them; False if they need too much time for it."""
+        started, look = stuck.processor_time(), 0.0005
+        while True:
+            idle = scheduler.wait_until_idle(look)
+            used = stuck.processor_time() - started
+            if (idle or stuck.all_stuck()) and not stuck.others.work:
+                with scheduler.guard:
+                    if scheduler.nothing_arrives():
+                        self._allowance, self._exhausted = PATIENCE, 0
+                        return True
+            if idle:
+                scheduler.sleep(look)  # what is on its way will wake a thread
+            look = min(2.0 * look, LOOK)
+            if used > self._allowance:
+                self._exhausted += 1
+                if self._exhausted >= TIMES:
+                    self._allowance = IMPATIENCE
+                return False
+
+    def _sent(self) -> List[List[int]]:
+        """What has been sent since the last time, by connection."""
+        found = []
+        for traffic in list(scheduler.received.values()):
+            if traffic.link is not None and traffic.sent != traffic.reported:
+                traffic.reported = traffic.sent
+                found.append([*traffic.link, traffic.sent])
+        return found

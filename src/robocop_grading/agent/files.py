@@ -1,0 +1,169 @@
+"""Waiting for sockets and other files: recv, accept, select, poll and epoll tell the scheduler, and count bytes."""
+
+import functools
+import select
+import selectors
+import socket
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from . import scheduler
+from .scheduler import Traffic
+
+
+def traffic_of(connection: socket.socket) -> Traffic:
+    """The counts of a socket."""
+    file = connection.fileno()
+    traffic = scheduler.received.get(file)
+    if traffic is None or traffic.link is None:
+        link = None
+        if connection.family in (socket.AF_INET, socket.AF_INET6):
+            try:
+                link = connection.getsockname()[1], connection.getpeername()[1]
+            except OSError:  # it is not connected yet
+                pass
+        if traffic is None:
+            traffic = scheduler.received[file] = Traffic(link)
+        if link is not None:
+            scheduler.expected.pop(link, None)  # of an earlier connection with the same ports
+        traffic.link = link
+    return traffic
+
+
+def _await(connection: socket.socket, flags: int = 0) -> None:
+    """Wait until a socket that blocks has something to read."""
+    timeout = connection.gettimeout()
+    if scheduler.active and timeout != 0 and not flags & socket.MSG_DONTWAIT:
+        if not scheduler.poll([(connection.fileno(), select.POLLIN)], timeout):
+            raise socket.timeout("timed out")
+
+
+def _receiving(method: Callable[..., Any], size: Callable[[Any], int], flags_at: int) -> Callable[..., Any]:
+    """A method that receives, which waits by way of the scheduler."""
+
+    @functools.wraps(method)
+    def receive(connection: socket.socket, *arguments: Any) -> Any:
+        flags = arguments[flags_at] if len(arguments) > flags_at else 0
+        traffic = traffic_of(connection)
+        _await(connection, flags)
+        result = method(connection, *arguments)
+        if not flags & socket.MSG_PEEK:
+            traffic.received += size(result)
+        return result
+
+    return receive
+
+
+def _sending(method: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(method)
+    def send(connection: socket.socket, data: Any, *arguments: Any) -> Any:
+        traffic = traffic_of(connection)
+        result = method(connection, data, *arguments)
+        traffic.sent += memoryview(data).nbytes if result is None else result
+        return result
+
+    return send
+
+
+class Poll:
+    """select.poll(), or with another `make` select.epoll()."""
+
+    def __init__(self, make: Callable[..., Any] = select.poll, *arguments: Any, **options: Any) -> None:
+        self._poll = make(*arguments, **options)
+        self._files: Dict[int, int] = {}
+        self.register, self.modify, self.unregister = self._register, self._poll.modify, self._unregister
+
+    def _register(self, file: Any, events: int = select.POLLIN | select.POLLPRI | select.POLLOUT) -> None:
+        self._poll.register(file, events)
+        self._files[file if isinstance(file, int) else file.fileno()] = events
+
+    def _unregister(self, file: Any) -> None:
+        self._poll.unregister(file)
+        self._files.pop(file if isinstance(file, int) else file.fileno(), None)
+
+    def poll(self, timeout: Optional[float] = None) -> List[Tuple[int, int]]:
+        """Wait for `timeout` [ms, simulated]."""
+        ready = self._poll.poll(0)
+        if ready or timeout == 0 or not scheduler.active:
+            return list(ready) if ready or timeout == 0 else list(self._poll.poll(timeout))
+        scheduler.poll(list(self._files.items()), None if timeout is None or timeout < 0 else timeout / 1e3)
+        return list(self._poll.poll(0))
+
+
+class Epoll:
+    """select.epoll()."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        self._epoll = _epoll(*arguments, **options)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._epoll, name)
+
+    def __enter__(self) -> "Epoll":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._epoll.close()
+
+    def poll(self, timeout: Optional[float] = None, maxevents: int = -1) -> List[Tuple[int, int]]:
+        """Wait for `timeout` [s, simulated]."""
+        ready = self._epoll.poll(0, maxevents)
+        if ready or timeout == 0 or not scheduler.active:
+            return list(ready) if ready or timeout == 0 else list(self._epoll.poll(timeout, maxevents))
+        scheduler.poll([(self._epoll.fileno(), select.POLLIN)], None if timeout is None or timeout < 0 else timeout)
+        return list(self._epoll.poll(0, maxevents))
+
+
+_epoll, _select = select.epoll, select.select
+
+
+def simulated_select(
+    reads: Any, writes: Any, errors: Any, timeout: Optional[float] = None
+) -> Tuple[List[Any], List[Any], List[Any]]:
+    """select.select()."""
+    reads, writes, errors = list(reads), list(writes), list(errors)
+    ready = _select(reads, writes, errors, 0)
+    if any(ready) or timeout == 0 or not scheduler.active:
+        return ready if any(ready) or timeout == 0 else _select(reads, writes, errors, timeout)
+    if not (reads or writes or errors):
+        scheduler.pause(scheduler.deadline(timeout))
+        return ready
+    wanted: Dict[int, int] = {}
+    for files, events in ((reads, select.POLLIN), (writes, select.POLLOUT), (errors, select.POLLPRI)):
+        for file in files:
+            number = file if isinstance(file, int) else file.fileno()
+            wanted[number] = wanted.get(number, 0) | events
+    scheduler.poll(list(wanted.items()), timeout)
+    return _select(reads, writes, errors, 0)
+
+
+def install() -> None:
+    """Have everything wait this way, also modules that have been imported already."""
+    cls: Any = socket.socket
+    cls.recv = _receiving(cls.recv, len, 1)
+    cls.recv_into = _receiving(cls.recv_into, int, 2)
+    cls.recvfrom = _receiving(cls.recvfrom, lambda result: len(result[0]), 1)
+    cls.recvmsg = _receiving(cls.recvmsg, lambda result: len(result[0]), 2)
+    cls.send, cls.sendall = _sending(cls.send), _sending(cls.sendall)
+    accept, close, init = cls.accept, cls._real_close, cls.__init__
+
+    @functools.wraps(accept)
+    def accept_when_ready(listening: socket.socket) -> Any:
+        _await(listening)
+        return accept(listening)
+
+    @functools.wraps(close)
+    def forget_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
+        scheduler.received.pop(closed.fileno(), None)
+        close(closed, *arguments, **options)
+
+    @functools.wraps(init)
+    def forget_and_init(opened: socket.socket, *arguments: Any, **options: Any) -> None:
+        init(opened, *arguments, **options)
+        scheduler.received.pop(opened.fileno(), None)  # of an earlier one that was collected as garbage
+
+    cls.accept, cls._real_close, cls.__init__ = accept_when_ready, forget_and_close, forget_and_init
+    module: Any = select
+    module.poll, module.epoll, module.select = Poll, Epoll, simulated_select
+    known: Any = selectors
+    known.PollSelector._selector_cls, known.EpollSelector._selector_cls = Poll, Epoll
+    known.SelectSelector._select = staticmethod(simulated_select)

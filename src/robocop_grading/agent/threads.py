@@ -1,0 +1,90 @@
+"""Threads: counted from the moment at which they are started, joined by way of the scheduler."""
+
+import _thread
+import functools
+import threading
+from typing import Any, Dict, Optional
+
+from . import scheduler
+from .locks import Lock
+
+native_ids: Dict[int, int] = {}  # of the threads that exist, by their identity
+
+
+def _begin() -> None:
+    me = _thread.get_ident()
+    native_ids[me] = threading.get_native_id()
+    with scheduler.guard:
+        scheduler.starting -= 1
+        scheduler.running.add(me)
+
+
+def _end() -> None:
+    native_ids.pop(_thread.get_ident(), None)
+    with scheduler.guard:
+        scheduler.leave()
+
+
+def register_main() -> None:
+    """The thread that calls this is the hand-in's main thread."""
+    scheduler.running.add(_thread.get_ident())
+    native_ids[_thread.get_ident()] = threading.get_native_id()
+
+
+def install() -> None:
+    """For all threads that are started from now on."""
+    cls: Any = threading.Thread
+    start, bootstrap, join = cls.start, cls._bootstrap, cls.join
+
+    @functools.wraps(start)
+    def counted_start(thread: Any) -> None:
+        if not scheduler.active or thread._started.is_set():
+            return start(thread)
+        thread.robocop_end = Lock()
+        thread.robocop_end.acquire()
+        with scheduler.guard:
+            scheduler.starting += 1
+        try:
+            start(thread)
+        except RuntimeError:  # no more threads
+            with scheduler.guard:
+                scheduler.starting -= 1
+            raise
+
+    @functools.wraps(bootstrap)
+    def counted_bootstrap(thread: Any) -> None:
+        if not hasattr(thread, "robocop_end"):
+            return bootstrap(thread)
+        _begin()
+        try:
+            bootstrap(thread)
+        finally:
+            thread.robocop_end.release()
+            _end()
+
+    @functools.wraps(join)
+    def simulated_join(thread: Any, timeout: Optional[float] = None) -> None:
+        end = getattr(thread, "robocop_end", None)
+        if not scheduler.active or end is None or thread is threading.current_thread():
+            return join(thread, timeout)
+        if end.acquire(True, -1 if timeout is None else max(0.0, timeout)):
+            end.release()
+            join(thread)
+
+    cls.start, cls._bootstrap, cls.join = counted_start, counted_bootstrap, simulated_join
+
+    @functools.wraps(_thread.start_new_thread)
+    def start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
+        def counted() -> None:
+            _begin()
+            try:
+                function(*arguments, **options)
+            finally:
+                _end()
+
+        with scheduler.guard:
+            scheduler.starting += 1
+        return scheduler.start_new_thread(counted, ())
+
+    system: Any = _thread
+    system.start_new_thread = system.start_new = start_new_thread

@@ -1,0 +1,303 @@
+"""Checks of the bridge: clicks become goals, and the server's status is reported."""
+
+import math
+import re
+from dataclasses import replace
+from typing import Dict, List, NamedTuple, Optional, Set
+
+from ..handout import ACTION
+from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
+from ..texts import text
+from .consequences import alike
+from .limits import Limits
+from .node_lifetime import closest, no_exception, stays_alive
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
+FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
+SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
+MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
+CLICKS = "/move_base_simple/goal"
+UNCONNECTED = "No action client connected to robocop_goto_as: is one created?"
+NO_NEWER_GOAL = (
+    "The newer goal was never sent: does the callback wait for the older goal? While it waits, for instance in "
+    "wait_for_result(), it is not called again"
+)
+PENDING_CAUSE = (
+    "The bridge treats a PENDING goal as finished; PENDING only means that the server has not accepted it yet"
+)
+
+
+def _missing(_record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether something did not happen, as after a crash."""
+    return failure.kind == MISSING
+
+
+CRASH = After("bridge_alive", _missing)
+
+
+def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
+    return [goal for goal in record.goals if click.time - 1e-6 <= goal.time <= until]
+
+
+def _distance(goal: Goal, x: float, y: float) -> float:
+    return math.hypot(goal.x - x, goal.y - y)
+
+
+@check("clicks", after=(CRASH,))
+def forwards_goal(record: Record, limits: Limits) -> Verdict:
+    """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
+    if not record.clicks:
+        return NotReached("there was no click")
+    click = record.clicks[-1]
+    goals = _goals_after(record, click)
+    wanted = text("x {:g} y {:g}", click.x, click.y)
+    if not goals:
+        return Failed(text("a goal at {}", wanted), "no goal", click.time, _missing_connection(record), MISSING)
+    goal = goals[-1]
+    if not _distance(goal, click.x, click.y) <= POSITION_TOLERANCE:  # this way round NaN fails, too
+        return Failed(
+            wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, _other_position(click, goal), POSITION
+        )
+    if len(goals) > 1:
+        return Failed("one goal", text("{} goals", len(goals)), goals[1].time, "The click is sent more than once")
+    return Passed()
+
+
+def _other_position(click: Click, goal: Goal) -> str:
+    """Which mistake explains a goal's position that is not the click's."""
+    x, y = click.x, click.y
+    for cause, there in (
+        ("The goal's position is never set", (0.0, 0.0)),
+        ("x and y are swapped", (y, x)),
+        ("The goal's y is not set", (x, 0.0)),
+        ("The goal's x is not set", (0.0, y)),
+        ("The sign of x is wrong", (-x, y)),
+        ("The sign of y is wrong", (x, -y)),
+        ("The signs of x and y are wrong", (-x, -y)),
+    ):
+        if _distance(goal, *there) <= POSITION_TOLERANCE:
+            return text("{}: set goal.position = msg.pose.position", cause)
+    return "The goal does not have the message's position: set goal.position = msg.pose.position"
+
+
+def _has_client(record: Record) -> bool:
+    """Whether its action client connected to the server."""
+    return bool(record.marks.get("clients", 1.0))
+
+
+def _missing_connection(record: Record) -> str:
+    """Name the missing connection, if any."""
+    if not _has_client(record):  # first: a bridge waiting for a misspelt server has no subscriber either
+        return _unconnected(record)
+    if not record.marks.get("listeners", 1.0):
+        similar = closest(CLICKS, record.unpublished)
+        if similar:
+            return text("The node does not subscribe to {} but to {}: is the name right?", CLICKS, similar)
+        return text("The node does not subscribe to {}: is the name right?", CLICKS)
+    return (
+        "No goal was sent: does the callback call send_goal()? Does a bridge that is started before the server wait "
+        "for it, with wait_for_server() without a timeout?"
+    )
+
+
+def _unconnected(record: Record) -> str:
+    """Why no action client connected to the server."""
+    name, others = ACTION[1:], [server.lstrip("/") for server in record.servers]
+    if not others or name in others:
+        return UNCONNECTED
+    return text("The action client looks for {}; the handout says {}", closest(name, others) or others[0], name)
+
+
+def _reports(record: Record) -> List[float]:
+    """When each report began [s]."""
+    start = record.marks["watching"]
+    reports: List[float] = []
+    for line in record.lines:
+        if line.time > start + 0.2 and (not reports or line.time - reports[-1] > SAME_REPORT):
+            reports.append(line.time)
+    return reports
+
+
+def _reports_without_pending(failure: Failed, retried: Record, limits: Limits) -> Failed:
+    """The failure, with the cause if enough is reported for a goal that is never PENDING."""
+    enough = failure.kind == MISSING and len(_reports(retried)) >= limits.status_reports
+    return replace(failure, cause=text("{}. Its reports then stop", PENDING_CAUSE)) if enough else failure
+
+
+@check(
+    "clicks",
+    after=(CRASH,),
+    needs=("bridge_alive", "forwards_goal"),
+    retried=("no_pending", _reports_without_pending),
+)
+def reports_status(record: Record, limits: Limits) -> Verdict:
+    """A timer reports the status of the action server periodically."""
+    if "watching" not in record.marks:
+        return NotReached("the bridge did not get this far")
+    count = len(_reports(record))
+    if count >= limits.status_reports:
+        return _untrue(record) or Passed()
+    if not _has_client(record):  # it may wait for the server before it creates its timer
+        return NotReached(_unconnected(record))
+    cause = (
+        "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report "
+        "it repeatedly, also when it has not changed"
+    )
+    if count:
+        cause = (
+            "The status is not reported repeatedly while a goal is active: is the rospy.Timer's period too long, does "
+            "anything end it, or does it only report changes?"
+        )
+    wanted = text("{} reports within {:g} s", limits.status_reports, limits.status_span)
+    return Failed(wanted, f"{count}", record.marks["watching"], cause, MISSING)
+
+
+STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
+NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
+SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
+MOSTLY = 0.8
+
+
+class Report(NamedTuple):
+    """A report of a goal's state: when [s], the states that its text names, and the true one."""
+
+    time: float
+    states: Set[int]
+    true: int
+
+
+def _stated(record: Record) -> List[Report]:
+    """The reports that name a state, while a goal is PENDING or ACTIVE, each once."""
+    changes = sorted((change for change in record.statuses), key=lambda change: change.time)
+    found: List[Report] = []
+    for line in record.lines:
+        before = [change for change in changes if change.time <= line.time + 1e-6]
+        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(line.text)}
+        names = names or {int(one or other) for one, other in NUMBER.findall(line.text)}
+        known = names and before and before[-1].status <= 1 and line.time > before[-1].time + SETTLED
+        if known and not (found and line.time - found[-1].time <= SAME_REPORT):
+            found.append(Report(line.time, names, before[-1].status))
+    return found
+
+
+def _untrue(record: Record) -> Optional[Failed]:
+    """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
+    reports = _stated(record)
+    of_state: Dict[int, List[Report]] = {}
+    for report in reports:
+        of_state.setdefault(report.true, []).append(report)
+    wrong = [report for report in reports if report.true not in report.states]
+    for true, some in of_state.items():
+        untrue = [report for report in some if true not in report.states]
+        if len(untrue) > 1 and len(untrue) > MOSTLY * len(some) or len(wrong) == len(reports) > 1:
+            first = untrue[0]
+            names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
+            cause = text(
+                "The bridge reports {} while the goal is {}: report what get_state() returns", names, STATUS_NAMES[true]
+            )
+            shifts = {state - report.true for report in reports for state in report.states}
+            if len(of_state) > 1 and len(shifts) == 1:
+                cause = text(
+                    "The names of the states are shifted: {} is reported for {}; GoalStatus has PENDING = 0, "
+                    "ACTIVE = 1, PREEMPTED = 2, SUCCEEDED = 3, ABORTED = 4",
+                    names,
+                    STATUS_NAMES[true],
+                )
+            return Failed(STATUS_NAMES[true], names, first.time, cause)
+    return None
+
+
+def _cancels_without_pending(failure: Failed, retried: Record, _limits: Limits) -> Failed:
+    """The failure, with the cause if an older goal that is never PENDING is cancelled."""
+    cancelled = any(cancel.time >= retried.clicks[-1].time - 1e-6 for cancel in retried.cancels)
+    if failure.kind != NOT_CANCELLED or not cancelled:
+        return failure
+    return replace(failure, cause=text("{}. It then sees no older goal to cancel", PENDING_CAUSE))
+
+
+@check(
+    "clicks",
+    after=(CRASH,),
+    needs=("bridge_alive", "forwards_goal"),
+    retried=("no_pending", _cancels_without_pending),
+)
+def cancels_older(record: Record, limits: Limits) -> Verdict:
+    """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
+    if not record.clicks or not any(goal.time < record.clicks[0].time for goal in record.goals):
+        return NotReached("there was no older goal")
+    click = record.clicks[0]
+    older = next(goal for goal in record.goals if goal.time < click.time)
+    newer = [goal for goal in _goals_after(record, click) if goal.id != older.id]
+    cancelled = [change.id for change in record.statuses if change.status == PREEMPTED]
+    if not newer:
+        return Failed("the newer goal", "no goal", click.time, NO_NEWER_GOAL, MISSING)
+    if older.id not in cancelled:
+        cause = (
+            "Call cancel_goal() or cancel_all_goals() before sending the newer goal; send_goal() alone does not cancel"
+        )
+        return Failed("a cancel request for the older goal", "none", click.time, cause, NOT_CANCELLED)
+    if newer[-1].id in cancelled:
+        cause = "Cancel before send_goal(), not after it"
+        return Failed("a cancel request for the older goal only", "one for both", newer[-1].time, cause)
+    return Passed()
+
+
+@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=("bridge_alive", "forwards_goal"))
+def waits_for_server(record: Record, limits: Limits) -> Verdict:
+    """A bridge that is started before the server waits for it, and then works."""
+    if record.name == "no_server":
+        return _crash(record, limits) or NotReached("the bridge was not tried with a server")
+    if record.clicks and _goals_after(record, record.clicks[-1]):
+        return Passed()
+    if not _has_client(record):
+        return NotReached(_unconnected(record))
+    cause = (
+        "A bridge that starts before the server has to connect to it later: call wait_for_server() without a timeout"
+    )
+    clicked = record.marks.get("clicked", 0.0)
+    return Failed("a goal once the server is running", "no goal", clicked, cause, MISSING)
+
+
+@check("clicks")
+def bridge_alive(record: Record, limits: Limits) -> Verdict:
+    """The bridge runs to the end without an exception."""
+    return _crash(record, limits) or Passed()
+
+
+def _crash(record: Record, limits: Limits) -> Optional[Failed]:
+    for verdict in (stays_alive(record, limits), no_exception(record, limits)):
+        if isinstance(verdict, Failed):
+            return verdict
+    return None
+
+
+@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=("bridge_alive", "forwards_goal"))
+def goal_frame(record: Record, limits: Limits) -> Verdict:
+    """A goal given in another frame is transformed to odom (the handout's closing question)."""
+    if not record.clicks:
+        return NotReached("there was no click")
+    if not record.goals:
+        return NotReached("no click became a goal")
+    for number, click in enumerate(record.clicks):
+        # What a click causes may come without any simulated time passing.
+        until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
+        goals = _goals_after(record, click, until)
+        if not goals:
+            wanted, cause = text("a goal for the click in {}", click.frame), "The click was not forwarded"
+            return Failed(wanted, "no goal", click.time, cause, MISSING)
+        goal = goals[-1]
+        if not _distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
+            cause = "The transform is wrong"
+            if _distance(goal, click.x, click.y) < POSITION_TOLERANCE:
+                cause = text(
+                    "Coordinates in {} were passed on as if they were in odom: use tf2 to transform them "
+                    "from header.frame_id to odom",
+                    click.frame,
+                )
+            wanted, seen = (
+                text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y),
+                text("x {:.2f} y {:.2f}", goal.x, goal.y),
+            )
+            return Failed(wanted, seen, goal.time, cause, POSITION)
+    return Passed()

@@ -1,0 +1,108 @@
+"""Whether a failure follows from that of another check: decided by what happened, and by what the server reported."""
+
+from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
+from ..record import Feedback, Goal, Record, active_until
+from .output import EXCEPTION_LOGGED, logged
+from .verdict import After, Failed
+
+# Kinds of failures.
+NO_RESULT = "no result"
+SUCCESS = "success"  # too far away from the goal
+SUCCESS_LATE = "late success"
+LATE = "late"  # a goal that ended too late after a request to end
+NOT_RESET = "not reset"  # what an earlier goal has left behind
+MOVES_FIRST = "moves first"  # before the errors and the distance are known
+TOO_EARLY = "too early"  # an abort too far away from the obstacle
+
+MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
+ENOUGH = 4  # fewer commands show nothing
+MOST_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
+BELIEVED = 1.2 * GOAL_RADIUS  # [m]
+
+
+def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether a goal ended wrongly in a scenario in which an exception was logged."""
+    return bool(failure.kind) and logged(record, EXCEPTION_LOGGED)
+
+
+def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether a goal did not end because the node did."""
+    return failure.kind == NO_RESULT and bool(record.deaths)
+
+
+def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Whether both failures are of the same kind."""
+    return bool(failure.kind) and failure.kind == earlier.kind
+
+
+def silent(record: Record, goal: Goal) -> bool:
+    """Whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
+    told = {message.id for message in record.feedback} | {result.id for result in record.results}
+    return goal.id not in told and not any(command.time >= goal.time for command in record.commands)
+
+
+def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Whether nothing at all came from the server after it got the goal, and the earlier failure says so, too."""
+    return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
+
+
+def stuck(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether a goal did not end although the server was working on it."""
+    return failure.kind == NO_RESULT and failure.goal is not None and not silent(record, failure.goal)
+
+
+def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether a success far from the goal fits the position_error that the server reported itself."""
+    own = [message.position_error for message in record.feedback if failure.goal and message.id == failure.goal.id]
+    return failure.kind == SUCCESS and bool(own) and own[-1] <= BELIEVED
+
+
+def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether the robot did what the server's own feedback called for."""
+    return failure.kind != SUCCESS and failure.goal is not None and acted_on(record, failure.goal)
+
+
+def acted_on(record: Record, goal: Goal) -> bool:
+    """Whether the robot was commanded as the handout wants for the angle_error that the server reported itself.
+
+    If that angle is wrong, the motion is wrong because of it.
+    """
+    own = [message for message in record.feedback if message.id == goal.id]
+    end = active_until(record, goal)
+    fits, number = [], 0
+    for command in record.commands:
+        if not own or not goal.time <= command.time < end:
+            continue
+        while number + 1 < len(own) and own[number + 1].time <= command.time + 1e-6:
+            number += 1
+        if own[number].time <= command.time + 1e-6:
+            fits.append(_fits(own[number], command.v, command.w))
+    return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MOST_OTHERS) * len(fits)
+
+
+def _fits(own: Feedback, v: float, w: float) -> bool:
+    turning = abs(v) < 1e-3 and w * own.angle_error > 0.0
+    if abs(own.angle_error) > HEADING_TOLERANCE + MARGIN:
+        return turning
+    return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
+
+
+def delayed(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Whether a goal ended too late or not at all, though the robot did what the server's own feedback called for."""
+    return failure.kind in (NO_RESULT, SUCCESS_LATE) and misled(record, failure, earlier)
+
+
+EXCEPTION = After("no_exception", raised)
+AT_FIRST = After("already_there", lambda _record, failure, _earlier: failure.kind == MOVES_FIRST)
+MISLED = After("feedback_angle", misled)
+# What every goal's ending depends on.
+ENDING = (
+    EXCEPTION,
+    After("stays_alive", died),
+    After("feedback_position", believed),
+    After("feedback_position", delayed),
+    MISLED,
+    After("turns_to_goal", stuck),
+    After("drives_straight", stuck),
+    After("reaches_goal", alike),
+)

@@ -1,0 +1,218 @@
+"""Checks of a goal's terminal state and result."""
+
+from dataclasses import replace
+from typing import Optional
+
+from ..handout import GOAL_RADIUS
+from ..record import (
+    ABORTED,
+    PREEMPTED,
+    SUCCEEDED,
+    TERMINAL,
+    Goal,
+    Record,
+    errors_at,
+    results_of,
+    samples_between,
+    status_name,
+)
+from ..texts import sentences, text
+from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS
+from .limits import Limits
+from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, TWO_STATES_LOGGED, last_error, logged
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
+TWO_STATES = "The goal got two terminal states"
+RAISED = "The goal's callback raised an exception: {}"
+SETTERS = "set_succeeded(), set_aborted() and set_preempted()"
+NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
+AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
+
+
+def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that did not end in the wanted state; None if it did."""
+    results = results_of(record, goal)
+    if not results:
+        last = record.samples[-1].time if record.samples else goal.time
+        problem = record.problem or "the goal got no terminal state and no result"
+        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:])
+        return Failed(status_name(wanted), NO_RESULT, last, cause, NO_RESULT, goal)
+    result = results[0]
+    if result.status == wanted:
+        return None
+    collision = _collision(record, goal, result.time)
+    if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not _stopped(record, result.time, limits):
+        early = success_too_far(record, goal, limits)
+        if early is not None:
+            return replace(early, expected=status_name(wanted))
+    cause = _wrong_state(record, goal, result.status, wanted)
+    if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
+        cause = _unnoticed(record)
+    state = status_name(result.status)
+    seen = state + (f": {result.message}" if result.message else "")
+    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
+
+
+def _stopped(record: Record, end: float, limits: Limits) -> bool:
+    """Whether the goal ended where an obstacle has to end it."""
+    return any(sample.ahead <= limits.abort_farthest for sample in samples_between(record, end - 0.25, end))
+
+
+def _unnoticed(record: Record) -> str:
+    """The cause of a collision after which the goal succeeded, because odometry continued to advance."""
+    return narrow_obstacle(record) or (
+        "It was not noticed. Is the distance ahead checked in each iteration, is it that of the beams ahead, and does "
+        "the scan's callback return at once?"
+    )
+
+
+def narrow_obstacle(record: Record) -> str:
+    """What a server that reacts to a wall has done wrong if the obstacle is narrow; nothing for a wide one."""
+    across = [outline[1::2] for outline in record.obstacles[:1]]
+    if not across or max(across[0]) - min(across[0]) > NARROW:
+        return ""
+    side = "left" if sum(across[0]) > 0.0 else "right"
+    return text(
+        "A narrow obstacle a little to the {} was missed or noticed too late, although a wall is "
+        "noticed. Do the beams on both sides of straight ahead count, and does the nearest of "
+        "them decide?",
+        side,
+    )
+
+
+def _collision(record: Record, goal: Goal, end: float) -> str:
+    """A sentence about the first contact with an obstacle, if there was one."""
+    contacts = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
+    return text("The robot ran into an obstacle at {:.1f} s", contacts[0].time) if contacts else ""
+
+
+def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
+    if logged(record, EXCEPTION_LOGGED):
+        return text(RAISED, last_error(record))
+    if _no_state(record):
+        return NO_STATE
+    if wanted == ABORTED and status == SUCCEEDED:
+        return "set_succeeded is called although the goal failed: call set_aborted"
+    if wanted == SUCCEEDED and status == ABORTED:
+        if not record.obstacles:
+            return (
+                "set_aborted is called although there is no obstacle at all: does the server have a timeout of its "
+                "own, or is a range of inf treated as an obstacle?"
+            )
+        if any(result.time < goal.time and result.status == ABORTED for result in record.results):
+            return "set_aborted is called although nothing is in the way any more"
+        return (
+            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server have "
+            "a timeout of its own?"
+        )
+    if wanted == PREEMPTED:
+        return "Call set_preempted for a goal that is cancelled or replaced"
+    return "The server set the wrong terminal state"
+
+
+def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that succeeded away from its position."""
+    result = results_of(record, goal)[0]
+    at_end = samples_between(record, result.time - 0.2, result.time)
+    nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
+    if nearest <= limits.reached:
+        return None
+    cause = text("The threshold of position_error is not {:g} m, or it is compared with another quantity", GOAL_RADIUS)
+    kind = SUCCESS
+    if result.time - goal.time < AT_ONCE and any(other.time < goal.time for other in record.results):
+        kind, cause = NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
+    seen = text("{} {:.2f} m away", SUCCESS, nearest)
+    return Failed(text("success within {:g} m", GOAL_RADIUS), seen, result.time, cause, kind, goal)
+
+
+EMPTY = "an empty message"
+RESULT = EXCEPTION, After("one_ending", lambda record, failure, _: failure.seen == EMPTY and _no_state(record))
+
+
+@check("states", after=RESULT, needs=("reaches_goal",))
+def success_result(record: Record, limits: Limits) -> Verdict:
+    """The result of a reached goal has success true and a message."""
+    return _result(record, SUCCEEDED, True)
+
+
+@check("states", after=RESULT, needs=("stops_at_obstacle",))
+def failure_result(record: Record, limits: Limits) -> Verdict:
+    """The result of an aborted goal has success false and a message."""
+    return _result(record, ABORTED, False)
+
+
+def _result(record: Record, status: int, success: bool) -> Verdict:
+    results = [result for goal in record.goals[:1] for result in results_of(record, goal)[:1]]
+    if not results or results[0].status != status:
+        return NotReached(text("the goal did not end as {}", status_name(status)))
+    result = results[0]
+    if result.success != success:
+        cause = "result.success contradicts the terminal state"
+        if not result.message:
+            cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
+        return Failed(f"success {success}", f"success {result.success}", result.time, cause)
+    if not result.message:
+        cause = (
+            "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
+        )
+        if logged(record, EXCEPTION_LOGGED):
+            cause = text(RAISED, last_error(record))
+        elif _no_state(record):
+            cause = NO_STATE
+        return Failed("a message", EMPTY, result.time, cause, EMPTY)
+    return Passed()
+
+
+def _no_state(record: Record) -> bool:
+    return logged(record, NO_STATE_LOGGED)
+
+
+@check("speeds", needs=("reaches_goal",))
+def stands_at_end(record: Record, limits: Limits) -> Verdict:
+    """The robot stands still after a goal has ended, in any state."""
+    judged = False
+    for number, goal in enumerate(record.goals):
+        for result in results_of(record, goal)[:1]:
+            stopped = result.time + limits.stop_within
+            after = samples_between(record, stopped, stopped + 0.15)
+            replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < stopped
+            if not after or replaced:
+                continue
+            judged = True
+            for sample in after:
+                if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
+                    return Failed(
+                        "a robot at rest",
+                        text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w),
+                        sample.time,
+                        text(
+                            "The robot kept moving after the result ({}): publish a zero Twist at every ending, "
+                            "because the last /cmd_vel stays in force",
+                            status_name(result.status),
+                        ),
+                    )
+    return Passed() if judged else NotReached("no goal ended")
+
+
+@check("states", after=(EXCEPTION,), needs=("reaches_goal",))
+def one_ending(record: Record, limits: Limits) -> Verdict:
+    """Each goal gets exactly one terminal state, set by the server's own code."""
+    judged = False
+    for goal in record.goals:
+        results = results_of(record, goal)
+        if len(results) > 1:
+            return Failed("one result", text("{} results", len(results)), results[1].time, TWO_STATES)
+        judged = judged or bool(results)
+    for line in record.lines:
+        if TWO_STATES_LOGGED.search(line.text):
+            cause = text("{}, as in the handout's example after a cancel: return at once after {}", TWO_STATES, SETTERS)
+            return Failed("one terminal state", line.text[:160], line.time, cause, TWO_STATES)
+        if NO_STATE_LOGGED.search(line.text):
+            return Failed("a terminal state", "none was set", line.time, NO_STATE)
+    for goal in record.goals:
+        changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
+        if len({change.status for change in changes}) > 1:
+            states = " then ".join(status_name(change.status) for change in changes)
+            return Failed("one terminal state", states, changes[1].time, TWO_STATES)
+    return Passed() if judged else NotReached("no goal ended")

@@ -1,0 +1,194 @@
+"""Checks of the feedback: its rate, and its errors against the true ones."""
+
+import math
+from typing import Callable, List, Optional, Sequence
+
+import numpy as np
+
+from ..record import Goal, Record, active_until, errors_at, samples_between, wrapped
+from ..texts import text
+from .consequences import nothing_came
+from .feedback_causes import (
+    ANGLE_CAUSES,
+    POSITION_CAUSES,
+    POSITION_UNUSED,
+    RELATIVE,
+    WORLD,
+    Hypothesis,
+    Pair,
+    likely_cause,
+)
+from .limits import Limits
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
+NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
+MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
+LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
+AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
+OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
+MOVING = 10  # fewer messages say nothing about their age
+CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
+MOST_DIFFERENT = 0.2  # [m], [rad] that counts of a difference
+SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
+
+
+@check(
+    "errors", after=(After("stays_alive", lambda record, *_: bool(record.deaths)), After("reaches_goal", nothing_came))
+)
+def feedback_rate(record: Record, limits: Limits) -> Verdict:
+    """While a goal is active, feedback is published about ten times a second."""
+    judged = False
+    for goal in record.goals:
+        end = min(active_until(record, goal), record.samples[-1].time if record.samples else goal.time)
+        if end - goal.time < SHORTEST:
+            continue
+        judged = True
+        count = sum(message.id == goal.id for message in record.feedback)
+        rate = count / (end - goal.time)
+        if limits.feedback_low <= rate <= limits.feedback_high:
+            continue
+        if not count:
+            cause = "No feedback was sent at all: is publish_feedback called in the loop?"
+        elif rate > limits.feedback_high:
+            cause = "The loop is not paced: is rate.sleep() called in each iteration?"
+        else:
+            cause = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
+        wanted = text("about 10 Hz ({:g} to {:g})", limits.feedback_low, limits.feedback_high)
+        seen = text("{:.1f} Hz, {} messages in {:.1f} s", rate, count, end - goal.time)
+        return Failed(wanted, seen, goal.time, cause, goal=goal)
+    return Passed() if judged else NotReached("no goal was active for a second")
+
+
+def _pairs(record: Record) -> List[Pair]:
+    goals = {goal.id: goal for goal in record.goals}
+    starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
+    pairs = []
+    for message in record.feedback:
+        samples = samples_between(record, message.time - AGE, message.time + 1e-3)
+        if message.id in goals and samples:
+            pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
+    return pairs
+
+
+def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
+    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
+    wrong: List[Pair] = []
+    longest, row = 0.0, math.inf  # [s] how long a row of wrong messages was, when the present one began
+    for pair in pairs:
+        if error(pair) > tolerance:
+            wrong.append(pair)
+            row = min(row, pair.feedback.time)
+            longest = max(longest, pair.feedback.time - row)
+        else:
+            row = math.inf
+    return wrong if len(wrong) > MOST_WRONG * len(pairs) or longest >= LONGEST_WRONG else []
+
+
+def _position_deviation(pair: Pair) -> float:
+    """Distance [m] of a position_error from the interval of recent true values; infinity for NaN."""
+    value, truths = pair.feedback.position_error, [errors_at(sample, pair.goal)[0] for sample in pair.samples]
+    if not math.isfinite(value):
+        return math.inf
+    return max(0.0, min(truths) - value, value - max(truths))
+
+
+def _angle_deviation(pair: Pair) -> float:
+    """The same for an angle_error [rad], with the interval taken around the first true value."""
+    value, truths = pair.feedback.angle_error, [errors_at(sample, pair.goal)[1] for sample in pair.samples]
+    if not math.isfinite(value):
+        return math.inf
+    spread = [wrapped(truth - truths[0]) for truth in truths]
+    middle = truths[0] + (min(spread) + max(spread)) / 2.0
+    return max(0.0, abs(wrapped(value - middle)) - (max(spread) - min(spread)) / 2.0)
+
+
+@check("errors", needs=("feedback_rate",))
+def feedback_position(record: Record, limits: Limits) -> Verdict:
+    """position_error in the feedback is the distance to the goal."""
+    pairs = _pairs(record)
+    if not pairs:
+        return NotReached("there was no feedback")
+    wrong = _wrong(pairs, _position_deviation, limits.position_tolerance)
+    otherwise = "position_error is not the distance from the position in /odom to the goal"
+    if wrong:
+        return _failed(wrong, pairs, 0, "m", POSITION_CAUSES, otherwise)
+    return _old(record, 0) or Passed()
+
+
+OF_POSITION = "of the position"
+FROM_POSITION = After("feedback_position", lambda _record, failure, _earlier: failure.kind == OF_POSITION)
+
+
+@check("errors", after=(FROM_POSITION,), needs=("feedback_rate",))
+def feedback_angle(record: Record, limits: Limits) -> Verdict:
+    """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
+    pairs = [pair for pair in _pairs(record) if errors_at(pair.samples[-1], pair.goal)[0] > NEAR]
+    if not pairs:
+        return NotReached("there was no feedback")
+    beyond = [pair for pair in pairs if abs(pair.feedback.angle_error) > math.pi + 0.05]
+    unwrapped = [pair for pair in beyond if _angle_deviation(pair) <= limits.angle_tolerance]
+    if unwrapped and len(unwrapped) > 0.7 * len(beyond):  # single values in degrees may match by chance
+        message = unwrapped[0].feedback
+        cause = text(
+            "angle_error is not wrapped: {:.1f} rad; the difference of two angles has to be normalized to -pi..pi",
+            message.angle_error,
+        )
+        seen = f"angle_error {message.angle_error:.2f}"
+        return Failed("an angle within +-3.14 rad", seen, message.time, cause)
+    wrong = _wrong(pairs, _angle_deviation, limits.angle_tolerance)
+    otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
+    if wrong:
+        return _failed(wrong, pairs, 1, "rad", ANGLE_CAUSES, otherwise)
+    return Passed() if _old(record, 0) else _old(record, 1) or Passed()  # one mistake is counted once
+
+
+def _old(record: Record, index: int) -> Optional[Failed]:
+    """Feedback that was true an iteration ago; `index` as in errors_at."""
+    differences = [_differences(record, goal, index) for goal in record.goals]
+    rows = np.concatenate([np.zeros((0, len(AGES))), *differences])
+    if len(rows) < MOVING:
+        return None
+    means = rows.mean(axis=0)
+    best = int(means.argmin())
+    if AGES[best] < OLD or means[best] > 0.5 * means[0]:
+        return None
+    name, seen = ("position_error", "angle_error")[index], text("one of {:.2f} s ago", AGES[best])
+    cause = text(
+        "{} in the feedback is an iteration old: calculate it from the newest pose, then publish "
+        "the feedback, both in the same iteration",
+        name,
+    )
+    return Failed(text("the present {}", name), seen, record.feedback[0].time, cause)
+
+
+def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
+    """For each message while the true error changes, and each of the AGES, the difference from the error of then."""
+    samples = samples_between(record, goal.time - AGES[-1] - 0.2, active_until(record, goal))
+    own = [message for message in record.feedback if message.id == goal.id]
+    if len(samples) < 2 or not own:
+        return np.zeros((0, len(AGES)))
+    values = np.array([(message.position_error, message.angle_error)[index] for message in own])
+    truth = np.array([errors_at(sample, goal)[index] for sample in samples])
+    truth = np.unwrap(truth) if index else truth
+    sampled = [sample.time for sample in samples]
+    times = np.array([message.time for message in own])
+    then = np.array([np.interp(times - age, sampled, truth) for age in AGES]).T
+    differences = np.abs(values[:, None] - then)
+    if index:
+        differences = np.abs(np.remainder(values[:, None] - then + np.pi, 2.0 * np.pi) - np.pi)
+    moving = np.abs(then[:, 0] - then[:, -1]) > CHANGED
+    return np.minimum(differences, MOST_DIFFERENT)[moving & np.isfinite(values)]
+
+
+def _failed(
+    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str
+) -> Failed:
+    """The first wrong value with the likely cause of all of them, among all pairs; `index` as in errors_at."""
+    name = ("position_error", "angle_error")[index]
+    value = getattr(wrong[0].feedback, name)
+    truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
+    cause = likely_cause(name, wrong, pairs, causes, otherwise)
+    of_position = cause.endswith((RELATIVE, POSITION_UNUSED, WORLD))
+    kind = OF_POSITION if of_position else ""
+    return Failed(f"{truth:.2f} {unit}", f"{name} {value:.2f}", wrong[0].feedback.time, cause, kind)

@@ -1,0 +1,279 @@
+"""Checks of the robot's motion: turn towards the goal, drive straight, arrive."""
+
+import math
+from dataclasses import replace
+from typing import Iterator, List, NamedTuple, Optional, Sequence
+
+from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
+from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
+from ..texts import text
+from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
+from .endings import success_too_far, wrong_ending
+from .limits import Limits
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
+NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
+MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
+LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
+ENOUGH = 4  # fewer commands are not judged
+LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
+LONG_TURN = "a long turn"
+TURN = f"{HEADING_TOLERANCE:g} rad"
+
+
+class Situation(NamedTuple):
+    """The command in force at a sample's time, and the true angle error [rad]."""
+
+    command: Command
+    angle: float
+
+
+def _in_force(record: Record) -> Iterator[Command]:
+    """For each sample the newest command before it: /cmd_vel stays in force until the next message."""
+    number, newest = 0, None
+    for sample in record.samples:
+        while number < len(record.commands) and record.commands[number].time <= sample.time + 1e-6:
+            newest = record.commands[number]
+            number += 1
+        if newest is not None:
+            yield replace(newest, time=sample.time)
+
+
+def _end(record: Record, goal: Goal) -> float:
+    results = results_of(record, goal)
+    return results[0].time if results else math.inf
+
+
+def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Situation]:
+    """Commands sent far from the goal, after |angle error| was within [low, high] for a WINDOW."""
+    end = _end(record, goal) - 1e-6
+    situations = []
+    for command in _in_force(record):
+        if not goal.time + WINDOW < command.time < end:
+            continue
+        errors = [errors_at(sample, goal) for sample in samples_between(record, command.time - WINDOW, command.time)]
+        if len(errors) >= 4 and all(low <= abs(angle) <= high and distance > NEAR for distance, angle in errors):
+            situations.append(Situation(command, errors[-1][1]))
+    return situations
+
+
+@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST), needs=("reaches_goal",))
+def turns_to_goal(record: Record, limits: Limits) -> Verdict:
+    """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
+    judged = False
+    for goal in record.goals:
+        situations = _situations(record, goal, limits.turn_beyond, math.pi)
+        problem = _never_turned(record, goal, limits)
+        if problem is None and len(situations) >= ENOUGH:
+            judged = True
+            problem = _moves_first(record, goal, situations, limits) or _wrong_turn(
+                situations, limits, _aligned_before(record, goal, limits)
+            )
+        if problem is not None:
+            return replace(problem, goal=goal)
+    return Passed() if judged else NotReached("no command was given while angle_error was large")
+
+
+def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
+    """A robot that drives off when the goal comes, and then turns as it should."""
+    first = next((command for command in record.commands if command.time >= goal.time - 1e-6), None)
+    driving = [abs(it.command.v) > limits.driving for it in situations]
+    at_first = driving.index(False) if False in driving else len(driving)
+    if first is None or abs(first.v) <= limits.driving or not 0 < at_first < len(driving) or any(driving[at_first:]):
+        return None
+    cause = "The robot drives before the errors are known: calculate them first, and let them decide what it does"
+    angle = situations[0].angle
+    seen = text("linear.x {:.2f} at {:.2f} rad", first.v, angle)
+    return Failed(text("linear.x 0 while angle_error is beyond {}", TURN), seen, first.time, cause, MOVES_FIRST)
+
+
+def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
+    """Since when [s] the robot has once headed for the goal; infinity if it has not."""
+    errors = ((sample.time, errors_at(sample, goal)[1]) for sample in samples_between(record, goal.time, math.inf))
+    return next((time for time, angle in errors if abs(angle) < limits.turn_beyond), math.inf)
+
+
+def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float) -> Optional[Failed]:
+    driving = [it for it in situations if abs(it.command.v) > limits.driving]
+    if len(driving) > MOST_WRONG * len(situations):
+        command, angle = driving[0]
+        wanted = text("linear.x 0 while angle_error is beyond {}", TURN)
+        cause = "The robot drives while it turns; the handout wants one or the other"
+        if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
+            cause = text("The robot drives straight at {:.2f} rad: the threshold of angle_error is not {}", angle, TURN)
+            if command.time > aligned:
+                cause = text(
+                    "Once it has turned to the goal, the robot drives on at {:.2f} rad without turning "
+                    "again: compare angle_error with {} in each iteration, because the heading changes while "
+                    "it drives",
+                    angle,
+                    TURN,
+                )
+        return Failed(wanted, text("linear.x {:.2f} at {:.2f} rad", command.v, angle), command.time, cause)
+    still = [it for it in situations if abs(it.command.w) < 1e-3]
+    if len(still) > 0.5 * len(situations):
+        command, angle = still[0]
+        cause = text("The robot never turned: angle_error is {:.2f} rad but angular.z stayed 0", angle)
+        return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
+    away = [it for it in situations if it.command.w * it.angle < 0.0 and abs(it.angle) < math.pi - 0.2]
+    if len(away) > 0.15 * len(situations):
+        command, angle = away[0]
+        cause = text(
+            "The robot turns away from the goal: angle_error is {:.2f} rad, so angular.z needs the "
+            "same sign for the shorter turn",
+            angle,
+        )
+        wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
+        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
+    return None
+
+
+def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """A robot that did not head for the goal and got no command to turn."""
+    end = _end(record, goal)
+    start = samples_between(record, goal.time, goal.time)
+    if not start or end - goal.time < 1.0:
+        return None
+    distance, angle = errors_at(start[-1], goal)
+    commands = [command for command in record.commands if goal.time <= command.time <= end]
+    if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
+        reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
+        cause = text("The robot never turned: angle_error is {:.2f} rad but {}", angle, reason)
+        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
+    return None
+
+
+@check("speeds", after=(MISLED,), needs=("turns_to_goal", "reaches_goal"))
+def drives_straight(record: Record, limits: Limits) -> Verdict:
+    """While angle_error is within 0.1 rad the robot drives straight ahead."""
+    judged = False
+    for goal in record.goals:
+        aligned = _situations(record, goal, 0.0, limits.straight_within)
+        nearly = _situations(record, goal, 0.0, limits.turn_beyond)
+        driving = [it for it in nearly if abs(it.command.v) > limits.driving]
+        idle = [it for it in nearly if abs(it.command.v) <= 1e-3 and abs(it.command.w) <= 1e-3]
+        if max(len(aligned), len(driving), len(idle) - LONG_IDLE) < ENOUGH:
+            continue
+        judged = True
+        problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
+        if problem is not None:
+            return replace(problem, goal=goal)
+    return Passed() if judged else NotReached("the robot never headed for the goal")
+
+
+def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
+    """A robot that drives backward, or does not move although it faces the goal."""
+    backward = [it for it in driving if it.command.v < 0.0]
+    standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
+    for wrong, situations, seen, cause in (
+        (backward, driving, "below 0", "The robot drives backward: linear.x has to be positive"),
+        (
+            standing,
+            aligned,
+            "0",
+            text("The robot heads for the goal but does not drive: linear.x stayed 0 within {}", TURN),
+        ),
+    ):
+        if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
+            command, angle = wrong[0]
+            return Failed("linear.x above 0", text("linear.x {} at {:.2f} rad", seen, angle), command.time, cause)
+    return None
+
+
+def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
+    """A robot that drives along a curve; gentle corrections towards the goal are allowed."""
+    curves = [
+        it
+        for it in driving
+        if abs(it.command.w) > limits.straight_turn
+        or (abs(it.command.w) > 0.1 and it.command.w * it.angle < 0.0 and abs(it.angle) > 0.03)
+    ]
+    if len(driving) < ENOUGH or len(curves) <= 0.2 * len(driving):
+        return None
+    command, angle = curves[0]
+    cause = "The robot keeps turning while it drives: driving straight means angular.z = 0"
+    return Failed("angular.z near 0", text("angular.z {:.2f} at {:.2f} rad", command.w, angle), command.time, cause)
+
+
+@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+def reaches_goal(record: Record, limits: Limits) -> Verdict:
+    """The goal succeeds when the robot is closer than 0.1 m, and not before."""
+    for goal in record.goals:
+        problem = (
+            wrong_ending(record, goal, SUCCEEDED, limits)
+            or success_too_far(record, goal, limits)
+            or _success_too_late(record, goal)
+        )
+        if problem is not None:
+            return problem
+    return Passed() if record.goals else NotReached("no goal was sent")
+
+
+def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
+    """A robot that drives on although it has come close enough for success."""
+    end = active_until(record, goal)
+    way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
+    for (before, far), (after, near) in zip(way, way[1:]):
+        if near < GOAL_RADIUS <= far:
+            reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
+            if end - reached <= LATE:
+                return None
+            cause = text(
+                "The goal goes on although the robot is within {:g} m: the threshold is another one", GOAL_RADIUS
+            )
+            least = min(distance for _, distance in way)
+            seen = text("success {:.2f} s later, {:.2f} m from the goal", end - reached, least)
+            return Failed(text("success at {:g} m", GOAL_RADIUS), seen, reached, cause, SUCCESS_LATE, goal)
+    return None
+
+
+SWERVES = After("drives_straight", lambda _record, failure, _earlier: failure.kind == LONG_TURN)
+
+
+@check("track", after=(*ENDING, SWERVES, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
+def goal_behind(record: Record, limits: Limits) -> Verdict:
+    """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
+    for goal in record.goals:
+        problem = (
+            wrong_ending(record, goal, SUCCEEDED, limits)
+            or success_too_far(record, goal, limits)
+            or _long_turn(record, goal)
+        )
+        if problem is not None:
+            return problem
+    return Passed() if len(record.goals) > 1 else NotReached("the first goal did not end")
+
+
+def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
+    """A robot that turned by much more than it needed to."""
+    samples = samples_between(record, goal.time, _end(record, goal))
+    total = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
+    needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
+    if total <= needed + 2.0:
+        return None
+    cause = "angle_error is not wrapped, so that the robot takes the longer turn, or the robot oscillates"
+    return Failed(text("a turn of about {:.1f} rad", needed), f"{total:.1f} rad", goal.time, cause, LONG_TURN, goal)
+
+
+@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+def far_goal(record: Record, limits: Limits) -> Verdict:
+    """A goal several metres away is reached."""
+    return reaches_goal(record, limits)
+
+
+@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+def already_there(record: Record, limits: Limits) -> Verdict:
+    """A goal closer than 0.1 m succeeds at once, and the robot stays where it is."""
+    for goal in record.goals:
+        problem = wrong_ending(record, goal, SUCCEEDED, limits)
+        if problem is not None:
+            return problem
+        end = _end(record, goal)
+        samples = samples_between(record, goal.time, end + limits.stop_within)
+        moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
+        if end - goal.time > 2.0 or moved > 0.05:
+            seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
+            cause = text("position_error is below {:g} m from the start: check it before moving", GOAL_RADIUS)
+            return Failed("success at once", seen, goal.time, cause)
+    return Passed() if record.goals else NotReached("no goal was sent")

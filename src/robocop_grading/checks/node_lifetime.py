@@ -1,0 +1,80 @@
+"""Checks that a node comes up and keeps running."""
+
+import difflib
+from typing import Sequence
+
+from ..handout import ACTION, ACTION_TYPE
+from ..record import Death, Record
+from ..texts import text
+from .limits import Limits
+from .output import UNCAUGHT, last_error
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+START = After("action_server", lambda record, *_: record.name == "start")
+OWN_DEATH = After("no_exception", lambda record, *_: not any(map(_is_explained, record.deaths)))
+
+
+def closest(name: str, others: Sequence[str]) -> str:
+    """The one of some names that is most like a name; empty if none is like it."""
+    return next(iter(difflib.get_close_matches(name, others, n=1, cutoff=0.5)), "")
+
+
+@check("states")
+def action_server(record: Record, limits: Limits) -> Verdict:
+    """The node provides an action server robocop_goto_as of the handout's type."""
+    if record.name != "start":
+        return NotReached("this is checked when the node starts")
+    if record.up:
+        return Passed()
+    name = ACTION[1:]
+    if ACTION in record.servers:
+        kind = record.types[record.servers.index(ACTION)]
+        if kind != ACTION_TYPE:
+            cause = text("The action's type is {}; the handout's is GoToPositionAction of aro_robocop_goto_as", kind)
+            return Failed(ACTION_TYPE, kind, 0.0, cause)
+        cause = (
+            "The fields of GoToPosition.action differ from the handout's, or the server was not started "
+            "(auto_start=False needs server.start())"
+        )
+        return Failed("a server that clients can connect to", "no connection", 0.0, cause)
+    if record.deaths:
+        death = record.deaths[0]
+        cause = text("The node ended while starting: {}", _reason(death, record))
+        return Failed("a running node", text("exit status {}", death.status), death.time, cause)
+    servers = [server.lstrip("/") for server in record.servers]
+    if servers:
+        close = closest(name, servers) or servers[0]
+        return Failed(name, close, 0.0, text("The action server is called {}; the handout says {}", close, name))
+    cause = "No action server was created, or it was not started (server.start())"
+    if isinstance(no_exception(record, limits), Failed):
+        cause = text("An exception while starting: {}", last_error(record))
+    return Failed(name, "no action server", 0.0, cause)
+
+
+def _is_explained(death: Death) -> bool:
+    """Whether something other than an exception ended the node."""
+    return bool(death.reason) or death.is_unexplained
+
+
+def _reason(death: Death, record: Record) -> str:
+    return death.reason or ("signal 9 (SIGKILL)" if death.is_unexplained else last_error(record))
+
+
+@check("states", after=(START,))
+def no_exception(record: Record, limits: Limits) -> Verdict:
+    """No callback or thread raises an uncaught exception."""
+    for line in record.lines:
+        if UNCAUGHT.search(line.text):
+            return Failed("no exception", line.text[:120].splitlines()[0], line.time, last_error(record))
+    return Passed()
+
+
+@check("states", after=(START, OWN_DEATH))
+def stays_alive(record: Record, limits: Limits) -> Verdict:
+    """The node keeps running to the end."""
+    for death in record.deaths:
+        cause = text("The node died: {}", _reason(death, record))
+        return Failed("a running node", text("exit status {}", death.status), death.time, cause)
+    if record.problem.startswith("the node did not come up"):
+        return Failed("a running node", "it did not come up again", 0.0, record.problem)
+    return Passed()

@@ -1,0 +1,60 @@
+"""What the node's output and log say: actionlib's complaints, exceptions, the last error."""
+
+import os
+import re
+from typing import Pattern, Sequence
+
+from ..record import Record
+
+# How a line at a level begins: as the recording writes /rosout, or as rospy writes it to a terminal.
+_WARNING = r"^(?:\x1b\[[\d;]*m)*\[ *(?:WARN|WARNING|ERROR)\] ?(?:\[[\d., ]+\]:? ?)?"
+_ERROR = _WARNING.replace("WARN|WARNING|ERROR", "ERROR")
+# actionlib's messages (server_goal_handle.py, simple_action_server.py), in Python and C++, at their levels.
+TWO_STATES_LOGGED = re.compile(
+    _ERROR
+    + r"To transition to an? (?:active|rejected|canceled|cancelled|aborted|succeeded) state, the goal must be in an? "
+    + r"[a-z, ]+ state, it is currently in state: \d+"
+)
+NO_STATE_LOGGED = re.compile(_WARNING + r"Your executeCallback did not set the goal to a terminal status\.")
+_TRACEBACK = rf"^Traceback \(most recent call last\):|{_ERROR}Traceback \(most recent call last\):"
+EXCEPTION_LOGGED = re.compile(rf"{_ERROR}Exception in your execute callback: |{_TRACEBACK}")
+UNCAUGHT = re.compile(
+    rf"^(?:Syntax|Indentation|Tab)Error|^Exception in thread |{_ERROR}bad callback: |{EXCEPTION_LOGGED.pattern}"
+)
+PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
+LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/")  # the path of a file that is not the node's
+TRACEBACK = 40  # lines before the error in which its place is looked for
+INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
+
+
+def logged(record: Record, pattern: Pattern[str]) -> bool:
+    """Whether a line of the node's output matches."""
+    return any(pattern.search(line.text) for line in record.lines)
+
+
+def last_error(record: Record) -> str:
+    """The last traceback's last line with the node's own innermost place, or the last line that is not information.
+
+    A place in a library is named only if no traceback has a place outside of libraries.
+    """
+    lines = [text.strip() for line in record.lines for text in line.text.splitlines() if text.strip()]
+    errors = [number for number, line in enumerate(lines) if "Error" in line.split(":")[0] or "Exception:" in line]
+    for only_own in (True, False):
+        for number in reversed(errors):
+            place = _place(lines[max(0, number - TRACEBACK) : number], only_own)
+            if place or not only_own:
+                return lines[number][:200] + place
+    others = [line for line in lines if not INFORMATION.match(line)]
+    return (others or ["its output names no error"])[-1][:200]
+
+
+def _place(lines: Sequence[str], only_own: bool) -> str:
+    """File, line and code of the last traceback in these lines, " (FILE, line N: CODE)"; empty without any."""
+    begins = [number for number, line in enumerate(lines) if "Traceback" in line]
+    lines = [*lines[begins[-1] if begins else 0 :], ""]
+    places = [(found, code) for found, code in zip(map(PLACE.search, lines), lines[1:]) if found]
+    own = [(found, code) for found, code in places if not LIBRARY.search(found[1])]
+    for found, code in (own if only_own else places)[-1:]:
+        quoted = "" if not code or PLACE.search(code) else f": {code[:120]}"
+        return f" ({os.path.basename(found[1])}, line {found[2]}{quoted})"
+    return ""

@@ -1,0 +1,98 @@
+"""Checks of cancelled, replaced and subsequent goals."""
+
+from dataclasses import replace
+
+from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, samples_between, status_name
+from ..texts import sentences, text
+from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
+from .endings import success_too_far, wrong_ending
+from .limits import Limits
+from .output import EXCEPTION_LOGGED, logged
+from .verdict import After, Failed, NotReached, Passed, Verdict, check
+
+MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
+MOSTLY = 0.7
+ENDS = 0.3  # [s] in which the robot stops
+NO_ANSWER = "no answer"
+PREEMPTION = *ENDING, After("reaches_goal", nothing_came), After("cancel", alike)
+
+
+@check("states", after=PREEMPTION, needs=("reaches_goal", "stays_alive"))
+def cancel(record: Record, limits: Limits) -> Verdict:
+    """A cancelled goal ends as PREEMPTED without delay, and without success."""
+    if not record.cancels:
+        return NotReached("the goal ended before it could be cancelled")
+    request = record.cancels[0]
+    goal = next(goal for goal in record.goals if goal.id == request.id)
+    hint = "is is_preempt_requested() called in each iteration?"
+    return _preempted(record, goal, request.time, limits, "cancel request", hint)
+
+
+@check("states", after=PREEMPTION, needs=("reaches_goal", "stays_alive"))
+def newer_goal(record: Record, limits: Limits) -> Verdict:
+    """A newer goal preempts the older one and is reached."""
+    if len(record.goals) < 2:
+        return NotReached("the first goal ended before a newer one could be sent")
+    older, newer = record.goals[:2]
+    hint = "is_preempt_requested() is true for a newer goal as well, and the loop has to end then"
+    verdict = _preempted(record, older, newer.time, limits, "newer goal", hint)
+    if not isinstance(verdict, Passed):
+        return verdict
+    return wrong_ending(record, newer, SUCCEEDED, limits) or Passed()
+
+
+def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, request: str, hint: str) -> Verdict:
+    results = results_of(record, goal)
+    if not results or results[0].time > requested + limits.preempt_within:
+        seen = text("a result {:.1f} s later", results[0].time - requested) if results else "no result"
+        wanted = text("PREEMPTED within {:g} s of the {}", limits.preempt_within, request)
+        return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
+    if results[0].status in (PREEMPTED, RECALLED):
+        if results[0].success:
+            cause = "result.success is true although the goal was not reached"
+            return Failed("success False", "success True", results[0].time, cause)
+        return Passed()
+    return wrong_ending(record, goal, PREEMPTED, limits) or Passed()
+
+
+def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint: str) -> str:
+    """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
+    results = results_of(record, goal)
+    if not results or results[0].status not in (PREEMPTED, RECALLED):
+        return text("The {} is not noticed: {}", request, hint)
+    late = text("The {} is noticed only {:.1f} s later", request, results[0].time - requested)
+    waiting = samples_between(record, requested, results[0].time - ENDS)
+    turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
+    driving = sum(abs(sample.v) >= MOVING for sample in waiting)
+    called = "is is_preempt_requested() called in each iteration"
+    if turning > MOSTLY * len(waiting):
+        return text("{}, when the robot has turned: {}, also while it turns?", late, called)
+    if driving > MOSTLY * len(waiting):
+        return text("{}, and the robot drives on until then: {}, also while it drives?", late, called)
+    return text("{}: {}, and does nothing else make the callback wait before it ends the goal?", late, called)
+
+
+@check(
+    "states",
+    after=(After("stays_alive", lambda _, failure, __: failure.kind == NO_ANSWER), *ENDING, After("reaches_goal")),
+    needs=("reaches_goal", "stays_alive"),
+)
+def next_goal(record: Record, limits: Limits) -> Verdict:
+    """After a goal has ended, in any state, the next one is served."""
+    if len(record.goals) < 2 or not results_of(record, record.goals[0]):
+        return NotReached("the first goal did not end")
+    goal = record.goals[-1]
+    answered = {status.id for status in record.statuses} | {result.id for result in record.results}
+    if goal.id not in answered:
+        cause = "The server no longer accepts goals"
+        return Failed("an answer to the second goal", "none", goal.time, cause, NO_ANSWER, goal)
+    problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+    if problem is None:
+        return Passed()
+    if logged(record, EXCEPTION_LOGGED) or problem.kind == NOT_RESET:
+        return problem
+    first = status_name(results_of(record, record.goals[0])[0].status)
+    cause = text(
+        "The second goal fails after the first one ended as {}: is all state that the first goal changed reset?", first
+    )
+    return replace(problem, cause=sentences(problem.cause, cause))

@@ -1,0 +1,178 @@
+"""robocop grade-class: grade a folder of hand-ins in parallel; an interrupted run can be continued."""
+
+import argparse
+import contextlib
+import hashlib
+import os
+import random
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Dict, Iterable, List, Optional, Union
+from xml.etree import ElementTree
+
+from aro_robocop_goto_as.errors import GradingSetupError, NoTimeError, RobocopError
+from aro_robocop_goto_as.process.child_errors import send_child_errors_to
+from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+
+from ..cli import INTERRUPTED, TEXTS_HELP
+from ..hosting.places import places
+from ..hosting.scratch import scratch_folder
+from ..hosting.workspace import exclusive
+from ..judge import printable_lines
+from ..plan import Plan, load
+from ..report.folder import make_report_folder
+from ..sandbox.bubblewrap import expect_private
+from ..scenario_draw import LARGEST_SEED, MIDDLE
+from ..texts import load as load_texts
+from .hand_ins import HandIn, collect, pack
+from .overview import page
+from .results import Result, Results, one_line, seed_of, table, write_atomically
+from .worker import Done, Place, Task
+
+CSV, HTML = "grades.csv", "index.html"
+WORKERS_LOG = ".workers.log"  # in the folder of the results
+WRITING = 0.05  # share of the time in which the table and the overview are written while a class is graded
+CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
+
+
+class Class:
+    """The hand-ins of one folder and the results so far."""
+
+    def __init__(self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: bool) -> None:
+        self.title, self.plan, self._results = folder.name, plan, results
+        self.count = len(hand_ins)
+        self.done: Dict[str, Result] = {
+            hand_in.name: results.read(hand_in.name) for hand_in in hand_ins if not again and results.has(hand_in)
+        }
+        self.waiting = {hand_in.name: hand_in for hand_in in hand_ins if hand_in.name not in self.done}
+        self.problems: Dict[str, str] = {}
+        self._next_write = 0.0  # [s, wall]
+
+    def add(self, name: str, outcome: Union[Done, str]) -> str:
+        """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
+        if isinstance(outcome, str):
+            self.problems[name] = outcome
+            return one_line(f"{name}: {outcome}")
+        self._results.keep(outcome)
+        result = self.done[name] = self._results.read(name)
+        self.waiting.pop(name, None)
+        if time.monotonic() >= self._next_write:
+            self.write(running=True)
+        problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
+        counter = f"[{len(self.done)}/{self.count}]"
+        return one_line(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
+
+    def write(self, running: bool) -> None:
+        """Write the table and the overview of the results so far."""
+        started = time.monotonic()
+        results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
+        write_atomically(folder / CSV, table(results, self.plan, self.problems))
+        waiting = {name: self.problems.get(name, "waiting") for name in self.waiting}
+        write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
+        finished = time.monotonic()
+        self._next_write = finished + (finished - started) / WRITING
+
+
+def main() -> None:
+    """Exit status 0: everybody is graded; 1: somebody could not be graded; 130: interrupted."""
+    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
+    parser.add_argument("folder", metavar="DIR", help="contains a folder (a package), zip or Python file per hand-in")
+    parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
+    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--texts", metavar="YAML", help=TEXTS_HELP)
+    parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
+    parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: at most one a core)")
+    parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
+    parser.add_argument("--credentials", default="", metavar="PEM", help="key and certificate of that scheduler")
+    parser.add_argument("--again", action="store_true", help="also grade hand-ins that have a result")
+    parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
+    args = parser.parse_args()
+    interrupt_on_signal()
+    folder = Path(args.folder).resolve()
+    try:
+        state, share = places()
+        if args.workers is not None and args.workers < 1:
+            raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
+        results_folder = Path(args.report) if args.report else state / "classes" / folder.name
+        texts = load_texts(Path(args.texts) if args.texts else None, share)
+        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE, texts)
+        text = plan.path.read_text(encoding="utf-8")
+        words = Path(args.texts).read_text(encoding="utf-8") if args.texts else ""
+        out = make_report_folder(results_folder)
+        if not args.unsafe:
+            expect_private(folder)
+        hand_ins, others = collect(folder)
+        for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
+            raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
+        for name in others:
+            print(f"ignored: {one_line(name)}, which is not a folder, zip or Python file", flush=True)
+        version = ElementTree.parse(share / "package.xml").findtext("version")
+        with scratch_folder(), exclusive(out / ".run"):
+            seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
+            plan = load(plan.path, seed, texts)
+            digest = hashlib.sha256((text + words).encode()).hexdigest()
+            results = Results(out, {"plan": digest, "seed": seed, "grader": version})
+            group = Class(folder, results, plan, hand_ins, args.again)
+            print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
+            print(f"scenarios: seed {seed}", flush=True)
+            # Packed when it is their turn, from what is there then.
+            tasks = (Task(pack(it.path), text, seed, args.unsafe, words) for it in list(group.waiting.values()))
+            send_child_errors_to(out / WORKERS_LOG)
+            place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
+            grade(group, tasks, place, adapts=args.workers is None)
+    except RobocopError as error:
+        print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        ignore_all()
+        with contextlib.suppress(OSError):  # the terminal may be closed
+            sys.stdout.flush()
+            sys.stderr.flush()
+        os._exit(INTERRUPTED)  # dask's handlers at exit would wait for workers that had not started, and print why not
+    finally:
+        ignore_all()
+    print(f"table: {out / CSV}\noverview: {out / HTML}")
+    sys.exit(1 if group.problems else 0)
+
+
+def class_seed(given: Optional[int], results: Path) -> int:
+    """The given seed, else the one of the results so far, else a random one; 0 is a seed, too."""
+    seeds = (given, seed_of(results), random.randint(1, LARGEST_SEED))
+    return next(seed for seed in seeds if seed is not None)
+
+
+def grade(group: Class, tasks: Iterable[Task], place: Place, adapts: bool = True) -> None:
+    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt.
+
+    If it `adapts`, fewer local workers grade at once where the machine is too busy for all of them.
+    """
+    group.write(running=bool(group.waiting))
+    try:
+        if group.waiting:
+            from .dask_cluster import MOST_AHEAD, Pace, connected, grade_all  # importing dask takes half a second
+
+            place = replace(place, workers=min(place.workers, len(group.waiting)))
+            pace = Pace(MOST_AHEAD, True) if place.scheduler else Pace(place.workers, not adapts)
+            with connected(place) as client:
+                for name, outcome in grade_all(client, tasks, pace):
+                    reraise_if_interrupted()
+                    try:
+                        line = group.add(name, outcome)
+                    except Exception as error:  # a report that nobody expected: its own row, and nobody else's
+                        line = group.add(name, f"the report can't be stored: {type(error).__name__}: {error}")
+                    print(line, flush=True)
+    except NoTimeError as error:
+        for name in list(group.waiting):
+            print(group.add(name, f"no grade: {error}"), flush=True)
+    except KeyboardInterrupt:
+        with contextlib.suppress(OSError):  # the terminal may be closed
+            print(
+                f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",
+                file=sys.stderr,
+            )
+        sys.stderr = open(os.devnull, "w")  # for what dask's objects report when they are deleted
+        raise
+    finally:
+        group.write(running=False)

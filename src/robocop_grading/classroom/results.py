@@ -1,0 +1,164 @@
+"""Stores the results of a class, one folder per hand-in, so that an interrupted run can be continued."""
+
+import contextlib
+import csv
+import functools
+import io
+import json
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from ..hosting import tree
+from ..judge import printable
+from ..plan import PARTS, Plan
+from .hand_ins import HandIn
+from .worker import Done
+
+STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
+# A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
+FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+MOST_CELL = 2_000  # characters of a cell
+BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
+NOT_HANDED_IN = "not handed in"
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check's outcome for one hand-in."""
+
+    name: str
+    part: str
+    outcome: str  # passed, failed, not reached
+    points: float
+    cause: str = ""
+
+
+_without_cause = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
+
+
+@dataclass(frozen=True)
+class Result:
+    """The result of one hand-in."""
+
+    name: str
+    checks: Tuple[Check, ...]
+    problems: Tuple[str, ...]
+    seconds: float
+
+    @property
+    def points(self) -> float:
+        """Points scored, extra ones included."""
+        return round(sum(check.points for check in self.checks), 6)
+
+    def points_of(self, part: str) -> Optional[float]:
+        """Points of the server or the bridge; None if it was not handed in."""
+        points = [check.points for check in self.checks if check.part == part]
+        return round(sum(points), 6) if points else None
+
+    def outcomes(self, plan: Plan) -> List[str]:
+        """For each check of the plan: passed, failed, not reached, or not handed in."""
+        known = {check.name: check.outcome for check in self.checks}
+        return [known.get(check.name, NOT_HANDED_IN) for check in plan.checks]
+
+
+def seed_of(folder: Path) -> Optional[int]:
+    """The seed with which the hand-ins in a folder of results were graded, if there are any."""
+    for stamp in sorted(folder.glob(f"*/{STAMP}")):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
+            return int(json.loads(stamp.read_text())["made_from"]["seed"])
+    return None
+
+
+class Results:
+    """The folder of results; `made_with` identifies the plan, its seed and the grader's version."""
+
+    def __init__(self, folder: Path, made_with: Mapping[str, Any]) -> None:
+        self.folder = folder
+        self._made_with = dict(made_with)
+        folder.mkdir(parents=True, exist_ok=True)
+        for unfinished in folder.glob(".new-*"):  # left by an interrupted run
+            tree.remove(unfinished)
+
+    def has(self, hand_in: HandIn) -> bool:
+        """Whether the hand-in was graded with its present content, plan and grader."""
+        try:
+            stamp = json.loads((self.folder / hand_in.name / STAMP).read_text())
+        except (OSError, ValueError):
+            return False
+        return bool(stamp.get("made_from") == self._from(hand_in.digest))
+
+    def _from(self, digest: str) -> Dict[str, Any]:
+        return {**self._made_with, "digest": digest}
+
+    def keep(self, done: Done) -> None:
+        """Store a report; a concurrent reader sees either the old or the new one, but no mixture."""
+        new, final = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / done.name
+        new.chmod(0o755)
+        for name, content in done.files.items():
+            (new / name).write_bytes(content)
+        stamp = {"made_from": self._from(done.digest), "seconds": round(done.seconds, 1), "worker": done.worker}
+        (new / STAMP).write_text(json.dumps(stamp, indent=1))
+        if final.exists():
+            tree.remove(final)
+        os.rename(new, final)
+
+    def read(self, name: str) -> Result:
+        """The result that is stored for a hand-in."""
+        folder = self.folder / name
+        raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
+        checks = [
+            Check(check["name"], check["part"], check["outcome"], check["points"], check["failure"]["cause"])
+            if check["failure"]
+            else _without_cause(check["name"], check["part"], check["outcome"], check["points"])
+            for check in raw["checks"]
+        ]
+        return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
+
+
+def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
+    """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
+
+    `problems` maps the names that could not be graded to the reason: rows without points.
+    """
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    text.write(BYTE_ORDER_MARK)
+    rows.writerow(["name", "points", "of", *PARTS, "problem", *(check.name for check in plan.checks)])
+    for result in results:
+        points = [result.points_of(part) for part in PARTS]
+        rows.writerow(
+            [
+                _plain(result.name),
+                result.points,
+                plan.points,
+                *(NOT_HANDED_IN if number is None else number for number in points),
+                _plain(" | ".join(result.problems)),
+                *result.outcomes(plan),
+            ]
+        )
+    for name, problem in sorted(problems.items()):
+        empty = [""] * (1 + len(PARTS))
+        rows.writerow([_plain(name), *empty[:1], plan.points, *empty[1:], _plain(problem)])
+    return text.getvalue()
+
+
+def one_line(text: str) -> str:
+    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
+    return printable(text.encode("utf-8", "replace").decode())
+
+
+def _plain(text: str) -> str:
+    """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
+    text = one_line(text)[:MOST_CELL].replace(";", ",")
+    return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Replace a file in one step, so that no reader sees half of it."""
+    new = path.with_name(f".{path.name}.new")
+    new.write_text(text, encoding="utf-8", errors="replace")
+    os.replace(new, path)

@@ -1,0 +1,128 @@
+"""Grades a packed hand-in on a dask worker and returns the files of its report."""
+
+import dataclasses
+import os
+import socket
+import tarfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Dict, Optional, Union
+
+from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
+
+from ..grader import Grader
+from ..hosting.places import places
+from ..hosting.tree import temporary_folder
+from ..judge import Grade
+from ..plan import load
+from ..report.write import write
+from ..runner import Runner
+from ..sandbox.bubblewrap import open_sandbox
+from ..submission import lab_environment, prepare_submission
+from ..texts import load as load_texts
+from .hand_ins import HandIn, unpack
+
+MOST_PROBLEM = 4_000  # characters
+
+
+@dataclass(frozen=True)
+class Task:
+    """A hand-in with the options for grading it."""
+
+    hand_in: HandIn
+    plan: str  # the text of config/grading.yaml
+    seed: int
+    unsafe: bool = False
+    texts: str = ""  # of a translation of config/grading_texts.yaml
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a class is graded."""
+
+    scheduler: str = ""  # tls://HOST:PORT; none: local workers
+    credentials: str = ""  # PEM file with the key and the certificate that scheduler, workers and client share
+    workers: int = 1  # local ones
+    unsafe: bool = False
+
+
+@dataclass(frozen=True)
+class Done:
+    """The report of a hand-in; one that could not be graded has a report that states the problem."""
+
+    name: str
+    digest: str
+    files: Dict[str, bytes] = field(default_factory=dict)
+    seconds: float = 0.0
+    worker: str = ""
+
+
+def work(task: Task) -> Union[Done, NoTimeError]:
+    """Grade one hand-in; its mistakes go into the report, other errors are raised.
+
+    A NoTimeError is returned: dask would repeat at once what raises an error.
+    """
+    started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
+    state, share = places()
+    with temporary_folder("robocop-class-", _scratch()) as top:
+        folder = top / "report"
+        (top / "plan.yaml").write_text(task.plan, encoding="utf-8")
+        (top / "texts.yaml").write_text(task.texts, encoding="utf-8")
+        texts = load_texts(top / "texts.yaml" if task.texts else None, share)
+        plan = load(top / "plan.yaml", task.seed, texts)
+        try:
+            sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
+            if task.hand_in.problem:
+                raise SubmissionError(task.hand_in.problem)
+            path = _unpacked(task.hand_in, top / "hand_in")
+            submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
+            submission = dataclasses.replace(submission, name=name)
+            Grader(Runner(plan, state, sandbox), scratch=top).grade(submission, folder)
+        except NoTimeError as error:
+            return error
+        except UngradableError:
+            raise
+        except Exception as error:  # a hand-in that breaks the grader affects only its own row
+            folder.mkdir(exist_ok=True)
+            problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
+            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
+            write(Grade(name, (), (problem,)), plan, {}, folder)
+        files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
+    return Done(
+        task.hand_in.name,
+        task.hand_in.digest,
+        files,
+        time.monotonic() - started,
+        f"{socket.gethostname()}:{os.getpid()}",
+    )
+
+
+def _scratch() -> Optional[Path]:
+    """This dask worker's folder, which dask removes even after the worker was killed."""
+    from distributed import get_worker  # takes half a second
+
+    try:
+        return Path(get_worker().local_directory)
+    except ValueError:  # not a dask worker
+        return None
+
+
+def _unpacked(hand_in: HandIn, folder: Path) -> Path:
+    try:
+        return unpack(hand_in, folder)
+    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
+        raise SubmissionError(f"can't be unpacked: {error}") from error
+
+
+def ready(unsafe: bool) -> str:
+    """Prepare this worker's machine; what it lacks for grading, or nothing."""
+    try:
+        state, share = places()
+        open_sandbox(unsafe, [state / "venv"])
+        lab_environment(share, state)
+    except NoTimeError:
+        pass  # each hand-in tries again
+    except RobocopError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,126 @@
+"""robocop grade: judge a submission and write a report."""
+
+import argparse
+import os
+import sys
+import zlib
+from pathlib import Path
+from typing import Dict, List, Mapping
+
+from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
+from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+
+from .grader import Grader
+from .hosting.places import places
+from .hosting.scratch import scratch_folder
+from .hosting.workspace import exclusive
+from .judge import CheckResult, Grade, Outcome, printable, printable_lines
+from .plan import load
+from .report.folder import make_report_folder
+from .runner import Runner
+from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
+from .scenario_draw import MIDDLE
+from .submission import prepare_submission
+from .texts import load as load_texts
+from .viewer import choose_viewer
+
+NO_GRADE = 3  # exit status: the machine had no time, or something was killed from outside
+INTERRUPTED = 130  # the shells' exit status for Ctrl-C
+TEXTS_HELP = "texts in another language: a translated copy of config/grading_texts.yaml"
+SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
+PAGE_ADVICE = "open {url} in a browser to watch; server and bridge each wait a minute for it"
+MOST_SHOWN = 1_000  # characters of an error
+LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
+
+
+def _show_progress(part: str, scenario: str) -> None:
+    reraise_if_interrupted()
+    if sys.stderr.isatty():
+        print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
+    else:
+        print(f"{part}: {scenario}", file=sys.stderr, flush=True)
+
+
+def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
+    """The grade for a terminal: failures first, what passed in one line; `next_steps` by part."""
+    lines, passed = [], [check for check in grade.checks if check.outcome is Outcome.PASSED]
+    not_reached: Dict[str, List[CheckResult]] = {}
+    for result in grade.failures_first[: len(grade.checks) - len(passed)]:
+        if result.outcome is Outcome.NOT_REACHED:
+            not_reached.setdefault(result.why, []).append(result)
+            continue
+        extra = " (extra)" if result.extra else ""
+        points = f"{result.points:4g} / {result.points_available:<4g}"
+        lines.append(f"{LABELS[result.outcome]:11}  {points}  {result.sentence}{extra}")
+        lines.append(f"{'':11}  {result.explanation()}")
+    for why, results in not_reached.items():
+        points = f"{0:4g} / {sum(result.points_available for result in results):<4g}"
+        names = ", ".join(result.name for result in results)
+        lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {points}  {names}: {why}")
+    if passed:
+        points = f"{sum(check.points for check in passed):4g} / {sum(check.points_available for check in passed):<4g}"
+        names = "every check" if len(passed) == len(grade.checks) else ", ".join(check.name for check in passed)
+        lines.append(f"{LABELS[Outcome.PASSED]:11}  {points}  {names}")
+    lines += [f"problem: {problem}" for problem in grade.problems]
+    lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
+    unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}
+    lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
+    lines.append(f"{grade.name}: {grade.points:g} of {grade.points_available:g} points")
+    return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
+
+
+def main() -> None:
+    """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
+    parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__, allow_abbrev=False)
+    parser.add_argument("path", help="a package, a server (robocop_goto_as.py) or a bridge (robocop_rviz_goto_ac.py)")
+    parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
+    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
+    parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
+    parser.add_argument(
+        "--watch", action="store_true", help="show the run in real time, in RViz or, without a display, in a browser"
+    )
+    parser.add_argument("--texts", metavar="YAML", help=TEXTS_HELP)
+    parser.add_argument("--only", nargs="+", default=(), metavar="CHECK", help="run only what these checks need")
+    args = parser.parse_args()
+    interrupt_on_signal()
+    try:
+        state, share = places()
+        texts = load_texts(Path(args.texts) if args.texts else None, share)
+        path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
+        plan = load(path, args.seed, texts).restricted(args.only)
+        given = make_report_folder(Path(args.report)) if args.report else None
+        cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
+        sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
+        viewer = choose_viewer(sandbox) if args.watch else None
+        if viewer is not None and viewer.is_page:
+            print(f"robocop grade: {PAGE_ADVICE.format(url=viewer.url)}", file=sys.stderr, flush=True)
+        folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
+        with scratch_folder(), exclusive(folder_in_use):
+            if sys.stderr.isatty():
+                _show_progress("package", "build")
+            submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
+            if not any(plan.examines(script.part) for script in submission.scripts):
+                raise GradingError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
+            name = submission.name + ("" if plan.is_whole else "-only")
+            folder = given or make_report_folder(state / "reports" / name)
+            runner = Runner(plan, state, sandbox, viewer=viewer, on_progress=_show_progress)
+            grade = Grader(runner, keep=True).grade(submission, folder)
+    except UngradableError as error:
+        print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)
+        sys.exit(NO_GRADE)
+    except RobocopError as error:
+        print(f"robocop grade: {printable_lines(str(error))}", file=sys.stderr)
+        sys.exit(1)
+    except KeyboardInterrupt:
+        ignore_all()
+        sys.exit(INTERRUPTED)
+    except Exception as error:  # the grader failed on this submission: report it in one line
+        print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MOST_SHOWN]}", file=sys.stderr)
+        sys.exit(1)
+    if sys.stderr.isatty():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+    print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
+    print(f"scenarios: seed {plan.seed}")
+    print(f"report: {folder / 'report.html'}")
+    sys.exit(0 if grade.all_right else 1)

@@ -1,0 +1,66 @@
+"""Runs, judges and reports one submission."""
+
+import shutil
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Dict, List, Mapping, Optional
+
+from aro_robocop_goto_as.errors import UngradableError
+
+from . import judge
+from .hosting.tree import remove, temporary_folder
+from .judge import Grade
+from .record import Record
+from .report import write as report
+from .runner import Recorded, Runner
+from .submission import Script, Submission
+
+ATTEMPTS = 2
+KILLED = " by a SIGKILL that did not come from the grader"
+NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
+EXCUSE = " (is the machine short of memory?)"
+
+
+@dataclass(frozen=True)
+class Grader:
+    """How submissions are graded."""
+
+    runner: Runner
+    scratch: Optional[Path] = None  # folder for temporary files
+    keep: bool = False  # the report stays in its folder, and gets the bags of all scenarios
+
+    def grade(self, submission: Submission, folder: Path) -> Grade:
+        """Write the report, and the bags of failed scenarios, to `folder`.
+
+        A part that is killed is run once more. UngradableError if it is killed again, but may not have done so itself,
+        or if the machine has no time for it.
+        """
+        plan = self.runner.plan
+        records: Dict[str, Mapping[str, Record]] = {}
+        problems: Dict[str, str] = {}
+        with temporary_folder("robocop-grade-", self.scratch) as work:
+            notes = list(submission.notes) if plan.is_whole else [NOT_WHOLE]
+            for script in (script for script in submission.scripts if plan.examines(script.part)):
+                recorded = self._run(submission, script, Path(work, script.part), notes)
+                records[script.part], problems[script.part] = recorded.records, recorded.problem
+            grade = judge.judge(submission.name, plan, records, problems)
+            grade = replace(grade, problems=(*grade.problems, *notes))
+            folder.mkdir(parents=True, exist_ok=True)
+            failed = {f"{check.part}-{check.scenario}" for check in grade.checks if check.failure is not None}
+            for bag in sorted(Path(work).glob("*/*.bag")):
+                if self.keep or bag.stem in failed:
+                    shutil.copyfile(bag, folder / bag.name)
+            report.write(grade, plan, records, folder, self.keep)
+        return grade
+
+    def _run(self, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:
+        for attempt in range(1, ATTEMPTS + 1):
+            recorded = self.runner.run(submission, script, out)
+            killed = recorded.killed + KILLED + (EXCUSE if recorded.excused else "")
+            if not recorded.killed or (attempt == ATTEMPTS and not recorded.excused):
+                break
+            if attempt == ATTEMPTS:
+                raise UngradableError(f"not gradable: {killed}, as in the previous attempt")
+            notes.append(f"{script.part}: {killed}; this part was run again")
+            remove(out)
+        return recorded

@@ -1,0 +1,74 @@
+"""Other people's folders: walking, finding and removing without recursion, however deep they are nested.
+
+os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels.
+"""
+
+import contextlib
+import fnmatch
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Collection, Iterator, List, NamedTuple, Optional
+
+from aro_robocop_goto_as.errors import HostingError
+
+DEEPEST = 100  # nested folders; packages and their builds have ten or so
+
+
+class Level(NamedTuple):
+    """A folder with the names in it, sorted; links are files here, wherever they lead."""
+
+    path: Path
+    folders: List[str]
+    files: List[str]
+
+
+def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Level]:
+    """`top` and the folders below it; a caller may remove names from `folders` to skip them.
+
+    HostingError for more than DEEPEST nested folders. Folders that can't be read count as empty.
+    """
+    waiting = [(top, 0)]
+    while waiting:
+        path, depth = waiting.pop()
+        if depth > DEEPEST:
+            raise HostingError(f"{top}: expected at most {DEEPEST} nested folders")
+        level = Level(path, [], [])
+        with contextlib.suppress(OSError), os.scandir(path) as entries:
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    level.folders.append(entry.name)
+                else:
+                    level.files.append(entry.name)
+        level.folders[:] = sorted(set(level.folders) - set(leave_out))
+        level.files.sort()
+        yield level
+        waiting += [(path / name, depth + 1) for name in reversed(level.folders)]
+
+
+def find(top: Path, pattern: str) -> List[Path]:
+    """Everything below `top` whose name matches a pattern such as *.launch, sorted."""
+    return sorted(
+        level.path / name
+        for level in walk(top)
+        for name in (*level.folders, *level.files)
+        if fnmatch.fnmatchcase(name, pattern)
+    )
+
+
+def remove(path: Path) -> None:
+    """Remove a file, a link or a folder with all that is in it, if it exists; HostingError if that is not possible."""
+    done = subprocess.run(["/bin/rm", "-rf", "--", str(path)], capture_output=True, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        raise HostingError(f"{path}: can't be removed: {done.stderr[-500:].decode(errors='replace').strip()}")
+
+
+@contextlib.contextmanager
+def temporary_folder(prefix: str, parent: Optional[Path] = None) -> Iterator[Path]:
+    """A new folder in `parent` (default: TMPDIR), removed at the end."""
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
+    try:
+        yield folder
+    finally:
+        remove(folder)

@@ -1,0 +1,141 @@
+"""Catkin workspaces that are built from copies of packages, with the environment to run them in."""
+
+import contextlib
+import fcntl
+import os
+import shutil
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
+
+from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.process import child
+
+from . import tree
+
+Environment = Dict[str, str]
+Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status
+
+# Variables that catkin's setup files extend, one workspace on top of another.
+CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
+LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
+NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
+LOG_LINES = 25  # of a failed build's log that are shown
+MOST_SHOWN = 4_000  # bytes of them
+
+
+def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
+    """Run a command without a sandbox."""
+    process = child.start(command, environment=environment, stdout=output, stderr=errors)
+    with child.running(process, None, 0.0):
+        return process.wait()
+
+
+def output_of(run: Run, command: Sequence[str], environment: Environment, limit: int = -1) -> Tuple[int, bytes, str]:
+    """Exit status, output and errors of a command, both cut at `limit` bytes."""
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        status = run(command, environment, output, errors)
+        output.seek(0)
+        errors.seek(0)
+        return status, output.read(limit), errors.read(limit).decode(errors="replace")
+
+
+def base_environment() -> Environment:
+    """This process's environment without any workspace, and with the ROS of ROBOCOP_BASE_SETUP, if that is set."""
+    environment = {name: value for name, value in os.environ.items() if name not in CHAINED}
+    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    setup = environment.get("ROBOCOP_BASE_SETUP")
+    return sourced(Path(setup), environment) if setup else environment
+
+
+def sourced(setup: Path, environment: Environment, run: Run = run_plain) -> Environment:
+    """The environment after bash has sourced a setup file."""
+    status, output, errors = output_of(run, ["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
+    if status != 0:
+        raise HostingError(f"{setup}: {errors.strip()[-MOST_SHOWN:]}")
+    pairs = [entry.partition("=") for entry in os.fsdecode(output).split("\0") if entry]
+    return {name: value for name, _, value in pairs}
+
+
+def copy_sources(
+    sources: Mapping[str, Path],
+    folder: Path,
+    follow_links: bool = True,
+    copy: Callable[[str, str], object] = shutil.copy2,
+) -> None:
+    """Replace the sources of the workspace at `folder` by copies of packages (name -> folder)."""
+    source = folder / "src"
+    tree.remove(source)
+    source.mkdir(parents=True)
+    for name, path in sources.items():
+        for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
+            pass
+        shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
+        for level in tree.walk(source / name):
+            os.chmod(level.path, os.stat(level.path).st_mode | 0o700)  # a copy of a read-only folder can't be removed
+
+
+def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:
+    """Build copies of packages (name -> folder) in a workspace at `folder`; the environment with it on top.
+
+    An earlier build is reused. HostingError shows the end of the log of a build that failed.
+    """
+    copy_sources(sources, folder)
+    return make(folder, " and ".join(sources), underlay)
+
+
+def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) -> Environment:
+    """As build(), but the sources are already in place."""
+    log = folder / "build.log"
+    tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
+    with open(log, "w+b") as output:
+        status = run(
+            ["catkin_make", "-C", str(folder), f"-DPYTHON_EXECUTABLE={sys.executable}", "-DCATKIN_ENABLE_TESTING=OFF"],
+            {**underlay, "ROS_LANG_DISABLE": "gencpp:geneus:genlisp:gennodejs"},
+            output,
+            output,
+        )
+        output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_SHOWN))
+        last = "\n".join(output.read().decode(errors="replace").splitlines()[-LOG_LINES:]) if status != 0 else ""
+    if status != 0:
+        raise HostingError(f"{names} can't be built:\n{last}\nfull log: {log}")
+    return sourced(folder / "devel" / "setup.bash", underlay, run)
+
+
+def build_once(
+    folder: Path, key: str, underlay: Environment, build_workspace: Callable[[], Environment]
+) -> Environment:
+    """The environment of the workspace at `folder`, which is built unless its last build had the same key."""
+    stamp = folder / "built-from"
+    with exclusive(folder):
+        if stamp.is_file() and stamp.read_text() == key:
+            return sourced(folder / "devel" / "setup.bash", underlay)
+        stamp.unlink(missing_ok=True)
+        environment = build_workspace()
+        stamp.write_text(key)
+    return environment
+
+
+def checksums(*folders: Path) -> str:
+    """A text that changes with any file in these folders."""
+    return " ".join(
+        f"{path.relative_to(folder.parent)}:{zlib.crc32(path.read_bytes()):x}"
+        for folder in folders
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    )
+
+
+@contextlib.contextmanager
+def exclusive(folder: Path) -> Iterator[None]:
+    """Wait until no other process uses this folder, and lock it; the lock is a file beside the folder."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(folder.parent / f"{folder.name}.lock", "wb") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print(f"waiting for another process that uses {folder}", file=sys.stderr, flush=True)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield

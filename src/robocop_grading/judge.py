@@ -1,0 +1,256 @@
+"""Applies the checks of a plan to records: for each one an outcome, points and a reason."""
+
+import enum
+import re
+from dataclasses import dataclass, replace
+from typing import Dict, List, Mapping, Optional, Tuple
+
+from .checks import AFTER, CHECKS, NEEDS, RETRIED, Failed, NotReached, Passed, description
+from .plan import CheckPlan, Plan
+from .record import Record
+from .texts import Texts, sentences, text
+
+INCOMPLETE = "an incomplete one"
+FIRST = "action_server"  # the check without which no other one of a server is reached
+NOT_STARTED = "the server did not start"
+UNPUBLISHED = "it subscribes to {}, which nobody publishes"
+TRUTH_UNPUBLISHED = "it subscribes to {}, which nobody publishes; the position comes from /odom, as on a real robot"
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
+
+
+class Outcome(enum.Enum):
+    """The outcome of a check."""
+
+    PASSED = "passed"
+    FAILED = "failed"
+    NOT_REACHED = "not reached"
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """One check's line in the report."""
+
+    name: str
+    part: str
+    sentence: str  # the contract
+    outcome: Outcome
+    points: float
+    points_available: float
+    extra: bool
+    scenario: str = ""  # where it failed, or the first one that was examined
+    failure: Optional[Failed] = None
+    why: str = ""  # reason for NOT_REACHED
+    follows: str = ""  # name of the check whose failure is the reason for this one, failed or not reached
+
+    words: str = ""  # the explanation
+
+    def explanation(self) -> str:
+        """The outcome with its reason."""
+        return self.words
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A failure that does not follow from another one, the points it costs, and how many checks it fails and blocks."""
+
+    check: CheckResult
+    points: float
+    followers: int
+    blocked: int
+
+    @property
+    def sentence(self) -> str:
+        """What the mistake is."""
+        return "" if self.check.failure is None else sentences(self.check.failure.cause)
+
+
+@dataclass(frozen=True)
+class Grade:
+    """The results of all checks of one submission, and the problems that kept parts of it from being run."""
+
+    name: str
+    checks: Tuple[CheckResult, ...]
+    problems: Tuple[str, ...] = ()
+
+    @property
+    def points(self) -> float:
+        """Points scored, extra ones included."""
+        return round(sum(check.points for check in self.checks), 6)
+
+    @property
+    def points_available(self) -> float:
+        """Points available, extra ones excluded."""
+        return round(sum(check.points_available for check in self.checks if not check.extra), 6)
+
+    @property
+    def all_right(self) -> bool:
+        """Whether every check that is not extra passed."""
+        return all(check.outcome is Outcome.PASSED for check in self.checks if not check.extra)
+
+    @property
+    def mistakes(self) -> List[Mistake]:
+        """The mistakes, the most expensive one first."""
+        found = []
+        for check in self.checks:
+            if check.outcome is Outcome.FAILED and not check.follows:
+                lost = [other for other in self.checks if other.follows == check.name]
+                points = check.points_available + sum(other.points_available for other in lost)
+                failed = sum(other.outcome is Outcome.FAILED for other in lost)
+                found.append(Mistake(check, round(points, 6), failed, len(lost) - failed))
+        return sorted(found, key=lambda mistake: -mistake.points)
+
+    @property
+    def failures_first(self) -> List[CheckResult]:
+        """The mistakes, what follows from them, what was not reached, what passed."""
+        order = [mistake.check for mistake in self.mistakes]
+        order += [check for check in self.checks if check.outcome is Outcome.FAILED and check.follows]
+        for outcome in (Outcome.NOT_REACHED, Outcome.PASSED):
+            order += [check for check in self.checks if check.outcome is outcome]
+        return order
+
+    def failed(self) -> List[str]:
+        """Names of the failed checks."""
+        return [check.name for check in self.checks if check.outcome is Outcome.FAILED]
+
+
+Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
+
+
+def printable(text: str) -> str:
+    """One line without characters that control a terminal or are not allowed in XML."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
+def printable_lines(text: str) -> str:
+    """The same for a text that may have several lines."""
+    return "\n".join(printable(line) for line in text.split("\n"))
+
+
+def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
+    """Grade the parts that have records; `problems` (part -> text) explains records that are missing."""
+    checks = [
+        _judge(check, plan, records[check.part], problems.get(check.part, ""))
+        for check in plan.checks
+        if check.part in records
+    ]
+    checks = [
+        result
+        for part, by_name in records.items()
+        for result in _with_reasons([check for check in checks if check.part == part], by_name)
+    ]
+    checks = [_told(check, plan.texts) for check in checks]
+    found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
+    if any(check.outcome is not Outcome.PASSED for check in checks):
+        found += [f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _unpublished(by_name)]
+    return Grade(name, tuple(checks), tuple(found))
+
+
+def _told(check: CheckResult, texts: Texts) -> CheckResult:
+    """The result with its texts in the plan's language."""
+    failure, told = check.failure, texts.told
+    words = text("{}: {}", check.outcome.value, check.why) if check.why else check.outcome.value
+    if failure is not None:
+        words = text(
+            "failed: {} Expected {}, got {}, at {:.1f} s of scenario {}",
+            sentences(failure.cause),
+            failure.expected,
+            failure.seen,
+            failure.time,
+            check.scenario,
+        )
+        failure = replace(failure, cause=told(failure.cause), expected=told(failure.expected), seen=told(failure.seen))
+    return replace(check, sentence=told(check.sentence), failure=failure, why=told(check.why), words=told(words))
+
+
+def _unpublished(records: Mapping[str, Record]) -> List[str]:
+    """What to say of topics that the node waits for in vain; its action server's own have no client by then."""
+    return [
+        text(TRUTH_UNPUBLISHED if "ground_truth" in topic else UNPUBLISHED, topic)
+        for record in records.values()
+        for topic in record.unpublished
+        if topic.rpartition("/")[0] not in record.servers
+    ]
+
+
+def alike(text: str) -> str:
+    """The text without its figures: causes that differ only in them are the same."""
+    return NUMBER.sub("#", text)
+
+
+def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> List[CheckResult]:
+    """One part's results with the failure that each one follows from, or is blocked by, if it has not its own cause."""
+    failed = {result.name: result for result in results if result.failure is not None}
+    reasons = {name: _reason(name, failed, records) for name in failed}
+    first: Dict[str, str] = {}  # by cause
+    for name, reason in reasons.items():
+        if reason == name:
+            first.setdefault(alike(_cause(failed[name])), name)
+    explained = []
+    for result in results:
+        if result.failure is not None:
+            reason = first[alike(_cause(failed[reasons[result.name]]))]
+            if reason != result.name:
+                cause = text('This follows from another failed check: "{}"', description(reason))
+                if result.failure.seen == INCOMPLETE:
+                    cause = result.failure.cause
+                result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)
+        elif result.outcome is Outcome.NOT_REACHED:
+            needs = (FIRST,) if result.why == NOT_STARTED else NEEDS[result.name]
+            blocking = next((name for name in needs if name in failed), "")
+            result = replace(result, follows=blocking and first[alike(_cause(failed[reasons[blocking]]))])
+        explained.append(result)
+    return explained
+
+
+def _cause(result: CheckResult) -> str:
+    return "" if result.failure is None else result.failure.cause
+
+
+def _reason(name: str, failed: Mapping[str, CheckResult], records: Mapping[str, Record]) -> str:
+    """The check with whose failure it begins."""
+    chain = [name]
+    while True:
+        failure, record = failed[chain[-1]].failure, records.get(failed[chain[-1]].scenario)
+        for after in AFTER[chain[-1]]:
+            earlier = failed[after.check].failure if after.check in failed else None
+            if after.check in chain or failure is None or earlier is None or record is None:
+                continue
+            if after.when(record, failure, earlier):
+                chain.append(after.check)
+                break
+        else:
+            return chain[-1]
+
+
+def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
+    """A check fails if it fails in one scenario, and passes if it passes in at least one."""
+    passed, why, examined = False, "", ""
+    for name in check.scenarios:
+        if name not in records:
+            if problem:
+                failure = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
+                return _result(check, Outcome.FAILED, name, failure)
+            why = why or NOT_STARTED
+            continue
+        verdict = CHECKS[check.name](records[name], plan.limits)
+        examined = examined or name
+        if isinstance(verdict, Failed):
+            retried, explained = RETRIED.get(check.name, ("", None))
+            if explained is not None and retried in records:
+                verdict = explained(verdict, records[retried], plan.limits)
+            return _result(check, Outcome.FAILED, name, verdict)
+        passed = passed or isinstance(verdict, Passed)
+        if isinstance(verdict, NotReached):
+            why = why or verdict.why
+    if passed:
+        return _result(check, Outcome.PASSED, examined)
+    return _result(check, Outcome.NOT_REACHED, examined, why=why)
+
+
+def _result(
+    check: CheckPlan, outcome: Outcome, scenario: str, failure: Optional[Failed] = None, why: str = ""
+) -> CheckResult:
+    points, contract = check.points if outcome is Outcome.PASSED else 0.0, description(check.name)
+    return CheckResult(
+        check.name, check.part, contract, outcome, points, check.points, check.extra, scenario, failure, why
+    )

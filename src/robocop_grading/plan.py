@@ -1,0 +1,261 @@
+"""Reads the grading plan (config/grading.yaml): limits, scenarios, and the checks with their points."""
+
+import dataclasses
+import math
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
+
+import yaml
+
+from aro_robocop_goto_as.errors import HostingError, PlanError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
+from aro_robocop_goto_as.param_loading import from_dict
+from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
+
+from .checks import CHECKS, RETRIED, description
+from .checks.limits import Limits
+from .hosting.files import read_bytes
+from .scenario_draw import MIDDLE, Draw, checked_seed
+from .texts import ENGLISH, Texts
+
+HEIGHT = 0.5  # [m] of obstacles, well above the lidar
+SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m
+HEADING = 0.7  # [rad] yaw of each site's odom frame in the world, so that confusing the two frames has an effect
+PARTS = ("server", "bridge")
+FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
+START = "start"  # the recording of the node's start; every server has one
+BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "no_pending")  # fixed, not in the plan's file
+STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One line of a server scenario's script."""
+
+    goal: Tuple[float, ...] = ()  # x, y [m] in the frame `of`
+    of: str = "odom"  # odom, or robot (x ahead, y left)
+    ends: str = ""  # the terminal state to wait for
+    run: float = 0.0  # [s] time to let pass instead of waiting for a terminal state
+    cancel: bool = False
+    place: Tuple[float, ...] = ()  # x, y [m], yaw [rad] in the odom frame of the scenario's start
+
+
+@dataclass(frozen=True)
+class Push:
+    """Once the robot is farther than `after` [m] from odom's origin, somebody moves it, whatever it is commanded."""
+
+    after: float
+    v: float  # [m/s]
+    w: float  # [rad/s]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A script that starts with the robot at odom's origin."""
+
+    name: str
+    about: str
+    steps: Tuple[Step, ...]
+    obstacles: Tuple[Tuple[str, Tuple[float, ...]], ...] = ()
+    odd_scan: bool = False
+    pushes: Tuple[Push, ...] = ()
+
+
+@dataclass(frozen=True)
+class CheckPlan:
+    """The points of a check and the scenarios that it examines."""
+
+    name: str
+    part: str
+    points: float
+    extra: bool
+    scenarios: Tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The contents of the plan's file."""
+
+    path: Path
+    limits: Limits
+    scenarios: Tuple[Scenario, ...]
+    checks: Tuple[CheckPlan, ...]
+    seed: int = MIDDLE  # with which the scenarios' numbers were drawn
+    texts: Texts = ENGLISH
+    is_whole: bool = True  # not only some of the file's checks
+
+    @property
+    def points(self) -> float:
+        """The points of all checks that are not extra."""
+        return round(sum(check.points for check in self.checks if not check.extra), 6)
+
+    def contract(self, check: str) -> str:
+        """What a check tests, in the language of the texts."""
+        return self.texts.told(description(check))
+
+    def examines(self, part: str, scenario: str = "") -> bool:
+        """Whether some check examines this part, or this scenario of it."""
+        return any(
+            check.part == part and scenario in ("", *check.scenarios, *RETRIED.get(check.name, ())[:1])
+            for check in self.checks
+        )
+
+    def restricted(self, names: Sequence[str]) -> "Plan":
+        """The plan with these checks only, if there are any; PlanError for a name that it does not have."""
+        for name in names:
+            if name not in {check.name for check in self.checks}:
+                known = ", ".join(check.name for check in self.checks)
+                raise PlanError(f"--only {name}: {self.path} has no such check; known: {known}")
+        chosen = tuple(check for check in self.checks if check.name in names)
+        return replace(self, checks=chosen, is_whole=False) if names else self
+
+
+def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
+    """Read the plan and draw its scenarios; PlanError or ParameterError (limits) names the file and the mistake in it.
+
+    Seed 0 takes the middle of each range.
+    """
+    checked_seed(seed)
+    try:
+        raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
+    except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
+        raise PlanError(f"{path}: {error}") from error
+    keys = {"limits", "scenarios", "checks"}
+    _expect(raw, keys, str(path), keys)
+    raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
+    for name, kind, words in (
+        ("limits", dict, "a mapping"),
+        ("scenarios", list, "a list"),
+        ("checks", dict, "a mapping"),
+    ):
+        if not isinstance(raw[name], kind):
+            raise PlanError(f"{path}: {name}: expected {words}, got {raw[name]!r}")
+    limits = from_dict(Limits, raw["limits"], f"{path}: limits")
+    for name, value in dataclasses.asdict(limits).items():
+        if not 0.0 <= value < math.inf:
+            raise PlanError(f"{path}: limits: {name}: expected a finite number of 0 or more, got {value!r}")
+    scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in raw["scenarios"])
+    names = [scenario.name for scenario in scenarios]
+    for name in names:
+        if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS):
+            raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
+    known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
+    checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
+    return Plan(path, limits, scenarios, checks, seed, texts)
+
+
+def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[str] = frozenset()) -> None:
+    if not isinstance(raw, Mapping):
+        raise PlanError(f"{where}: expected keys {', '.join(sorted(known))}, got {raw!r}")
+    for wrong, word in ((set(raw) - set(known), "unknown"), (set(needed) - set(raw), "missing")):
+        if wrong:
+            raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
+
+
+def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6, kind: str = "a number") -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
+        raise PlanError(f"{where}: expected {kind} from {least:g} to {most:g}, got {value!r}")
+    return float(value)
+
+
+def _drawn(value: Any, where: str, draw: Draw, least: float = 0.0, most: float = 1e6) -> float:
+    """A number of a scenario, which may be given as a range."""
+    return _number(draw.number(value, where), where, least, most, "a number or a range LOW..HIGH")
+
+
+def _numbers(value: Any, count: int, where: str, draw: Draw) -> Tuple[float, ...]:
+    if not isinstance(value, list) or len(value) != count:
+        raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
+    return tuple(_drawn(number, where, draw, -FARTHEST, FARTHEST) for number in value)
+
+
+def _list(value: Any, where: str, of: str) -> List[Any]:
+    if not isinstance(value, list) or not value:
+        raise PlanError(f"{where}: expected a list of {of}, got {value!r}")
+    return value
+
+
+def _scenario(raw: Any, where: str, seed: int) -> Scenario:
+    _expect(raw, {"name", "about", "script", "obstacles", "odd_scan", "pushes"}, where, {"name", "about", "script"})
+    if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
+        raise PlanError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
+    where, draw = f"{where}: {raw['name']}", Draw(seed, raw["name"])
+    obstacles = []
+    for entry in _list(raw["obstacles"], f"{where}: obstacles", "boxes and cylinders") if "obstacles" in raw else []:
+        _expect(entry, {"box", "cylinder"}, where)
+        for kind, value in entry.items():
+            numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}", draw)
+            if min(numbers[{"box": 3, "cylinder": 2}[kind] :]) <= 0.0:
+                raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
+            obstacles.append((kind, numbers))
+    steps = tuple(_step(step, where, draw) for step in _list(raw["script"], f"{where}: script", "steps"))
+    for number, step in enumerate(steps):
+        if step.cancel and not any(earlier.goal for earlier in steps[:number]):
+            raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
+    pushes = _list(raw["pushes"], f"{where}: pushes", "pushes") if "pushes" in raw else []
+    return Scenario(
+        raw["name"],
+        str(raw["about"]),
+        steps,
+        tuple(obstacles),
+        bool(raw.get("odd_scan", False)),
+        tuple(Push(*_numbers(push, 4, f"{where}: pushes", draw)) for push in pushes),
+    )
+
+
+def _step(raw: Any, where: str, draw: Draw) -> Step:
+    _expect(raw, STEP_KEYS, where)
+    if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
+        raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
+    if raw.get("of", "odom") not in ("odom", "robot"):
+        raise PlanError(f"{where}: of: expected odom or robot, got {raw['of']!r}")
+    if raw.get("ends", "SUCCEEDED") not in ("SUCCEEDED", "ABORTED", "PREEMPTED"):
+        raise PlanError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
+    return Step(
+        goal=_numbers(raw["goal"], 2, f"{where}: goal", draw) if "goal" in raw else (),
+        of=raw.get("of", "odom"),
+        ends=raw.get("ends", ""),
+        run=_drawn(raw.get("for", 0.0), f"{where}: for", draw),
+        cancel=bool(raw.get("cancel", False)),
+        place=_numbers(raw["place"], 3, f"{where}: place", draw) if "place" in raw else (),
+    )
+
+
+def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:
+    if name not in CHECKS:
+        raise PlanError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
+    where = f"{where}: {name}"
+    _expect(raw, {"part", "points", "extra", "scenarios"}, where, {"part", "points", "scenarios"})
+    if raw["part"] not in PARTS:
+        raise PlanError(f"{where}: part: expected server or bridge, got {raw['part']!r}")
+    scenarios = _list(raw["scenarios"], f"{where}: scenarios", "names")
+    for scenario in scenarios:
+        if scenario not in known[raw["part"]]:
+            raise PlanError(
+                f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: {', '.join(known[raw['part']])}"
+            )
+    points = _number(raw["points"], f"{where}: points")
+    return CheckPlan(name, raw["part"], points, bool(raw.get("extra", False)), tuple(scenarios))
+
+
+def site(index: int) -> Pose2D:
+    """world_from_odom at the start of a scenario. Site 0 is the world's origin, where all frames coincide."""
+    return Pose2D() if index == 0 else Pose2D(SPACING * index, -15.0, HEADING)
+
+
+def world_of(plan: Plan) -> World:
+    """The obstacles of all scenarios: those of the first one at site 1, and so on; site 0 is empty."""
+    obstacles = [Obstacle("ground/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0)))]
+    for index, scenario in enumerate(plan.scenarios, 1):
+        for number, (kind, values) in enumerate(scenario.obstacles):
+            yaw = values[2] if kind == "box" else 0.0
+            pose = compose3(lifted(site(index)), lifted(Pose2D(values[0], values[1], yaw), HEIGHT / 2.0))
+            obstacles.append(Obstacle(f"{scenario.name}/{number}/{kind}", pose, _geometry(kind, values)))
+    return World("grading", tuple(obstacles), Pose2D(), (), "config/grading.yaml")
+
+
+def _geometry(kind: str, values: Tuple[float, ...]) -> Geometry:
+    return Box((values[3], values[4], HEIGHT)) if kind == "box" else Cylinder(values[2], HEIGHT)

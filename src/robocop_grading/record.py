@@ -1,0 +1,224 @@
+"""The recording of one scenario, stored as JSON; all times are simulated [s].
+
+x, y and yaw are true poses in odom, whose origin is where the scenario starts; world_* are the same poses in world.
+"""
+
+import dataclasses
+import json
+import math
+import signal
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Dict, List, Tuple, Type, Union
+
+from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
+
+PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
+STATUS_NAMES = tuple(
+    "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
+)  # actionlib_msgs/GoalStatus
+MOST_TEXT = 2_000  # characters that are kept of a text from the submission
+TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Ground truth at a control tick: pose [m, rad], velocity [m/s, rad/s], distance [m] to the nearest thing ahead."""
+
+    time: float
+    x: float
+    y: float
+    yaw: float
+    world_x: float
+    world_y: float
+    world_yaw: float
+    v: float
+    w: float
+    ahead: float
+    touching: bool
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A goal that was sent, in odom [m], with its expected terminal state."""
+
+    id: str
+    x: float
+    y: float
+    time: float
+    ends: str
+
+
+@dataclass(frozen=True)
+class Cancel:
+    """A cancel request; an empty id cancels all goals."""
+
+    time: float
+    id: str
+
+
+@dataclass(frozen=True)
+class Status:
+    """A change of a goal's status."""
+
+    time: float
+    id: str
+    status: int
+
+
+@dataclass(frozen=True)
+class Result:
+    """A result message."""
+
+    time: float
+    id: str
+    status: int
+    success: bool
+    message: str
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """A feedback message [m, rad]."""
+
+    time: float
+    id: str
+    position_error: float
+    angle_error: float
+
+
+@dataclass(frozen=True)
+class Command:
+    """A cmd_vel message: linear.x [m/s], angular.z [rad/s]."""
+
+    time: float
+    v: float
+    w: float
+
+
+@dataclass(frozen=True)
+class Click:
+    """A 2D Nav Goal [m] in its frame, and the same position in odom."""
+
+    time: float
+    frame: str
+    x: float
+    y: float
+    odom_x: float
+    odom_y: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the node's output or log."""
+
+    time: float
+    text: str
+
+
+KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # of a process, and as a shell or bubblewrap passes it on
+OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)
+
+
+@dataclass(frozen=True)
+class Death:
+    """The end of the node's process; with a reason if it was killed for exceeding a resource limit."""
+
+    time: float
+    status: int
+    reason: str = ""
+
+    @property
+    def is_unexplained(self) -> bool:
+        """Whether it was killed, and not by the grader: by itself, or by the kernel as the machine's memory ran out."""
+        return self.status in KILLED and not self.reason
+
+
+@dataclass(frozen=True)
+class Record:
+    """Everything recorded in one scenario; in a bridge's record, goals are those sent by the bridge."""
+
+    name: str
+    part: str  # server or bridge
+    up: bool = True  # the node made all the connections it has to make
+    servers: Tuple[str, ...] = ()  # names of the action servers that were found
+    types: Tuple[str, ...] = ()  # of these servers, in the same order
+    unpublished: Tuple[str, ...] = ()  # topics that the node subscribes to and nobody publishes
+    problem: str = ""  # why the scenario was ended early
+    obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
+    samples: Tuple[Sample, ...] = ()
+    goals: Tuple[Goal, ...] = ()
+    cancels: Tuple[Cancel, ...] = ()
+    statuses: Tuple[Status, ...] = ()
+    results: Tuple[Result, ...] = ()
+    feedback: Tuple[Feedback, ...] = ()
+    commands: Tuple[Command, ...] = ()
+    clicks: Tuple[Click, ...] = ()
+    lines: Tuple[Line, ...] = ()
+    deaths: Tuple[Death, ...] = ()
+    marks: Dict[str, float] = field(default_factory=dict)  # named moments of the scenario [s]
+
+
+_PARTS: Dict[str, Type[Any]] = {
+    "samples": Sample,
+    "goals": Goal,
+    "cancels": Cancel,
+    "statuses": Status,
+    "results": Result,
+    "feedback": Feedback,
+    "commands": Command,
+    "clicks": Click,
+    "lines": Line,
+    "deaths": Death,
+}
+
+
+def status_name(status: int) -> str:
+    """The name of a status, also of an undefined one."""
+    return STATUS_NAMES[status] if 0 <= status < len(STATUS_NAMES) else f"status {status}"
+
+
+def write(record: Record, path: Path) -> None:
+    """Write a record as JSON, with Python's extensions Infinity and NaN."""
+    new = path.with_suffix(".new")  # renamed, so that a reader never sees half a file
+    new.write_text(json.dumps(dataclasses.asdict(record)))
+    new.replace(path)
+
+
+def read(path: Path) -> Record:
+    """Read a record that `write` wrote."""
+    raw = json.loads(path.read_text())
+    for name, kind in _PARTS.items():
+        raw[name] = tuple(kind(**entry) for entry in raw[name])
+    for name in ("servers", "types", "unpublished"):
+        raw[name] = tuple(raw[name])
+    raw["obstacles"] = tuple(tuple(outline) for outline in raw["obstacles"])
+    return Record(**raw)
+
+
+def results_of(record: Record, goal: Goal) -> List[Result]:
+    """The results of a goal in order of arrival; a correct server sends one."""
+    return [result for result in record.results if result.id == goal.id]
+
+
+def active_until(record: Record, goal: Goal) -> float:
+    """When a goal got its first terminal state or result; infinity if it got none."""
+    ends = [result.time for result in record.results if result.id == goal.id]
+    ends += [change.time for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
+    return min(ends, default=math.inf)
+
+
+def samples_between(record: Record, start: float, end: float) -> List[Sample]:
+    """Samples within [start, end]; both ends are included in spite of rounding."""
+    return [sample for sample in record.samples if start - 1e-6 <= sample.time <= end + 1e-6]
+
+
+def wrapped(angle: float) -> float:
+    """An angle [rad] wrapped to +-pi; NaN and infinity are returned unchanged."""
+    return wrap_angle(angle) if math.isfinite(angle) else angle
+
+
+def errors_at(sample: Union[Sample, Pose2D], goal: Goal) -> Tuple[float, float]:
+    """From a pose in odom, the true position_error [m] and angle_error [rad], as the handout defines them."""
+    dx, dy = goal.x - sample.x, goal.y - sample.y
+    return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - sample.yaw)

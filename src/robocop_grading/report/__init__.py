@@ -1,0 +1,1 @@
+"""A grade -> the files of its report."""

@@ -1,0 +1,128 @@
+"""Writes a grade as report.html, report.json and junit.xml, and in the formats of GitHub Classroom and Gradescope."""
+
+import dataclasses
+import json
+import shlex
+from pathlib import Path
+from typing import Any, Dict, Iterator, Sequence
+from xml.etree import ElementTree
+
+from ..checks import PLOTS as PLOT_OF
+from ..judge import CheckResult, Grade, Outcome, Records, printable_lines
+from ..plan import BRIDGE_SCENARIOS, START, Plan
+from ..record import Record
+from .github import as_classroom, as_summary
+from .gradescope import as_gradescope
+from .html import render
+from .plots import PLOTS
+
+SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
+MOST_LINES = 60  # of a node's output in the report
+
+
+def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
+    """Write all files to an existing folder, which already has the bags; `kept`: they will not be moved elsewhere."""
+    (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
+    ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
+    (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
+    (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
+    (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
+    scenarios = list(_scenarios(grade, plan, records, folder, kept))
+    page = render(
+        "report.html",
+        grade=grade,
+        seed=plan.seed,
+        kept=kept,
+        reached=[check for check in grade.failures_first if check.outcome is not Outcome.NOT_REACHED],
+        not_reached=[check for check in grade.checks if check.outcome is Outcome.NOT_REACHED],
+        scenarios=sorted(scenarios, key=lambda scenario: not scenario["failed"]),
+        anchors={name: panel["anchor"] for it in scenarios for panel in it["panels"] for name in panel["names"]},
+    )
+    (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
+
+
+def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
+    """The grade as plain values."""
+    return {
+        "name": grade.name,
+        "seed": plan.seed,
+        "points": grade.points,
+        "of": grade.points_available,
+        "problems": list(grade.problems),
+        "checks": [_check_as_json(check) for check in grade.checks],
+    }
+
+
+def _check_as_json(check: CheckResult) -> Dict[str, object]:
+    values = {"of" if key == "points_available" else key: value for key, value in dataclasses.asdict(check).items()}
+    return {**values, "outcome": check.outcome.value}
+
+
+def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
+    skipped = sum(check.outcome is Outcome.NOT_REACHED for check in grade.checks)
+    counts = {"tests": len(grade.checks), "failures": len(grade.failed()), "skipped": skipped, "errors": 0}
+    attributes = {key: str(count) for key, count in counts.items()}
+    suite = ElementTree.Element("testsuite", {"name": printable_lines(grade.name), **attributes})
+    properties = ElementTree.SubElement(suite, "properties")
+    ElementTree.SubElement(properties, "property", {"name": "seed", "value": str(plan.seed)})
+    for check in grade.checks:
+        case = ElementTree.SubElement(suite, "testcase", {"classname": f"grade.{check.part}", "name": check.name})
+        if check.failure is not None:
+            message = {"message": printable_lines(check.explanation())}
+            ElementTree.SubElement(case, "failure", message).text = check.sentence
+        elif check.outcome is Outcome.NOT_REACHED:
+            ElementTree.SubElement(case, "skipped", {"message": printable_lines(check.why)})
+    return suite
+
+
+def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool) -> Iterator[Dict[str, Any]]:
+    """The values of each scenario's section in report.html."""
+    about = {scenario.name: scenario.about for scenario in plan.scenarios}
+    order = [START, *about, *BRIDGE_SCENARIOS]
+    for part, by_name in records.items():
+        for record in sorted(by_name.values(), key=lambda record: order.index(record.name)):
+            checks = [
+                check
+                for check in grade.checks
+                if (check.part, check.scenario) == (part, record.name) and check.outcome is not Outcome.NOT_REACHED
+            ]
+            if part == "server" and not record.goals and not checks:
+                continue
+            shown = {PLOT_OF[check.name] for check in checks}
+            rest = [_plot(plot, record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
+            bag = folder / f"{part}-{record.name}.bag"
+            yield {
+                "part": part,
+                "replay": shlex.quote(str(bag.resolve()) if kept else bag.name) if bag.is_file() else "",
+                "record": record,
+                "about": about.get(record.name, ""),
+                "panels": list(_panels(record, checks)),
+                "plots": list(filter(None, rest)),
+                "lines": record.lines[:MOST_LINES],
+                "failed": any(check.outcome is Outcome.FAILED for check in checks),
+            }
+
+
+def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
+    """A plot of a scenario with these moments marked [s]; nothing for one that has nothing to show, as the start."""
+    return PLOTS[name](record, moments) if record.goals or record.clicks or record.commands else ""
+
+
+def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
+    """Each check that failed beside the plot that illustrates it; checks that passed share one panel a plot."""
+    shown = set()
+    for check in checks:
+        plot, passed = PLOT_OF[check.name], check.outcome is Outcome.PASSED
+        if passed and plot in shown:
+            continue
+        first = plot not in shown
+        shown.add(plot)
+        others = [other for other in checks if other.outcome is Outcome.PASSED and PLOT_OF[other.name] == plot]
+        moments = [] if check.failure is None else [check.failure.time]
+        yield {
+            "check": check,
+            "svg": _plot(plot, record, moments),
+            "also_passed": [other.sentence for other in others] if passed else [],
+            "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
+            "anchor": f"{check.part}-{check.name}",
+        }

@@ -1,0 +1,171 @@
+"""One part of a submission -> records: runs a session as a process, with a time limit that is no judgement."""
+
+import math
+import os
+import queue
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from subprocess import PIPE
+from typing import Callable, Dict, List, Optional
+
+from aro_robocop_goto_as.errors import NoTimeError, UngradableError
+from aro_robocop_goto_as.process import child
+from aro_robocop_goto_as.process.ports import free_port
+
+from . import record as rec
+from .job import Job
+from .plan import Plan
+from .sandbox import memory_group
+from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
+from .sandbox.build import public
+from .sandbox.guard import Guard
+from .submission import AGENT, Script, Submission
+from .viewer import Viewer
+
+SESSION = "robocop_grading.session.main"
+Progress = Callable[[str, str], None]  # part, scenario
+
+# [s, wall] for all scenarios of a part. A quiet machine needs ten; a right server beside sixty busy processes, six
+# minutes. A node that uses too much processor time is ended by its own limit.
+BUDGET = 3600.0
+END_TIMEOUT = 600.0  # [s, wall] for a session that has said all; it needs milliseconds
+LOG_LINES = 15
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The outcome of one part: records by scenario, and why some are missing."""
+
+    records: Dict[str, rec.Record]
+    problem: str = ""
+    killed: str = ""  # what was killed, and not by the grader, if anything was
+    excused: bool = False  # it may not have killed itself: the machine's memory ran out, or it was the grader's process
+
+
+@dataclass(frozen=True)
+class Runner:
+    """How submissions are run."""
+
+    plan: Plan
+    state: Path
+    sandbox: Optional[Sandbox] = None
+    viewer: Optional[Viewer] = None  # shows the run in real time
+    on_progress: Progress = lambda _part, _scenario: None
+    budget: float = BUDGET  # [s, wall]
+
+    def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
+        """Run the scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
+
+        NoTimeError if the machine has no time for it, UngradableError where it or the ROS master can't be started.
+        """
+        home = out / "home"
+        home.mkdir(parents=True, exist_ok=True)
+        environment = self._environment(out)
+        command = script.command()
+        node_environment = {
+            **public(submission.environment),
+            "ROS_HOME": str(home),
+            # An existing directory: rospy would chown a new one, which the sandboxed user may not, and log nothing.
+            "ROS_LOG_DIR": str(home),
+            "ROS_HOSTNAME": "localhost",
+            "HOME": str(home),
+            "TMPDIR": str(home),
+            "PYTHONUNBUFFERED": "1",
+            "ROS_MASTER_URI": environment["ROS_MASTER_URI"],
+        }
+        if self.sandbox is None:
+            command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
+        else:
+            command = self.sandbox.node_command(command, node_environment, [*submission.reads, AGENT], home)
+            node_environment = OWN_ENVIRONMENT
+        job = Job(
+            script.part,
+            tuple(command),
+            node_environment,
+            home,
+            out,
+            self.plan,
+            dict(submission.parameters),
+            self.viewer,
+        )
+        session = [sys.executable, "-m", SESSION, str(job.write())]
+        if self.sandbox is not None:
+            session = [*memory_group.prefix(), *self.sandbox.probe_command(session)]
+        return self.supervise(session, environment, out, script.part)
+
+    def _environment(self, out: Path) -> Dict[str, str]:
+        """The session's environment: this workspace, with Gazebo's message types after it."""
+        types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"
+        environment = {
+            **os.environ,
+            "ROS_MASTER_URI": f"http://localhost:{free_port()}",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_HOME": str(out / "ros"),
+            "ROS_LOG_DIR": str(out / "ros"),
+            "TMPDIR": str(out),
+        }
+        environment["PYTHONPATH"] = f"{environment.get('PYTHONPATH', '')}:{types}"
+        environment.pop("ROS_IP", None)
+        return environment
+
+    def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
+        """Start a session, follow what it reports on its standard output, and end it after the budget."""
+        lines: queue.Queue[Optional[str]] = queue.Queue()
+        log = out / f"{part}-session.log"
+        inherited = self.viewer.descriptors if self.viewer is not None else ()
+        process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
+        guard = Guard(process.pid, memory=memory_group.LIMIT, processes=math.inf)  # the session limits the node's
+        threading.Thread(target=_read, args=(process, lines), daemon=True).start()
+        kills = memory_group.kernel_kills()
+        deadline, scenario, grace = time.monotonic() + self.budget, "start", 0.0
+        try:
+            while True:
+                try:
+                    line = lines.get(timeout=max(0.0, deadline - time.monotonic()))
+                except queue.Empty:
+                    raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario}") from None
+                if line is None:
+                    grace = END_TIMEOUT
+                    break
+                word, _, rest = line.partition(" ")
+                if word == "begin":
+                    scenario = rest
+                    self.on_progress(part, rest)
+                elif word == "busy":
+                    raise NoTimeError(f"{part}: {rest}")
+                elif word == "error":
+                    raise UngradableError(rest)
+        finally:
+            status = child.end(process, None, grace)
+            guard.stop()
+        records, problem, killed = records_in(out, part), guard.reason, ""
+        for record in records.values():
+            if any(death.is_unexplained for death in record.deaths):
+                killed = f"the {part} was killed in scenario {record.name}"
+        excused = memory_group.kernel_kills() > kills
+        if not problem and status != 0:
+            problem = f"the run was cut short during {scenario} (status {status}): {_last_lines(log)}"
+            if status in rec.KILLED:
+                killed, excused = f"the grader's own process was killed in scenario {scenario}", True
+        return Recorded(records, problem, killed, excused)
+
+
+def _read(process: "child.Child[bytes]", lines: "queue.Queue[Optional[str]]") -> None:
+    assert process.stdout is not None
+    for line in process.stdout:
+        lines.put(line.decode(errors="replace").strip())
+    lines.put(None)
+
+
+def _last_lines(log: Path) -> str:
+    lines = log.read_text(errors="replace").splitlines()
+    return " | ".join(line.strip() for line in lines[-LOG_LINES:])[-600:]
+
+
+def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
+    """The records of a part so far, by scenario."""
+    records = [rec.read(path) for path in sorted(out.glob(f"{part}-*.json"))]
+    return {record.name: record for record in records}

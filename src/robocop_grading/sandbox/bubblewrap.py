@@ -1,0 +1,208 @@
+"""bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
+
+The probe runs in its own network namespace, loopback only, with a ROS master in it. The submission runs in that same
+network, but with its own processes and files, as a user who owns nothing: it sees neither the grader's processes,
+records and points nor other submissions. A build runs the submission's code, so it is done in the sandbox too. The
+limits set here are the kernel's, per process or user; guard.py limits the memory of all processes together, and
+runner.py the wall time.
+"""
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
+
+from aro_robocop_goto_as.errors import GradingError, NoTimeError
+
+from .kernel_memory import OUTER_NETWORK, network_of
+
+ADDRESS_SPACE = 4 * 1024**3  # bytes of each process; numpy alone reserves more than one GB
+FILES = 256  # open ones of each process: what waits in its pipes and sockets is nobody's memory
+PROCESSES = 200  # including threads; a rospy node has some 30
+FILE_SIZE = 64 * 1024**2  # bytes of a file
+SPACE = 64 * 1024**2  # bytes of each writable place, all in memory
+CPU_TIME = 200  # [s] of each process
+CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
+WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
+FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
+USERS = 100_000
+SYSTEM = (
+    "/usr",
+    "/bin",
+    "/sbin",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/opt",
+    "/etc/alternatives",
+    "/etc/catkin",
+    "/etc/group",
+    "/etc/hosts",
+    "/etc/ld.so.cache",
+    "/etc/localtime",
+    "/etc/nsswitch.conf",
+    "/etc/passwd",
+    "/etc/ros",
+)
+OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
+# Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit.
+SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")
+TRIAL_TIME = 600.0  # [s, wall] also on a busy machine
+# Files that docker and podman make in every container.
+CONTAINER_MARKS = ("/.dockerenv", "/run/.containerenv")
+CONTAINER_OPTIONS = " ".join(f"--security-opt {it}=unconfined" for it in ("seccomp", "apparmor", "systempaths"))
+
+
+@dataclass(frozen=True)
+class Sandbox:
+    """Builds the command lines that start the probe, a node or a build in the sandbox."""
+
+    reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
+    cpu_time: int = CPU_TIME
+
+    def probe_command(self, command: Sequence[str]) -> List[str]:
+        """Command line that starts the probe in its own network and PID namespace; all else is shared."""
+        namespaces = ["--die-with-parent", "--unshare-net", "--unshare-pid"]
+        network = ["--setenv", OUTER_NETWORK, str(network_of())]
+        return ["bwrap", *namespaces, *network, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
+
+    def node_command(
+        self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path
+    ) -> List[str]:
+        """Command line of a node: reads the system and its own files, writes to a small home in memory."""
+        return [
+            *self._isolation([*reads, home]),
+            *_mounts("--ro-bind", [*self.reads, *reads]),
+            *_writable(str(home)),
+            *SEALED,
+            "--chdir",
+            str(home),
+            "--",
+            *_restrictions(environment, self.cpu_time),
+            *command,
+        ]
+
+    def build_command(
+        self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
+    ) -> List[str]:
+        """Command line of a build: as node_command(), without network; `folder` is writable, its owner is user()."""
+        return [
+            *self._isolation([*reads, folder]),
+            "--unshare-net",
+            *_mounts("--ro-bind", [*self.reads, *reads]),
+            *_mounts("--bind", [folder]),
+            *SEALED,
+            "--chdir",
+            str(folder),
+            "--",
+            *_restrictions(environment, CPU_TIME),
+            *command,
+        ]
+
+    def _isolation(self, visible: Sequence[Path]) -> List[str]:
+        wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
+        wrap += ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
+        if os.geteuid() == 0:
+            # For setpriv, which gives all of them up: SETPCAP is needed to empty the bounding set (util-linux 2.41).
+            wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
+        # Shared memory made from /dev/zero belongs to nobody, see syscall_filter.py; /dev/full can be read likewise.
+        wrap += ["--proc", "/proc", "--dev", "/dev", "--dev-bind", "/dev/full", "/dev/zero"]
+        for place in ("/tmp", "/dev/shm"):
+            wrap += _writable(place)
+        for parent in _parents([*map(Path, SYSTEM), *self.reads, *visible]):
+            wrap += ["--perms", "0755", "--dir", str(parent)]
+        return [*wrap, *_mounts("--ro-bind-try", map(Path, SYSTEM))]
+
+
+def expect_private(path: Path) -> None:
+    """GradingError for a submission in a place that every sandbox shows to every submission."""
+    for place in map(Path, SYSTEM):
+        if path in place.parents or {place, place.resolve()}.intersection((path, *path.parents)):
+            raise GradingError(
+                f"{path}: expected a submission outside {place}, which all submissions can read: copy it"
+            )
+
+
+def user() -> int:
+    """The uid in the sandbox; when root starts it, one that only this process uses.
+
+    The kernel counts processes per user, and concurrent runs must not use up each other's limit.
+    """
+    return FIRST_USER + os.getpid() % USERS if os.geteuid() == 0 else os.geteuid()
+
+
+def change_owner(folder: Path, owner: int) -> None:
+    """Give a folder and its content to a user, without following links. Only root can do it, and only root has to."""
+    if os.geteuid() == 0:
+        # A build may have made more nested folders than Python can walk through.
+        subprocess.run(["/bin/chown", "-hRP", "--", f"{owner}:{owner}", str(folder)], check=True, capture_output=True)
+
+
+def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
+    """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
+    command = []
+    if os.geteuid() == 0:
+        command = [
+            "setpriv",
+            f"--reuid={user()}",
+            f"--regid={user()}",
+            "--clear-groups",
+            "--no-new-privs",
+            "--bounding-set=-all",
+            "--inh-caps=-all",
+            "--",
+        ]
+    return [
+        *command,
+        "prlimit",
+        f"--as={ADDRESS_SPACE}",
+        f"--nproc={PROCESSES}",
+        f"--nofile={FILES}",
+        f"--fsize={FILE_SIZE}",
+        f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}",
+        "--core=0",
+        "--",
+        "env",
+        "-i",
+        *(f"{name}={value}" for name, value in environment.items()),
+    ]
+
+
+def _parents(paths: Sequence[Path]) -> List[Path]:
+    """All parent directories, outermost first; bwrap would create them readable by root only."""
+    parents = {parent for path in paths for parent in path.parents if parent != Path("/")}
+    return sorted(parents - {Path("/tmp"), *map(Path, SYSTEM)})
+
+
+def _writable(place: str) -> List[str]:
+    return ["--perms", "0777", "--size", str(SPACE), "--tmpfs", place]
+
+
+def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
+    return [word for path in paths for word in (option, str(path), str(path))]
+
+
+def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = CPU_TIME) -> Optional[Sandbox]:
+    """The sandbox, or None if `unsafe`. GradingError where bubblewrap can't run, NoTimeError if that takes too long."""
+    if unsafe:
+        return None
+    advice = "--unsafe runs the submission without it, with all your rights"
+    if shutil.which("bwrap") is None:
+        raise GradingError(f"bubblewrap is not installed; {advice}")
+    if importlib.util.find_spec("seccomp") is None:
+        raise GradingError(f"python3-seccomp is not installed; {advice}")
+    empty = Sandbox(())
+    trial = empty.probe_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
+    try:
+        done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
+    except subprocess.TimeoutExpired as error:
+        raise NoTimeError(f"bubblewrap did not run within {TRIAL_TIME:g} s") from error
+    if done.returncode != 0:
+        if any(map(os.path.exists, CONTAINER_MARKS)):
+            advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
+        raise GradingError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
+    return Sandbox(tuple(reads), cpu_time)

@@ -1,0 +1,98 @@
+"""Builds a submission's package in the sandbox: a build runs code of its author."""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+from typing import IO, Mapping, Optional, Sequence
+
+from aro_robocop_goto_as.errors import GradingError, NoTimeError
+from aro_robocop_goto_as.process import child
+
+from ..hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
+from . import memory_group
+from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
+from .guard import Guard
+from .stillness import LOOK, Stillness
+
+MAX_SOURCE = 64 * 1024**2  # bytes of a package
+BUILD_TIME = 180.0  # [s] of processor time
+MOST_STILL = 180  # looks at a command that waits for something that does not come
+NO_TIME = 900.0  # [s, wall]
+PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables passed on; the others may be private
+PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
+
+
+def public(environment: Mapping[str, str]) -> Environment:
+    """The variables of an environment that a submission may see."""
+    return {
+        name: value
+        for name, value in environment.items()
+        if (name in PUBLIC or name.startswith(PUBLIC_PREFIXES)) and name != "ROS_MASTER_URI"
+    }
+
+
+def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], most: float = BUILD_TIME) -> Run:
+    """Runs commands that may write to `folder` only.
+
+    GradingError when one exceeds its limit of processor time (`most` [s]), memory or disk, NoTimeError if the machine
+    has no time for it.
+    """
+    if sandbox is None:
+        return run_plain
+    wrapped = sandbox.build_command
+
+    def run(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
+        visible = {**public(environment), "HOME": "/tmp", "ROS_HOME": "/tmp", "ROS_LOG_DIR": "/tmp"}
+        change_owner(folder, user())
+        inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
+        process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
+        guard = Guard(process.pid, folder, processor_time=most)
+        try:
+            status = _wait(process, command[0])
+        finally:
+            child.end(process, None, 0.0)
+            guard.stop()
+            change_owner(folder, 0)
+        if guard.reason:
+            raise GradingError(f"{command[0]} was ended: {guard.reason}")
+        return status
+
+    return run
+
+
+def _wait(process: "child.Child[bytes]", name: str) -> int:
+    deadline, stillness = time.monotonic() + NO_TIME, Stillness(process.pid)
+    while True:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return process.wait(LOOK)
+        if stillness.look() >= MOST_STILL:
+            raise GradingError(f"{name} waits for something that does not come")
+        if time.monotonic() > deadline:
+            raise NoTimeError(f"{name} was not done within {NO_TIME:g} s")
+
+
+def build(
+    name: str, source: Path, folder: Path, underlay: Environment, reads: Sequence[Path], sandbox: Optional[Sandbox]
+) -> Environment:
+    """Build a copy of the package at `source` in a workspace at `folder`; the environment with it on top.
+
+    In the sandbox links are copied as links: they must not lead to files that the author may not read. GradingError
+    says why the build failed.
+    """
+    copied = 0
+
+    def copy(path: str, target: str) -> None:
+        nonlocal copied
+        copied += os.stat(path).st_size
+        if copied > MAX_SOURCE:
+            raise GradingError(f"{source}: expected a package of less than {MAX_SOURCE // 1024**2} MB")
+        shutil.copy2(path, target)
+
+    try:
+        copy_sources({name: source}, folder, sandbox is None, copy)
+    except (OSError, shutil.Error) as error:
+        raise GradingError(f"{source}: can't be copied: {error}") from error
+    return make(folder, name, underlay, runner_in(sandbox, folder, reads))

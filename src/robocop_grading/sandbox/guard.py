@@ -1,0 +1,133 @@
+"""Kill a process tree that exceeds its limit of memory, processor time, processes or disk, and record why.
+
+The kernel's limits are per process. A limit for many of them needs a control group (memory_group.py), which not every
+system lets its users make.
+"""
+
+import contextlib
+import math
+import os
+import threading
+from pathlib import Path
+from typing import List, Optional, Sequence
+
+import psutil
+
+from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.process.child import kill_tree
+
+from ..hosting import tree
+from . import kernel_memory
+
+MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
+MAX_DISK = 512 * 1024**2  # bytes that a build may write; the lab's takes 2 MB
+MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
+MIN_FILE = 4096  # bytes that every file or folder counts at least
+PERIOD = 0.1  # [s, wall]
+
+
+class Guard:
+    """Watches a process and its descendants until `stop`; `reason` says why they were killed, if they were."""
+
+    def __init__(
+        self,
+        pid: int,
+        folder: Optional[Path] = None,
+        memory: int = MAX_MEMORY,
+        disk: int = MAX_DISK,
+        processor_time: float = math.inf,
+        processes: float = MAX_PROCESSES,
+    ) -> None:
+        """`memory` and `disk` (of the folder) [bytes], `processor_time` [s], `processes`: limits of all processes."""
+        self.reason = ""
+        self._processor_time, self._most = processor_time, processes
+        self._pid, self._folder, self._memory, self._disk = pid, folder, memory, disk
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop watching; from now on `reason` does not change."""
+        self._stopped.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        while not self._stopped.wait(PERIOD):
+            processes = _processes(self._pid)
+            if _exceeds(processes, self._memory):
+                self.reason = exceeded_memory(self._memory)
+            elif len(processes) > self._most:
+                self.reason = f"it started more than {self._most} processes"
+            elif sum(map(_processor_time, processes)) > self._processor_time:
+                self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
+            elif self._folder is not None:
+                self.reason = _too_large(self._folder, self._disk)
+            if self.reason:
+                kill_tree(self._pid)
+                return
+
+
+def exceeded_memory(limit: int) -> str:
+    """The reason of a process tree that was killed because it took more than `limit` bytes of memory."""
+    return f"its processes together took more than {limit / 1024**2:g} MB of memory"
+
+
+def _processes(pid: int) -> List["psutil.Process"]:
+    """A process and its descendants; none if it has ended."""
+    try:
+        top = psutil.Process(pid)
+        return [top, *top.children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
+
+
+def _processor_time(process: "psutil.Process") -> float:
+    """Processor time [s] of a process and of its children that have ended."""
+    try:
+        return float(sum(process.cpu_times()[:4]))
+    except (psutil.NoSuchProcess, psutil.AccessDenied):
+        return 0.0
+
+
+def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:
+    """Whether processes use more than `limit` bytes of memory together.
+
+    Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
+    once, are only read when the resident sizes exceed the limit.
+    """
+    unmapped = kernel_memory.total(processes)
+    if sum(_memory(process, proportional=False) for process in processes) + unmapped <= limit:
+        return False
+    return sum(_memory(process, proportional=True) for process in processes) + unmapped > limit
+
+
+def _memory(process: "psutil.Process", proportional: bool) -> int:
+    try:
+        with contextlib.suppress(psutil.AccessDenied):
+            if proportional:
+                return int(process.memory_full_info().pss)
+        return int(process.memory_info().rss)
+    except psutil.NoSuchProcess:
+        return 0
+
+
+def _too_large(folder: Path, limit: int) -> str:
+    """Why a folder is too large, or nothing."""
+    try:
+        return f"it wrote more than {limit / 1024**2:g} MB" if disk_usage(folder) > limit else ""
+    except HostingError:
+        return f"it made more than {tree.DEEPEST} nested folders"
+
+
+def disk_usage(folder: Path) -> int:
+    """Bytes of disk that a folder's content occupies, at least MIN_FILE for each entry; links are not followed.
+
+    HostingError if it is nested too deep to be looked at.
+    """
+    total = 0
+    for level in tree.walk(folder):
+        total += MIN_FILE * len(level.folders)
+        for name in level.files:
+            with contextlib.suppress(OSError):  # it has been removed
+                total += max(MIN_FILE, os.lstat(level.path / name).st_blocks * 512)
+    return total

@@ -1,0 +1,58 @@
+"""A control group that limits a command's memory, where systemd lets the user make one.
+
+The guard looks ten times a second, and at what processes call their own. The kernel checks each page, also those of
+pipes, sockets and files in memory, but most containers and systems without systemd delegate no group.
+"""
+
+import functools
+import os
+import subprocess
+from pathlib import Path
+from subprocess import DEVNULL
+from typing import Tuple
+
+from .guard import MAX_MEMORY
+
+LIMIT = MAX_MEMORY + 1024**3  # bytes: the submission, and the probe, which takes some 150 MB
+TRIAL_TIME = 5.0  # [s, wall]
+GROUPS, OWN = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
+COUNTERS = Path("/proc/vmstat")
+
+
+@functools.lru_cache(maxsize=None)
+def prefix() -> Tuple[str, ...]:
+    """What to put before a command line so that it runs in a group of its own; nothing where there can't be one.
+
+    Delegate=yes: after the kernel has killed a process, systemd leaves the others alone.
+    """
+    command = ["systemd-run", "--scope", "--quiet", "--collect", "--description=robocop"]
+    command += [f"--property=MemoryMax={LIMIT}", "--property=MemorySwapMax=0", "--property=Delegate=yes", "--"]
+    if os.getuid():
+        command = ["env", f"XDG_RUNTIME_DIR=/run/user/{os.getuid()}", command[0], "--user", *command[1:]]
+    read = ("/bin/sh", "-c", f"cat {GROUPS}$(sed -n s/^0:://p {OWN})/memory.max")
+    try:
+        trial = subprocess.run([*command, *read], stdin=DEVNULL, capture_output=True, text=True, timeout=TRIAL_TIME)
+    except (OSError, subprocess.TimeoutExpired):
+        return ()
+    return tuple(command) if trial.stdout.strip() == str(LIMIT) else ()
+
+
+def has_killed() -> bool:
+    """Whether the kernel has killed a process of the caller's group because the group exceeded LIMIT."""
+    try:
+        (name,) = [line[3:] for line in OWN.read_text().splitlines() if line.startswith("0::")]
+        group = Path(f"{GROUPS}{name}")
+        if (group / "memory.max").read_text().strip() != str(LIMIT):
+            return False  # the group of a container or a session: what it lacks is not the submission's fault
+        events = dict(line.split() for line in (group / "memory.events").read_text().splitlines())
+        return int(events["oom"]) > 0 and int(events["oom_kill"]) > 0  # the latter also counts the machine's own lack
+    except (OSError, ValueError, KeyError):
+        return False
+
+
+def kernel_kills() -> int:
+    """How many processes the kernel has killed since its start because memory ran out; 0 if it does not tell."""
+    try:
+        return int(dict(line.split() for line in COUNTERS.read_text().splitlines())["oom_kill"])
+    except (OSError, ValueError, KeyError):
+        return 0

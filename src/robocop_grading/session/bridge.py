@@ -1,0 +1,274 @@
+"""The bridge's scenarios: clicks as RViz publishes them, and an action server controlled by the grader."""
+
+import math
+from functools import partial
+from typing import Any, Callable, Dict
+
+import actionlib
+import roslib.message
+import rospy
+from actionlib_msgs.msg import GoalID
+from aro_robocop_goto_as.msg import (
+    GoToPositionAction,
+    GoToPositionActionGoal,
+    GoToPositionFeedback,
+    GoToPositionResult,
+)
+from geometry_msgs.msg import PoseStamped
+
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.ros import graph
+
+from .. import record as rec
+from ..handout import ACTION
+from ..plan import Plan
+from ..record import Record
+from .display import is_shown
+from .node import Node
+from .ros_internals import goal_senders, has_client
+from .run import Run
+from .stage import Stage
+
+START_TIMEOUT = 20.0  # [s] for the node's first connection
+CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
+REACTION_TIME = 3.0  # [s] for a click to become a goal
+CLICKS = "/move_base_simple/goal"
+# Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
+# which any action server sends by itself, and not floats, which may be anything.
+STATUS_TYPES = {
+    "actionlib_msgs/GoalStatus",
+    "diagnostic_msgs/DiagnosticArray",
+    "diagnostic_msgs/DiagnosticStatus",
+    *(f"std_msgs/{name}" for name in ("String", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32")),
+}
+FRAMES = ("base_footprint", "map")
+
+
+class BridgeRun:
+    """One submission's bridge.
+
+    Its goals stay PENDING for a fixed simulated time: how long they do with a real server depends on that server, and
+    a bridge that treats PENDING as the end would pass or fail by chance.
+    """
+
+    def __init__(self, plan: Plan, launch: Callable[[Stage], Node], stage: Stage) -> None:
+        self.plan = plan
+        self.launch = launch
+        self.stage = stage
+        # A timer with a longer period can't report often enough, so one that can always meets a PENDING goal.
+        self.pending_time = plan.limits.status_span / max(1.0, plan.limits.status_reports)
+        self.run = Run(stage, "bridge")
+        self.run.handlers.update({"sent": self._on_sent, "goal": self._on_goal, "cancel": self._on_cancel})
+        self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
+        self.handles: Dict[str, Any] = {}  # of goals that have not ended, by id
+        self.accepted_from: Dict[str, float] = {}  # likewise of PENDING goals: when they are accepted [s]
+        self.server: Any = None
+        self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
+
+    # -- the server that it talks to --
+
+    def _serve(self) -> None:
+        # actionlib's server does not report a goal whose cancel arrived first, so goals are counted on the topic.
+        self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, "sent")
+        self.server = actionlib.ActionServer(
+            ACTION,
+            GoToPositionAction,
+            lambda handle: self.stage.post("goal", handle),
+            lambda _handle: None,
+            auto_start=False,
+        )
+        self.server.start()
+
+    def _on_sent(self, message: GoToPositionActionGoal) -> None:
+        position, name = message.goal.position, message.goal_id.id
+        self.run.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
+        self._note_if_cancelled(name)
+
+    def _note_if_cancelled(self, name: str) -> None:
+        """A goal's cancel may have arrived first: they use two connections."""
+        if any(cancel.id == name for cancel in self.run.parts["cancels"]):
+            self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+
+    def _on_goal(self, handle: Any) -> None:
+        name = handle.get_goal_id().id
+        self.handles[name] = handle
+        self.run.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
+        self.accepted_from[name] = self.stage.now + self.pending_time - 1e-6
+        self._note_if_cancelled(name)
+        self._accept_goals()
+
+    def _accept_goals(self) -> None:
+        """Accept the goals that have been PENDING for their time."""
+        for name, handle in self.handles.items():
+            if self.accepted_from.get(name, math.inf) <= self.stage.now:
+                del self.accepted_from[name]
+                handle.set_accepted()
+                self.run.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
+                handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
+
+    def _on_cancel(self, message: GoalID) -> None:
+        """Preempt the goals that a cancel request is for.
+
+        A request for all goals spares those of the same tick: a client that cancels all and then sends a goal uses two
+        connections, and cannot know which message arrives first.
+        """
+        self.run.add("cancels", rec.Cancel(self.stage.now, message.id))
+        for goal in self.run.parts["goals"]:
+            handle = self.handles.get(goal.id)
+            everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
+            earlier = bool(message.stamp) and handle is not None and handle.get_goal_id().stamp <= message.stamp
+            if handle is not None and (message.id == goal.id or everything or earlier):
+                self.run.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
+                handle.set_canceled(GoToPositionResult(False, "cancelled"))
+                del self.handles[goal.id]
+                self.accepted_from.pop(goal.id, None)
+
+    def _finish_goals(self) -> None:
+        """Let all goals succeed, each once it has been accepted."""
+        while self.accepted_from:
+            self._tick()
+        for handle in self.handles.values():
+            handle.set_succeeded(GoToPositionResult(True, "there"))
+        self.handles.clear()
+
+    # -- clicks --
+
+    def _click(self, frame: str, x: float, y: float) -> None:
+        """A 2D Nav Goal; then let time pass until a goal has come, for REACTION_TIME at most."""
+        robot, to_map = self.stage.odom_from_footprint(), inverse(self.stage.sim.map_from_odom())
+        odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
+        self.run.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
+        message = PoseStamped()
+        message.header.frame_id, message.header.stamp = frame, self.stage.stamp
+        message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
+        count = len(self.run.parts["goals"])
+        self.clicks.publish(message)
+        self.run.digest()  # what the bridge does at once takes no simulated time
+        for _ in range(int(REACTION_TIME * 10)):
+            if len(self.run.parts["goals"]) > count:
+                return
+            self._tick()
+
+    def _subscribe_to_reports(self) -> None:
+        """Record published states like logged lines; their topics may appear at any time."""
+        for topic in graph.published_topics():
+            others = set(topic.publishers) - {rospy.get_name()}
+            if others and topic.name not in self.reports and topic.type in STATUS_TYPES:
+                text = f"published on {topic.name}"
+                kind = roslib.message.get_message_class(topic.type)
+                self.reports[topic.name] = self.stage.listen(topic.name, kind, "line", partial(_text, text))
+
+    def _tick(self) -> None:
+        self.run.tick()
+        self._accept_goals()
+        self.run.digest()  # its client has learned the state before time continues
+
+    def _advance(self, seconds: float) -> None:
+        for _ in range(int(seconds * 10)):
+            self._tick()
+
+    # -- scenarios, in this order --
+
+    def no_server(self, bag: str) -> Record:
+        """The bridge starts and gets a click while there is no server."""
+        run = self.run
+        run.begin(0, bag=bag)
+        run.node = self.launch(self.stage)
+        run.wait_for(self._is_connected, START_TIMEOUT)
+        self._advance(1.0)
+        if self.clicks.get_num_connections():
+            self._click("odom", 0.5, 0.1)
+        self._advance(3.0)
+        return self.run.finish("no_server", up=not run.death_recorded)
+
+    def _is_connected(self) -> bool:
+        return bool(self.clicks.get_num_connections() or self.run.subscribers["cancel"].get_num_connections())
+
+    def click(self, bag: str) -> Record:
+        """The server is there; a click, then time passes while the goal is active."""
+        run = self.run
+        run.begin(0, bag=bag)
+        self._serve()
+        up = run.wait_for(self._server_is_connected, CONNECT_TIMEOUT)
+        self._advance(2.0)  # a click that the bridge has kept may come now
+        self._finish_goals()
+        self._advance(0.5)
+        run.marks["clicked"] = self.stage.now
+        run.marks["listeners"] = float(self.clicks.get_num_connections())
+        run.marks["clients"] = float(goal_senders(self.server))
+        self._click("odom", 1.2, -0.4)
+        while run.parts["goals"] and self.stage.now < run.parts["goals"][-1].time + self.pending_time:
+            self._tick()
+        run.marks["watching"] = self.stage.now
+        self._watch_reports(self.plan.limits.status_span)
+        clients = graph.action_clients()
+        unpublished = tuple(topic for topic in graph.unpublished_topics() if not is_shown(topic))
+        names = {"servers": tuple(clients), "types": tuple(clients.values()), "unpublished": unpublished}
+        return self.run.finish("click", up=up and not run.death_recorded, **names)
+
+    def _watch_reports(self, seconds: float) -> None:
+        """Let time pass, and record what is published on topics that appear meanwhile."""
+        for tenth in range(int(round(seconds * 10))):
+            if tenth % 10 == 0:
+                self._subscribe_to_reports()
+            self._tick()
+        for subscriber in self.reports.values():
+            subscriber.unregister()
+        self.reports.clear()
+
+    def _server_is_connected(self) -> bool:
+        return bool(self.clicks.get_num_connections() > 0 and has_client(self.server))
+
+    def replace(self, bag: str) -> Record:
+        """A second click while the first one's goal is active."""
+        run = self.run
+        first = list(run.parts["goals"])
+        run.begin(0, bag=bag)
+        for goal in first[-1:]:
+            run.add("goals", goal)
+        run.marks["clicked"] = self.stage.now
+        self._click("odom", -0.6, 0.9)
+        self._advance(2.0)
+        return self.run.finish("replace", up=not run.death_recorded)
+
+    def frame(self, bag: str) -> Record:
+        """Clicks in other frames, after the robot has moved, where map differs from odom."""
+        run = self.run
+        self._finish_goals()
+        run.begin(1, bag=bag)
+        run.settle(0.5)
+        for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
+            self.stage.command(twist)
+            self._advance(seconds)
+        for frame in FRAMES:
+            self._click(frame, 1.0, 0.2)
+            self._advance(0.5)
+            self._finish_goals()
+            self._advance(0.5)
+        return self.run.finish("frame", up=not run.death_recorded)
+
+    def no_pending(self, bag: str) -> Record:
+        """A click and a second one, whose goals are accepted at once, so that the bridge's timer finds them ACTIVE."""
+        run = self.run
+        self._finish_goals()
+        self.pending_time = 0.0
+        run.begin(0, bag=bag)
+        run.settle(1.0)
+        self._click("odom", 1.2, -0.4)
+        run.marks["watching"] = self.stage.now
+        self._watch_reports(self.plan.limits.status_span)
+        self._click("odom", -0.6, 0.9)
+        self._advance(1.0)
+        self._finish_goals()
+        return run.finish("no_pending", up=not run.death_recorded)
+
+    def close(self) -> None:
+        """End the node."""
+        if self.run.node is not None:
+            self.run.node.end()
+
+
+def _text(text: str, message: Any) -> str:
+    """A line about a published report: a state's number, or the words that the message has."""
+    content = getattr(message, "status", getattr(message, "data", message))
+    return f"{text}: {content}"[: rec.MOST_TEXT]

@@ -1,0 +1,205 @@
+"""The hand-in's node as a child process: its output line by line, and simulated time with it by way of its agent."""
+
+import contextlib
+import json
+import math
+import os
+import resource
+import select
+import socket
+import threading
+import time
+from functools import partial
+from pathlib import Path
+from subprocess import PIPE, STDOUT
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+
+import rospy
+
+from aro_robocop_goto_as.errors import NoTimeError
+from aro_robocop_goto_as.process import child
+
+from ..sandbox.guard import Guard
+from ..sandbox.stillness import Stillness
+from ..submission import CHANNEL
+from . import ros_internals
+
+MAX_OUTPUT = 200_000  # bytes of a node's output that are kept; the rest is read and dropped
+MAX_LINE = 2_000  # bytes
+MAX_ANSWER = 1_000_000  # bytes
+NEVER = 1 << 62  # [ns]
+SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
+POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
+MOST_STILL = 20  # looks at which the node did not run and did not want to, until it is not waited for any more
+MOST_SWITCHES = 10_000  # times that the threads of a process without agent run; one that ends needs a hundred
+NO_TIME = 900.0  # [s, wall] for one answer
+
+
+def _own_limit() -> float:
+    """The limit of this process's processor time [s], which the sandbox has set, and which is also the node's."""
+    soft, _ = resource.getrlimit(resource.RLIMIT_CPU)
+    return math.inf if soft == resource.RLIM_INFINITY else float(soft)
+
+
+class Node:
+    """One node; a thread passes every line of its output to `on_line`. While it is waited for, `run_jobs` is called."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        folder: Path,
+        on_line: Callable[[str], Any],
+        run_jobs: Callable[[], Any],
+        master_port: int,
+        now_ns: int,
+    ) -> None:
+        mine, theirs = socket.socketpair()
+        ports = [master_port, *ros_internals.ports()]
+        channel = ",".join(map(str, [theirs.fileno(), *ports]))
+        self._process = child.start(
+            [channel if word == CHANNEL else word for word in command],
+            environment=environment,
+            folder=folder,
+            stdout=PIPE,
+            stderr=STDOUT,
+            pass_fds=[theirs.fileno()],
+        )
+        theirs.close()
+        self._channel, self._started_ns = mine, now_ns
+        self._run_jobs = run_jobs
+        self._buffer = b""
+        self._sent: Dict[ros_internals.Link, int] = {}  # bytes, as the agent has been told
+        self._topics: Dict[str, Any] = {}  # that are not connected yet
+        self.next_ns = now_ns  # when the node will do something without having received a message
+        self.is_busy = False  # it computes without an end, as a loop without pauses
+        self.ended = ""  # why the node was ended here, if it was
+        self._lost = False  # the agent has ended
+        self.guard = Guard(self._process.pid, processor_time=_own_limit())
+        self._on_line = on_line
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        stream, size = self._process.stdout, 0
+        assert stream is not None
+        for line in iter(partial(stream.readline, MAX_LINE), b""):
+            size += len(line)
+            if size <= MAX_OUTPUT:
+                self._on_line(line.decode(errors="replace").rstrip("\n"))
+
+    def status(self) -> Optional[int]:
+        """The exit status of a node that ended by itself; None while it runs."""
+        return self._process.poll()
+
+    def end(self) -> None:
+        """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
+        self.guard.stop()
+        child.kill_tree(self._process.pid)
+        self._process.wait()
+        self._channel.close()
+
+    # -- time --
+
+    def go_on(self, until_ns: int) -> None:
+        """Let the node live until a simulated time [ns]; when this returns, all that it did until then has arrived."""
+        again = True
+        while again and not self._lost:
+            self._request(until_ns)
+            answer = self._answer()
+            if answer is None:
+                self._lose()
+                return
+            self.next_ns = min(NEVER, answer["next"] + self._started_ns)
+            self.is_busy = answer["busy"]
+            self._topics = answer.get("topics", self._topics)
+            self._await([((port, of), count) for port, of, count in answer["sent"]])
+            again = self._connect()
+
+    def _request(self, until_ns: int) -> None:
+        now = dict(ros_internals.sent())  # of two connections with the same ports, the newer one
+        sent = [(link, count) for link, count in now.items() if self._sent.get(link) != count]
+        self._sent = now
+        request = {"until": until_ns - self._started_ns, "sent": [[*link, count] for link, count in sent]}
+        with contextlib.suppress(OSError):  # the answer will tell
+            self._channel.sendall(json.dumps(request).encode() + b"\n")
+
+    def _wait(self, done: Callable[[], bool], pause: float = POLL, most_switches: float = math.inf) -> bool:
+        """Wait until `done` is true; False if that can't be expected any more, as the node does nothing at all.
+
+        Or, with `most_switches`, if its threads have run that often. NoTimeError if the machine has no time for it.
+        """
+        deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid)
+        while not done():
+            self._run_jobs()
+            if stillness.look() >= MOST_STILL or stillness.switches > most_switches:
+                return False
+            if time.monotonic() > deadline:
+                raise NoTimeError(f"the node's turn was not over within {NO_TIME:g} s")
+            time.sleep(pause)
+        return True
+
+    def _answer(self) -> Optional[Dict[str, Any]]:
+        """The agent's answer; None if there is none, or nothing that an agent would say."""
+        if not self._wait(self._has_answer, pause=0.0) or b"\n" not in self._buffer:
+            return None
+        line, _, self._buffer = self._buffer.partition(b"\n")
+        try:
+            answer = json.loads(line)
+            return {
+                "next": int(answer["next"]),
+                "busy": bool(answer["busy"]),
+                "sent": [tuple(map(int, entry)) for entry in answer["sent"] if len(entry) == 3],
+                **({"topics": answer["topics"]} if "topics" in answer else {}),
+            }
+        except (ValueError, KeyError, TypeError):
+            return None
+
+    def _has_answer(self) -> bool:
+        """Wait a moment for the agent; whether there is a line from it, or never will be."""
+        while b"\n" not in self._buffer and select.select([self._channel], [], [], POLL)[0]:
+            data = b""
+            with contextlib.suppress(OSError):
+                data = os.read(self._channel.fileno(), 65536)
+            if not data or len(self._buffer) > MAX_ANSWER:
+                return True
+            self._buffer += data
+        return b"\n" in self._buffer
+
+    def _has_ended(self) -> bool:
+        return self._process.poll() is not None
+
+    def _lose(self) -> None:
+        """The agent does not answer: because the process ends, or because the hand-in has ended or stopped it."""
+        self._lost, self.next_ns = True, NEVER
+        if not self._wait(self._has_ended, most_switches=MOST_SWITCHES):
+            self.ended = "it stopped answering the grader, which has ended it"
+            self.end()
+
+    # -- messages and connections --
+
+    def _await(self, sent: List[Any]) -> None:
+        """Wait until what the node has sent has arrived, and has been made use of."""
+
+        def arrived() -> bool:
+            return not any(-1 < ros_internals.handled(link) < count for link, count in sent) or self._has_ended()
+
+        self._wait(arrived, SHORTLY)
+        self._run_jobs()
+
+    def _connect(self) -> bool:
+        """Wait until the node is connected with whom it has told the master; whether it was not before."""
+        if not self._topics or self._is_connected():
+            self._topics = {}
+            return False
+        self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown())
+        self._run_jobs()
+        self._topics = {}
+        return not self._has_ended()
+
+    def _is_connected(self) -> bool:
+        return all(
+            ros_internals.hears(self._topics["node"], topic, checksum) for topic, checksum in self._topics["published"]
+        ) and all(
+            ros_internals.is_connected(topic, checksum, set(ports) - {0})
+            for topic, checksum, ports in self._topics["subscribed"]
+        )

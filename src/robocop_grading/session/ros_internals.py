@@ -1,0 +1,108 @@
+"""What the grader's process uses of private parts of rospy and actionlib, each with the reason."""
+
+import contextlib
+import socket
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+
+import actionlib
+import rospy
+from rospy.impl import tcpros_base
+
+Link = Tuple[int, int]  # a TCP connection, by the node's port and this process's
+_handled: Dict[Link, int] = {}  # bytes received and made use of
+_received: Dict[Link, int] = {}
+
+
+def install() -> None:
+    """Count what this process receives, and publish nothing from threads: what publish() returns from is sent.
+
+    rospy's own statistics leave out a connection's header, and do not tell when a message's callback has returned.
+    """
+    receive: Any = socket.socket.recv
+
+    def recv(connection: socket.socket, *arguments: Any) -> bytes:
+        try:
+            link = (connection.getpeername()[1], connection.getsockname()[1])
+        except (OSError, IndexError):  # it is closed, or no TCP connection
+            return bytes(receive(connection, *arguments))
+        _handled[link] = _received.setdefault(link, 0)  # a thread that asks for more is done with what it had
+        data: bytes = receive(connection, *arguments)
+        _received[link] = _received.get(link, 0) + len(data)
+        return data
+
+    close: Any = tcpros_base.TCPROSTransport.close
+
+    def closed(transport: Any) -> None:
+        link = _link(transport)
+        close(transport)
+        if link is not None:  # what is still on its way will not be received
+            _handled.pop(link, None)
+            _received.pop(link, None)
+
+    setattr(tcpros_base.TCPROSTransport, "close", closed)  # noqa: B010
+    setattr(socket, "setdefaulttimeout", lambda _: None)  # noqa: B010  rospy would give the master and nodes 60 s
+    setattr(socket.socket, "recv", recv)  # noqa: B010  mypy refuses to assign to a method
+    rospy.topics.QueuedConnection = lambda connection, _size: connection
+
+
+def handled(link: Link) -> int:
+    """How many bytes of a subscription's connection have been received, and have had their callbacks; else -1.
+
+    Of one that a subscriber of this process's topics has made, only the header is ever received.
+    """
+    return -1 if link[1] == ports()[1] else _handled.get(link, -1)
+
+
+def ports() -> List[int]:
+    """The ports at which other nodes reach this one: its XML-RPC server's and its topics' and services'."""
+    return [int(rospy.get_node_uri().rpartition(":")[2].strip("/")), tcpros_base.get_tcpros_server_address()[1]]
+
+
+def sent() -> Iterator[Tuple[Link, int]]:
+    """Each connection on which this process publishes, with the number of bytes sent."""
+    for topic in list(_topics().pubs.values()):
+        for connection in topic.connections:
+            link = _link(connection)
+            if link is not None:
+                yield link, connection.stat_bytes
+
+
+def _topics() -> Any:
+    return rospy.topics.get_topic_manager()
+
+
+def _link(connection: Any) -> Optional[Link]:
+    known: Optional[Link] = getattr(connection, "robocop_link", None)
+    if known is None:
+        with contextlib.suppress(AttributeError, OSError):  # it is being connected, or closed
+            known = connection.socket.getpeername()[1], connection.socket.getsockname()[1]
+            connection.robocop_link = known
+    return known
+
+
+def hears(node: str, topic: str, checksum: str) -> bool:
+    """Whether this process is connected to a node's topic, or does not want it, or not of this type."""
+    subscription = _topics().subs.get(topic)
+    if subscription is None or subscription.data_class._md5sum not in ("*", checksum):
+        return True
+    return node in {getattr(connection, "callerid_pub", None) for connection in subscription.connections}
+
+
+def is_connected(topic: str, checksum: str, node_ports: Set[int]) -> bool:
+    """Whether what this process publishes on a topic goes to all these ports of a node."""
+    publication = _topics().pubs.get(topic)
+    if publication is None or "*" != checksum != publication.data_class._md5sum:
+        return True
+    links = {_link(connection) for connection in publication.connections}
+    return node_ports <= {link[0] for link in links if link is not None}
+
+
+def goal_senders(server: actionlib.ActionServer) -> int:
+    """How many nodes can send goals to an action server; actionlib keeps its topics to itself."""
+    return int(server.goal_sub.get_num_connections())
+
+
+def has_client(server: actionlib.ActionServer) -> bool:
+    """Whether somebody can send goals to an action server, and hears of their status and result."""
+    topics = (server.goal_sub, server.status_pub, server.result_pub)
+    return all(topic.get_num_connections() > 0 for topic in topics)

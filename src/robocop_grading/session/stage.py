@@ -1,0 +1,259 @@
+"""The simulation that a submission meets: one robot, its topics, and what the submission sends back."""
+
+import math
+from collections import deque
+from typing import Any, Callable, Deque, Dict, Optional, Tuple
+
+import genpy
+import numpy as np
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.goto import clearance_ahead
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.catalog import load_model
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.ros import convert
+from aro_robocop_goto_as.ros.share import share
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, TF, Observations, Subscriptions
+from aro_robocop_goto_as.simulation.simulation import Simulation
+
+from .. import record as rec
+from ..handout import AHEAD
+from ..plan import Plan, site, world_of
+from ..record import Sample
+from .node import Node
+from .scenario_bag import ScenarioBag
+from .watch import Watch
+
+# cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
+# A submission has to use odom, not the truth.
+PARAMS = SimParams.of(clock_rate=30, cmd_vel_timeout=0.0, ground_truth=False)
+STEPS_PER_TICK = PARAMS.rates.physics_rate // PARAMS.rates.control_rate
+ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
+
+MOST_WAITING = 20_000  # messages
+MOST_LISTED = 100  # entries of a message's list
+
+
+def trimmed(message: Any) -> Any:
+    """Truncate a message's strings and lists; returns the message."""
+    for name in message.__slots__:
+        value = getattr(message, name)
+        if isinstance(value, str):
+            setattr(message, name, value[: rec.MOST_TEXT])
+        elif isinstance(value, (list, tuple)):
+            setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MOST_LISTED]])
+        elif isinstance(value, genpy.Message):
+            trimmed(value)
+    return message
+
+
+class Stage:
+    """One robot in the world of all scenarios. The main thread owns it; what arrives is posted to it as a job."""
+
+    def __init__(self, plan: Plan) -> None:
+        robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
+        self.sim = make_simulator(PARAMS, world_of(plan), [robot])
+        self.simulation = Simulation(self.sim)
+        self._topics = StepTopics(self.sim, hidden={JOINTS})
+        self.robot = self._topics.robots[0]
+        self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
+        self.odd_scan = False
+        self.bag = ScenarioBag(self.sim, self.robot, self._topics.transforms, PARAMS.frames)
+        self._site = Pose2D()  # world_from_odom at the scenario's start
+        self.node: Optional[Node] = None  # that is graded
+        self._arrived: Deque[Callable[[], None]] = deque()
+        self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
+        self._real_time = True
+        self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
+
+    @property
+    def now(self) -> float:
+        """Simulated time [s]."""
+        return self.sim.time
+
+    @property
+    def stamp(self) -> rospy.Time:
+        """Simulated time, for messages."""
+        return convert.to_time(self.sim.stamp_ns)
+
+    # -- what arrives --
+
+    def post(self, name: str, payload: Any) -> None:
+        """Have the main thread handle something; may be called from any thread."""
+
+        def handle() -> None:
+            if name in self.handlers:
+                self.handlers[name](payload)
+
+        self._arrived.append(handle)
+
+    def listen(self, topic: str, kind: Any, name: str, of: Callable[[Any], Any] = trimmed) -> rospy.Subscriber:
+        """Post what arrives on a topic under a name; `of` reduces a message to what is kept of it."""
+
+        def receive(message: Any) -> None:
+            if len(self._arrived) < MOST_WAITING:  # messages of a flood beyond that are dropped
+                self.post(name, of(message))
+
+        return rospy.Subscriber(topic, kind, receive, tcp_nodelay=True)
+
+    # -- the robot --
+
+    def begin(self, index: int, odd_scan: bool) -> None:
+        """Put the robot at the start of a scenario: at rest at its site, odometry at zero."""
+        self.odd_scan = odd_scan
+        self.push(None)
+        self._site = site(index)
+        self.simulation.reset(PARAMS.world.seed)
+        self.simulation.place(site(index), anywhere=True)
+        self._publish_frames()
+        self.bag.write_scenery(self._site)
+
+    def teleport(self, index: int, odom_from_footprint: Pose2D) -> None:
+        """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
+        self.simulation.place(compose(site(index), odom_from_footprint), anywhere=True)
+        self._publish_frames()
+
+    def command(self, twist: Twist2D) -> bool:
+        """Set the robot's velocity command; False if it is not finite, which leaves the previous one in force."""
+        if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
+            return False
+        self._commanded = twist
+        if self._pushed is None:
+            self.sim.command(twist)
+        return True
+
+    def push(self, twist: Optional[Twist2D]) -> None:
+        """Move the robot and its wheels by hand, whatever is commanded; None lets go of it."""
+        if twist != self._pushed:
+            self._pushed = twist
+            self.sim.command(self._commanded if twist is None else twist)
+
+    # -- time --
+
+    def tick(self, real_time: bool = True) -> Sample:
+        """Advance by one control tick and publish what is due; returns the true state at its end.
+
+        A watched run is shown at real time, unless `real_time` is False.
+        """
+        self._real_time = real_time
+        for _ in range(STEPS_PER_TICK):
+            observed = self.sim.step(self.subscriptions())
+            if observed is not None:
+                self._publish(observed)
+            if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
+                self.node.go_on(self.sim.stamp_ns)
+        if self.node is None:
+            self.run_jobs()
+        return self.sample()
+
+    def digest(self) -> None:
+        """Let the node do what it does at once, in no simulated time."""
+        if self.node is not None:
+            self.node.go_on(self.sim.stamp_ns)
+
+    def run_jobs(self) -> None:
+        """Handle what has arrived."""
+        while self._arrived:
+            self._arrived.popleft()()
+        self.simulation.jobs.run_queued()  # from services
+
+    def subscriptions(self) -> Subscriptions:
+        """The submission's; odometry and transforms always, for the bag; wheel angles if the run is shown."""
+        always = {ODOM: [0], TF: [0]}
+        return {**self._topics.subscriptions(), **always, **({} if self.watch is None else {JOINTS: [0]})}
+
+    def publish_clock(self) -> None:
+        """For nodes that have just come up."""
+        self._topics.publish_clock(self.sim.stamp_ns)
+        self._topics.count()
+
+    def _publish(self, observed: Observations) -> None:
+        """One step's observations to the viewer, the submission and the bag; the clock last."""
+        stamp, node = convert.to_time(observed.stamp_ns), self.node
+        if node is not None and node.next_ns < observed.stamp_ns and not node.is_busy:
+            node.go_on(observed.stamp_ns - 1)
+        if self.watch is not None:
+            self.watch.observe(observed, self._real_time)
+        if self.odd_scan and observed.of(SCAN):
+            _make_odd(observed.scans[0])
+        self._topics.publish(observed, clock=False)
+        self._topics.count()  # the agent is told how much was sent
+        if self.watch is not None and observed.of(TF):
+            self.watch.publish_transforms(self._topics.transforms.messages(0, stamp))
+        self.bag.write_step(observed, stamp)
+        if observed.due.clock:
+            self.bag.write("/clock", Clock(stamp), stamp)
+            if node is not None and not node.is_busy:  # its loops find the newest data when the clock wakes them up
+                node.go_on(observed.stamp_ns - 1)
+            self.publish_clock()
+        if node is not None:
+            node.go_on(observed.stamp_ns)
+
+    def _publish_frames(self) -> None:
+        """map -> odom has jumped."""
+        transforms = self._topics.transforms.publish_static()
+        if self.watch is not None:
+            self.watch.publish_static(transforms)
+        self.bag.write_static_frames(self._site)
+
+    def keep(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
+        """Into the scenario's bag, and to the page where the run is shown."""
+        if self.watch is not None:
+            self.watch.forward(topic, message)
+        self.bag.write(topic, message, stamp)
+
+    def odom_from_footprint(self) -> Pose2D:
+        """Where the robot truly is in its odom frame."""
+        return compose(inverse(self.sim.map_from_odom()), self.sim.world_from_footprint())
+
+    def sample(self) -> Sample:
+        """The truth now."""
+        here, world, velocity = self.odom_from_footprint(), self.sim.world_from_footprint(), self.sim.velocity()
+        spec = self.sim.lidar.spec
+        ahead = clearance_ahead(
+            list(map(float, self.sim.exact_distances())), spec.angle_min, spec.increment, 0.0, float("inf"), AHEAD
+        )
+        return Sample(
+            self.now,
+            here.x,
+            here.y,
+            here.yaw,
+            world.x,
+            world.y,
+            world.yaw,
+            velocity.v,
+            velocity.w,
+            float("inf") if ahead is None else ahead,
+            bool(self.sim.touching()),
+        )
+
+
+def _make_odd(ranges: np.ndarray) -> None:
+    """Put no-return values of all kinds among the beams of a scan (n,) [m]."""
+    ranges[::ZERO_EVERY] = 0.0
+    ranges[::NAN_EVERY] = np.nan
+
+
+def outlines(plan: Plan, name: str) -> Tuple[Tuple[float, ...], ...]:
+    """A scenario's obstacles seen from above, in odom: x, y, x, y, ... [m]."""
+    found = []
+    for scenario in plan.scenarios:
+        for kind, values in scenario.obstacles if scenario.name == name else ():
+            if kind == "box":
+                x, y, yaw, length, width = values
+                corners = [
+                    compose(Pose2D(x, y, yaw), Pose2D(sx * length / 2, sy * width / 2))
+                    for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))
+                ]
+            else:
+                x, y, radius = values
+                corners = [
+                    Pose2D(x + radius * np.cos(a), y + radius * np.sin(a)) for a in np.linspace(0, 2 * np.pi, 17)
+                ]
+            found.append(tuple(round(float(n), 4) for corner in corners for n in (corner.x, corner.y)))
+    return tuple(found)

@@ -1,0 +1,87 @@
+"""robocop new: create a package with the handout's TODOs, or what grades hand-ins on GitHub Classroom or Gradescope."""
+
+import argparse
+import re
+import shlex
+import shutil
+import sys
+import zipfile
+from pathlib import Path
+from typing import Optional
+
+from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
+
+from .hosting.places import places
+
+SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
+IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image
+GRADESCOPE = ".gradescope"  # the folder of what is for Gradescope
+# What an installation of this package needs, besides README, docs and tests.
+INSTALLED = "action cfg compat config deb-packages launch msg rviz scripts skeleton src srv urdf worlds".split()
+INSTALLED += "CMakeLists.txt LICENSE package.xml pyproject.toml requirements.txt robocop setup.py test/ros".split()
+IMAGE_NAME = r"[a-z0-9][A-Za-z0-9._/:@-]*"
+
+
+def make(share: Path, folder: Path, image: Optional[str] = None) -> None:
+    """Copy the skeleton to `folder`, which must not exist yet, with GitHub's files if a container image is given.
+
+    `share` is the folder of this package.
+    """
+    if folder.exists():
+        raise GradingSetupError(f"{folder} exists already; choose a new name")
+    if image is not None and not re.fullmatch(IMAGE_NAME, image):
+        raise GradingSetupError(f"{image!r} is not the name of a container image: expected NAME or SERVER/NAME:TAG")
+    source = share / "skeleton"
+    for path in sorted(source.rglob(f"*{SUFFIX}")):
+        relative = path.relative_to(source).with_suffix("")
+        target = folder / relative
+        if relative.parts[0] == GRADESCOPE or (relative.parts[0].startswith(".") and image is None):
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if image is None:
+            shutil.copyfile(path, target)
+        else:
+            target.write_text(path.read_text(encoding="utf-8").replace(IMAGE, image), encoding="utf-8")
+        if target.suffix == ".py":
+            target.chmod(0o755)
+
+
+def make_autograder(share: Path, path: Path) -> None:
+    """Write Gradescope's zip: setup.sh and run_autograder, and this package for machines that do not have it."""
+    with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
+        for script in sorted((share / "skeleton" / GRADESCOPE).glob(f"*{SUFFIX}")):
+            archive.write(script, script.with_suffix("").name)
+        for name in INSTALLED:
+            for file in sorted([share / name, *(share / name).rglob("*")]):
+                if file.is_file() and "__pycache__" not in file.parts:
+                    archive.write(file, Path("robocop", file.relative_to(share)))
+
+
+def main() -> None:
+    """Exit status 1 if the folder exists already."""
+    parser = argparse.ArgumentParser(prog="robocop new", description=__doc__, allow_abbrev=False)
+    parser.add_argument(
+        "name", help="folder to create; the package itself is called aro_robocop_goto_as, as in the lab"
+    )
+    parser.add_argument(
+        "--classroom", metavar="IMAGE", help="add a workflow for GitHub Classroom, with the container image to grade in"
+    )
+    parser.add_argument("--gradescope", action="store_true", help="write NAME.zip, an autograder for Gradescope")
+    args = parser.parse_args()
+    folder = Path(f"{args.name}.zip" if args.gradescope else args.name)
+    try:
+        if args.gradescope:
+            make_autograder(places()[1], folder)
+            print(f"Created {folder}. Upload it to Gradescope as the autograder; docs/grading.md says how.")
+            return
+        make(places()[1], folder, args.classroom)
+    except RobocopError as error:
+        sys.exit(f"robocop new: {error}")
+    except OSError as error:
+        sys.exit(f"robocop new: {folder} can't be created: {error.strerror}")
+    path = shlex.quote(str(folder))
+    print(
+        f"Created {folder}. Complete the TODOs in its scripts/ folder.\n"
+        f"Run it:   ./robocop sim --with {path}\n"
+        f"Grade it: ./robocop grade {path}"
+    )

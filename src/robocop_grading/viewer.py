@@ -1,0 +1,86 @@
+"""What shows a watched run: RViz if it can open a window here, otherwise the web page.
+
+Both run in the probe's network, which has the ROS master and which nothing else can reach. RViz gets to its display
+through a Unix socket; the page is handed a listening socket that was opened here, in the machine's own network.
+"""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import Any, Optional, Sequence, Tuple
+
+from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.params import WebParams
+from aro_robocop_goto_as.process import x_display
+from aro_robocop_goto_as.web import access
+
+from .sandbox.bubblewrap import Sandbox
+
+BACKLOG = 100  # browsers' connections that wait while the page's node starts
+
+
+@dataclass(frozen=True)
+class Viewer:
+    """RViz, or the web page if there is a socket for it."""
+
+    page_socket: int = -1  # file descriptor of a listening socket
+    port: int = 0
+    url: str = ""
+
+    @property
+    def is_page(self) -> bool:
+        """Whether the run is shown by the web page."""
+        return self.page_socket >= 0
+
+    @property
+    def descriptors(self) -> Tuple[int, ...]:
+        """Files that the probe inherits."""
+        return (self.page_socket,) if self.is_page else ()
+
+
+def choose_viewer(sandbox: Optional[Sandbox]) -> Viewer:
+    """RViz where it is installed and the display answers from inside the sandbox, otherwise the web page.
+
+    GradingError if no port can be opened for the page.
+    """
+    command = [sys.executable, "-IS", x_display.__file__]
+    if sandbox is not None:
+        command = sandbox.probe_command(command)  # without a network: the display of ssh -X does not answer
+    if os.environ.get("DISPLAY") and shutil.which("rviz") is not None and _succeeds(command):
+        return Viewer()
+    host = access.default_host()
+    # From elsewhere, as from outside a container, only the usual port may be reachable.
+    ports = (WebParams.web_port, 0) if access.is_loopback(host) else (WebParams.web_port,)
+    listening = _listen(host, ports)
+    port = listening.getsockname()[1]
+    return Viewer(listening.detach(), port, access.url(host, port))
+
+
+def _succeeds(command: Sequence[str]) -> bool:
+    return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True).returncode == 0
+
+
+def _listen(host: str, ports: Sequence[int]) -> socket.socket:
+    """A socket on the first of these ports that is free; 0 means any port."""
+    problem = ""
+    for port in ports:
+        try:
+            family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+            return _bound(socket.socket(family, kind, protocol), address)
+        except OSError as error:
+            problem = f"{host}:{port}: {error.strerror or error}"
+    raise GradingError(f"--watch can't open a port for its web page, end what uses it: {problem}")
+
+
+def _bound(made: socket.socket, address: Any) -> socket.socket:
+    try:
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind(address)
+        made.listen(BACKLOG)
+    except OSError:
+        made.close()
+        raise
+    return made

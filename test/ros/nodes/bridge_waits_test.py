@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""A bridge without its server reports that, names a server with a similar name, and keeps the goal for its server."""
+
+import math
+import threading
+import unittest
+
+import actionlib
+import rospy
+import tf2_ros
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionActionGoal, GoToPositionResult
+from clicks import Clicks
+from geometry_msgs.msg import Point, Transform, TransformStamped
+from harness import ACTION, BRIDGE, Recorder, run, wait_for, wait_for_subscriber
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import Header
+
+MISSPELT = "robovop_goto_as"
+
+
+class Server:
+    """An action server that reports every goal as reached once `finish` is set."""
+
+    def __init__(self, name):
+        self.goals = []
+        self.finish = threading.Event()
+        self.server = actionlib.SimpleActionServer(name, GoToPositionAction, self._execute, auto_start=False)
+        self.server.start()
+
+    def _execute(self, goal):
+        self.goals.append(goal)
+        self.finish.wait()
+        self.server.set_succeeded(GoToPositionResult(True, "REACHED: by the test"))
+
+
+class BridgeWaits(unittest.TestCase):
+    def test_missing_server_is_reported_with_a_misspelt_one_and_gets_the_newest_goal_when_it_starts(self):
+        clicks, log = Clicks(), Recorder("/rosout", Log)
+        clicks.wait_for_status(f"waiting for {ACTION}")
+        self.assertEqual({m.data for m in clicks.status.messages}, {f"waiting for {ACTION}"})
+        advice = clicks.wait_for_status("to start it again")
+        self.assertTrue(advice.endswith(": ./robocop shell rosrun aro_robocop_goto_as robocop_goto_as.py"), advice)
+        log.wait_for(lambda m: m.name == BRIDGE and m.level == Log.WARN and m.msg == advice, "the advice as a warning")
+
+        misspelt = Server(MISSPELT)
+        status = clicks.wait_for_status(MISSPELT)
+        self.assertIn(f"waiting for {ACTION}; there is '/{MISSPELT}' of the same type: a misspelt name?", status)
+
+        clicks.click(5.0, 5.0, "odom")
+        clicks.click(0.5, 0.25, "odom")
+        right = Server(ACTION)
+        wait_for(lambda: right.goals, "the goal at the right server")
+        clicks.wait_for_status("goal x 0.50 y 0.25 is ")
+        right.finish.set()
+        clicks.wait_for_status(f"{ACTION} is ready, last goal SUCCEEDED: REACHED: by the test")
+        self.assertEqual([(goal.position.x, goal.position.y) for goal in right.goals], [(0.5, 0.25)])
+        self.assertEqual(misspelt.goals, [])
+
+    def test_transformed_goal_out_of_reach_is_refused(self):
+        clicks = Clicks()
+        far = TransformStamped(Header(0, rospy.Time.now(), "odom"), "far", Transform())
+        far.transform.translation.x, far.transform.rotation.w = 1e300, 1.0
+        broadcaster = tf2_ros.StaticTransformBroadcaster()
+        broadcaster.sendTransform(far)
+
+        def refused():
+            clicks.click(1.0, 0.0, "far")
+            return any(
+                "got x 1e+300 y 0.0 z 0.0 in 'odom', transformed from 'far'" in m.data for m in clicks.status.messages
+            )
+
+        wait_for(refused, "a refusal")
+
+    def test_with_impossible_odometry_a_goal_relative_to_the_robot_is_refused_and_the_next_goal_sent(self):
+        clicks = Clicks()
+        topic = rospy.Publisher("odom", Odometry, queue_size=100)
+        wait_for_subscriber(topic, BRIDGE)
+        for x, w, problem in (
+            (1e300, 1.0, "got x 1e+300 y 0.0"),
+            (math.nan, 1.0, "got x nan y 0.0"),
+            (0.0, 1e300, "expected a quaternion of length 1"),
+        ):
+            odom = Odometry(Header(0, rospy.Time.now(), "odom"), "base_footprint", None, None)
+            odom.pose.pose.position.x, odom.pose.pose.orientation.w = x, w
+            topic.publish(odom)
+            expected = "odometry holds an impossible pose of 'base_footprint': "
+
+            def refused(parts=(expected, problem)):
+                clicks.click(1.0, 0.0, "base_footprint")
+                return any(all(part in m.data for part in parts) for m in clicks.status.messages)
+
+            wait_for(refused, f"a refusal that says {problem!r}")
+        sent = Recorder(f"{ACTION}/goal", GoToPositionActionGoal)
+        clicks.click(0.75, 0.25, "odom")
+        sent.wait_for(lambda m: m.goal.position == Point(0.75, 0.25, 0.0), "the next goal")
+
+
+if __name__ == "__main__":
+    run(BridgeWaits)

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""`./robocop goto X Y` in a running system, where the goal is not reached: the reason and the exit status."""
+
+import signal
+
+from harness import Process, SystemTest, run, script
+from processes import busy_processes
+
+COMMAND = script("robocop_goto.py")
+
+
+class GotoFails(SystemTest):
+    def test_goal_behind_an_obstacle_is_reported_with_exit_status_1(self):
+        with Process(COMMAND, 1.6, 0.73, "--frame", "odom") as command:  # behind pillar_1
+            self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: obstacle ")
+
+    def test_unknown_frame_is_reported_and_nothing_is_sent(self):
+        with Process(COMMAND, "0.5", "0.0", "--frame", "kitchen") as command:
+            self.assertNotEqual(command.wait_for_exit(), 0)
+        self.assertIn("no transform from 'kitchen' to 'odom'", command.output)
+        self.assertEqual(self.goals.sent.messages, [])
+
+    def test_interrupted_command_cancels_its_goal(self):
+        with Process(COMMAND, 2.0, 0.0) as command:
+            self.robot.wait_until_it_drives()
+            with busy_processes():
+                command.process.send_signal(signal.SIGINT)
+                self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertRegex(command.output, r"(?m)^PREEMPTED: PREEMPTED: ")
+        self.robot.wait_until_it_stands()
+
+
+if __name__ == "__main__":
+    run(GotoFails)

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""The figures that docs/lab.md prints for drives and for its tuning experiments are those of such runs."""
+
+import math
+import re
+
+from documentation import ROOT
+from dynamic_reconfigure.client import Client
+from harness import DEADLINE, SERVER, SystemTest, run
+
+from aro_robocop_goto_as.goto_params import GotoParams
+
+LAB = " ".join((ROOT / "docs" / "lab.md").read_text(encoding="utf-8").split())
+TO_THE_RIGHT = (0.0, -0.6)  # the goal of section 10 in odom: map (-0.7, -0.6)
+
+
+def printed(pattern):
+    """The numbers in a sentence of docs/lab.md."""
+    found = re.search(pattern, LAB)
+    assert found, f"docs/lab.md does not say {pattern!r}"
+    return [float(number) for number in found.groups()]
+
+
+class LabFigures(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.tuning = Client(SERVER, timeout=DEADLINE)
+
+    def drive(self, x, y, **values):
+        """Drive to a point in odom: seconds it takes, seconds until it drives, angle errors [rad], message."""
+        defaults = {name: getattr(GotoParams(), name) for name in ("angular_gain", "max_angular_velocity")}
+        self.tuning.update_configuration({**defaults, **values})
+        goal = self.goals.send(x, y)
+        message = goal.result().result.message
+        feedback = goal.feedback()
+        stamps = [m.header.stamp.to_sec() - feedback[0].header.stamp.to_sec() for m in feedback]
+        driving = [stamp for stamp, m in zip(stamps, feedback) if m.feedback.message.startswith("driving")]
+        took = re.search(r"after ([\d.]+) s", message)
+        self.assertTrue(took, message)
+        return float(took[1]), driving[0], [m.feedback.angle_error for m in feedback], message
+
+    def test_the_first_drive(self):
+        took, _, _, message = self.drive(1.0, 0.0)
+        line = r"REACHED: 0\.098 m from the goal x 1\.00 y 0\.00 after ([\d.]+) s"
+        for figure in printed(f"SUCCEEDED: {line} .*{line}"):
+            self.assertAlmostEqual(took, figure, delta=0.15)
+        self.assertTrue(message.startswith("REACHED: 0.098 m from the goal"), message)
+
+    def test_tuning_as_it_is(self):
+        turn, reached = printed(r"turns within ([\d.]+) s and reports REACHED after about (\d+) s")
+        took, turned, _, _ = self.drive(*TO_THE_RIGHT)
+        self.assertLessEqual(turned, turn)
+        self.assertAlmostEqual(took, reached, delta=0.7)
+
+    def test_tuning_with_a_low_gain(self):
+        turn, reached = printed(r"the turn takes nearly (\d+) s, .*?REACHED comes after about (\d+) s")
+        took, turned, angles, _ = self.drive(*TO_THE_RIGHT, angular_gain=1.0)
+        self.assertTrue(turn - 0.5 < turned < turn, turned)
+        self.assertAlmostEqual(took, reached, delta=0.7)
+        self.assertLess(max(angles), GotoParams().angle_tolerance, "it passes the goal's direction")
+
+    def test_tuning_with_a_high_speed(self):
+        shortest, longest = printed(r"turns back, and needs (\d+) to (\d+) s")
+        took, _, angles, _ = self.drive(*TO_THE_RIGHT, angular_gain=5.0, max_angular_velocity=2.8)
+        self.assertTrue(shortest <= took <= longest, took)
+        self.assertGreater(max(angles), 0.5)
+
+    def test_tuning_with_a_high_gain(self):
+        _, _, angles, message = self.drive(*TO_THE_RIGHT, angular_gain=20.0, max_angular_velocity=2.8)
+        self.assertTrue(message.startswith(("REACHED", "STUCK")), message)
+        self.assertGreater(max(angles), 1.0)
+        self.assertLess(min(angles), -1.0)
+        changes = sum(a * b < 0 for a, b in zip(angles, angles[1:]))
+        self.assertGreater(changes, 4, "changes of the angle error's sign")
+
+    def test_the_reason_that_is_given(self):
+        speed, stops, acceleration, angle = printed(
+            r"From ([\d.]+) rad/s its base needs ([\d.]+) s at ([\d.]+) rad/s², in which it turns by ([\d.]+) rad"
+        )
+        self.assertAlmostEqual(speed / acceleration, stops, delta=0.05)
+        self.assertAlmostEqual(speed**2 / (2 * acceleration), angle, delta=0.05)
+        gains = (
+            r"With a gain of (\d+) the velocity falls from an error of ([\d.]+) rad on, with (\d+) only from ([\d.]+)"
+        )
+        low, small, high, smaller = printed(gains)
+        self.assertTrue(math.isclose(speed / low, small) and math.isclose(speed / high, smaller))
+
+
+if __name__ == "__main__":
+    run(LabFigures)

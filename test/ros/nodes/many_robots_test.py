@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Ten robots in one world, each with its own frames, scan and server, and a goal for each at the same time.
+
+Time stands while goals are sent, and advances by ~step.
+"""
+
+import copy
+import math
+import os
+import unittest
+
+import numpy as np
+import rospkg
+import rospy
+import tf2_ros
+import yaml
+from actionlib_msgs.msg import GoalStatus
+from aro_robocop_goto_as.msg import SimStatus
+from aro_robocop_goto_as.srv import Step
+from harness import (
+    ACTION,
+    DEADLINE,
+    PACKAGE,
+    SERVER,
+    SIMULATOR,
+    Goals,
+    Recorder,
+    call_simulator,
+    distance,
+    run,
+    wait_for,
+)
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from aro_robocop_goto_as.geometry import Pose2D, compose
+from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.ros.convert import from_pose_msg
+from aro_robocop_goto_as.world.load import find_world, load_world
+
+NAMES = [f"robot_{i}" for i in range(1, 11)]
+START = 120.0  # [s, wall] for ten servers to come up
+# The goal of each robot in its base_footprint [m], and its outcome in the default world.
+GOALS = {
+    "robot_1": (-0.8, 0.0, "OBSTACLE"),  # robot_2
+    "robot_2": (0.05, 0.05, "REACHED"),  # without moving
+    "robot_3": (0.5, 0.0, "REACHED"),  # where robot_7 stood before it left
+    "robot_4": (0.0, 0.6, "OBSTACLE"),  # a wall
+    "robot_5": (0.6, 0.0, "REACHED"),
+    "robot_6": (-0.5, 0.0, "REACHED"),
+    "robot_7": (0.6, -0.1, "REACHED"),
+    "robot_8": (0.9, 0.0, "OBSTACLE"),  # a pillar
+    "robot_9": (0.0, -0.5, "REACHED"),
+    "robot_10": (0.0, -0.6, "REACHED"),
+}
+SPACING = 0.5  # [m] between neighbours at the start
+TOLERANCE = 0.1  # [m] of the handout
+OBSTACLE_DISTANCE, OBSTACLE_HALF_ANGLE = 0.3, math.pi / 6.0  # [m], [rad] of the handout
+ODOM_RATE = 30  # [Hz]
+NOISE = 0.05  # [m] five sigma of a scan
+BASE_FROM_SCAN = Pose2D(-0.032, 0.0)
+SCAN_HEIGHT, LIDAR_RADIUS = 0.182, 0.055  # [m] of a Burger
+LINKS = {  # child: parent, of a Burger
+    "base_footprint": "odom",
+    "base_link": "base_footprint",
+    "base_scan": "base_link",
+    "imu_link": "base_link",
+    "caster_back_link": "base_link",
+    "wheel_left_link": "base_link",
+    "wheel_right_link": "base_link",
+}
+
+
+def clearance_ahead(walls, scanner, others):
+    """Distance [m] from a scanner to the nearest wall or other robot in the cone ahead."""
+    samples = 61
+    ahead = Fan(-OBSTACLE_HALF_ANGLE, 2.0 * OBSTACLE_HALF_ANGLE / (samples - 1), samples)
+    crowded = copy.copy(walls)
+    crowded.circles = np.concatenate([walls.circles, [(other.x, other.y, LIDAR_RADIUS) for other in others]])
+    return ahead.cast(np.array([[scanner.x, scanner.y, scanner.yaw]]), crowded).min()
+
+
+def yaw_towards(here, there):
+    """Bearing [rad] of a point from a pose, in [0, 2 pi)."""
+    return (math.atan2(there.y - here.y, there.x - here.x) - here.yaw) % (2.0 * math.pi)
+
+
+class ManyRobots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        status = Recorder(f"{SIMULATOR}/status", SimStatus)
+        expected = sorted(f"/{name}{SERVER} driving {name}" for name in NAMES)
+        wait_for(
+            lambda: status.messages and status.messages[-1].drivers == expected,
+            lambda: f"lockstep waits for all servers; the last status: {status.messages[-1:]}",
+            START,
+        )
+        cls.step_service = rospy.ServiceProxy(f"{SIMULATOR}/step", Step)
+        cls.step_service.wait_for_service(DEADLINE)
+        cls.goals = [Goals(f"/{name}/{ACTION}", f"/{name}{SERVER}") for name in NAMES]
+        cls.truth = [Recorder(f"/{name}/ground_truth_odom", Odometry) for name in NAMES]
+
+    def setUp(self):
+        call_simulator("reset")
+        for truth in self.truth:
+            truth.clear()
+        self.step_until(lambda: all(self.truth), "ground truth of every robot")
+
+    def step(self, seconds):
+        """Advance time, and wait until this node has received it; the new time."""
+        answer = self.step_service(seconds)
+        self.assertTrue(answer.success, answer.message)
+        wait_for(lambda: rospy.get_rostime() >= answer.stamp, "the clock")
+        return answer.stamp
+
+    def step_until(self, condition, what, seconds=0.1):
+        """Advance time in steps until a condition is true."""
+        wait_for(lambda: self.step(seconds) and condition(), what, START)
+
+    def poses(self, stamp):
+        """The true poses of all robots at a time."""
+        return [
+            from_pose_msg(next(m for m in reversed(truth.messages) if m.header.stamp <= stamp).pose.pose)
+            for truth in self.truth
+        ]
+
+    def poses_now(self):
+        """The true poses of all robots now."""
+        stamp = self.step(0.1)
+        for truth in self.truth:
+            truth.wait_for(lambda m: m.header.stamp == stamp, "current ground truth")
+        return self.poses(stamp)
+
+    def test_tf_has_every_frame_of_every_robot_below_map_and_no_frame_without_prefix(self):
+        buffer = tf2_ros.Buffer(debug=False)
+        listener = tf2_ros.TransformListener(buffer)
+        self.addCleanup(listener.unregister)
+        expected = {"map": "world"}
+        for name in NAMES:
+            expected[f"{name}/odom"] = "map"
+            expected.update({f"{name}/{child}": f"{name}/{parent}" for child, parent in LINKS.items()})
+
+        def tree():
+            frames = yaml.safe_load(buffer.all_frames_as_yaml()) or {}
+            return {frame: link["parent"] for frame, link in frames.items()}
+
+        self.step_until(lambda: len(tree()) >= len(expected), lambda: f"{len(expected)} frames; there are {tree()}")
+        self.assertEqual(tree(), expected)
+        for name, pose in zip(NAMES, self.poses_now()):
+            there, scanner = compose(pose, BASE_FROM_SCAN), f"{name}/base_scan"
+            translation = buffer.lookup_transform("map", scanner, rospy.Time(0)).transform.translation
+            self.assertLess(distance(translation, there), 1e-3, scanner)
+            self.assertAlmostEqual(translation.z, SCAN_HEIGHT, delta=1e-6)
+
+    def test_simulator_publishes_one_tf_message_for_all_robots_at_the_rate_of_odometry(self):
+        tf, start = Recorder("/tf", TFMessage), rospy.Time(0)
+
+        def from_simulator():
+            return [
+                m
+                for m in tf.messages
+                if m._connection_header["callerid"] == SIMULATOR and m.transforms[0].header.stamp > start
+            ]
+
+        self.step_until(from_simulator, "TF from the simulator")
+        start = self.step(0.1)
+        self.step(1.0)
+        wait_for(lambda: len(from_simulator()) >= ODOM_RATE, "TF of a second")
+        for message in from_simulator():
+            frames = [(transform.header.frame_id, transform.child_frame_id) for transform in message.transforms]
+            self.assertEqual(frames, [(f"{name}/odom", f"{name}/base_footprint") for name in NAMES])
+            self.assertEqual(len({transform.header.stamp for transform in message.transforms}), 1)
+        stamps = [m.transforms[0].header.stamp.to_sec() for m in from_simulator()]
+        np.testing.assert_allclose(np.diff(stamps), 1.0 / ODOM_RATE, atol=1e-6)
+        self.assertEqual(len(stamps), ODOM_RATE)
+
+    def test_the_scan_of_every_robot_shows_its_neighbours(self):
+        scans = [Recorder(f"/{name}/scan", LaserScan) for name in NAMES]
+        self.step_until(lambda: all(scans), "a scan of every robot")
+        scanners = [compose(pose, BASE_FROM_SCAN) for pose in self.poses_now()]
+        for scanner, scan in zip(scanners, scans):
+            self.assertEqual(scan.newest().header.frame_id, scan.topic[1:].replace("scan", "base_scan"))
+            neighbours = [other for other in scanners if 0.0 < distance(scanner, other) < SPACING + 0.01]
+            self.assertGreater(len(neighbours), 0)
+            for other in neighbours:
+                beam = round(yaw_towards(scanner, other) / scan.newest().angle_increment)
+                self.assertAlmostEqual(scan.newest().ranges[beam], distance(scanner, other) - LIDAR_RADIUS, delta=NOISE)
+
+    def test_ten_goals_at_once_end_as_ground_truth_shows(self):
+        starts = self.poses_now()
+        sent = [goals.send(*GOALS[name][:2]) for name, goals in zip(NAMES, self.goals)]
+        for goal in sent:
+            wait_for(lambda goal=goal: GoalStatus.ACTIVE in goal.states(), "acceptance of a goal")
+        self.step_until(lambda: all(goal.results() for goal in sent), "the end of every goal", 1.0)
+        ends = self.poses_now()
+        for i, (name, goal) in enumerate(zip(NAMES, sent)):
+            x, y, word = GOALS[name]
+            with self.subTest(robot=name, result=goal.result().result.message):
+                goal.assert_ended_once()
+                goal.result(word)
+                if word == "REACHED":
+                    self.assertLess(distance(ends[i], compose(starts[i], Pose2D(x, y))), TOLERANCE + 0.01)
+                else:
+                    self.assert_obstacle_ahead(i, goal.result().header.stamp)
+        for goals in self.goals:
+            goals.assert_each_ended_once()
+            self.assertEqual(goals.of_others(), [])
+
+    def assert_obstacle_ahead(self, robot, stamp):
+        """At that time an obstacle was within the limit ahead of a robot, but not much nearer."""
+        scanners = [compose(pose, BASE_FROM_SCAN) for pose in self.poses(stamp)]
+        scanner = scanners.pop(robot)
+        clearance = clearance_ahead(self.walls(), scanner, scanners)
+        self.assertLess(clearance, OBSTACLE_DISTANCE + NOISE)
+        self.assertGreater(clearance, OBSTACLE_DISTANCE - 2.0 * NOISE)
+
+    def walls(self):
+        """The default world at the height of a scanner."""
+        worlds = os.path.join(rospkg.RosPack().get_path(PACKAGE), "worlds")
+        return Slice(load_world(find_world("stage_4", worlds)), SCAN_HEIGHT)
+
+
+if __name__ == "__main__":
+    run(ManyRobots)

@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Every outcome of a goal, and that the server serves the next goal after each of them."""
+
+import math
+import unittest
+
+from actionlib_msgs.msg import GoalStatus
+from fake_robot import PERIOD, FakeRobot
+from geometry_msgs.msg import Twist
+from harness import Recorder, run, wait_for
+from rosgraph_msgs.msg import Log
+
+from aro_robocop_goto_as.geometry import Pose2D
+
+
+class ServerEnds(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.robot = FakeRobot()
+
+    def setUp(self):
+        self.robot.renew()
+
+    def start(self, x=2.0, y=0.0, ticks=10):
+        """Send a goal and follow it for some control periods; the goal."""
+        goal = self.robot.start(x, y)
+        for _ in range(ticks):
+            self.assertTrue(self.robot.tick(goal))
+        return goal
+
+    def assert_ended(self, goal, word):
+        """A goal has this outcome, the last command is zero, and the next goal is reached; the result's message."""
+        result = self.robot.end(goal, word)
+        self.robot.goals.assert_each_ended_once()
+        self.robot.renew()
+        following = self.start(0.3, 0.0, ticks=0)
+        self.robot.follow(following)
+        self.robot.end(following, "REACHED")
+        self.robot.goals.assert_each_ended_once()
+        return result.result.message
+
+    def assert_missing_data_ends_a_goal(self, **silent):
+        """A goal survives 0.8 s without odometry or scan, but not much more than 1 s; the goal."""
+        goal = self.start()
+        for _ in range(8):
+            self.assertTrue(self.robot.tick(goal, **silent))
+        for _ in range(3):
+            self.assertTrue(self.robot.tick(goal))
+        self.robot.settle()  # or late messages would extend the time with data
+        took = self.robot.follow(goal, **silent)
+        self.assertTrue(0.85 < took < 1.25, took)  # a message before a clock tick is stamped with the tick before
+        return goal
+
+    def test_goal_is_reached(self):
+        goal = self.start(0.5, 0.0)
+        self.robot.follow(goal)
+        text = self.assert_ended(goal, "REACHED")
+        self.assertRegex(text, r"^REACHED: 0\.(0..|100) m from the goal x 0\.50 y 0\.00 after \d\.\d s$")
+
+    def test_obstacle_ahead_ends_the_goal(self):
+        goal = self.start()
+        self.robot.see(0.2, [0])
+        self.robot.follow(goal)
+        self.assertRegex(self.assert_ended(goal, "OBSTACLE"), r"^OBSTACLE: obstacle 0\.200 m ahead \(limit 0\.3 m\); ")
+
+    def test_cancel_is_served_within_the_control_period_while_the_clock_is_stopped(self):
+        goal = self.start()
+        goal.cancel()
+        self.assertEqual(self.robot.end(goal, "PREEMPTED").header.stamp, self.robot.now)
+        self.assertEqual(len(self.robot.commands), 11)  # one for each control period, and then zero
+        self.assert_ended(goal, "PREEMPTED")
+
+    def test_cancel_before_the_first_control_period_is_served(self):
+        goal = self.start(ticks=0)
+        goal.cancel()
+        self.assert_ended(goal, "PREEMPTED")
+
+    def test_newer_goal_preempts_within_the_control_period(self):
+        older = self.start()
+        self.robot.log.clear()
+        newer = self.robot.goals.send(0.4, 0.0)
+        result = self.robot.end(older, "PREEMPTED")
+        self.assertEqual(result.header.stamp, self.robot.now)
+        self.assertEqual(result.status.status, GoalStatus.PREEMPTED)
+        self.robot.commands.clear()
+        self.robot.wait_for_acceptance(newer)
+        self.robot.follow(newer)
+        self.assert_ended(newer, "REACHED")
+
+    def test_goal_ends_after_one_second_without_a_scan_but_not_sooner(self):
+        goal = self.assert_missing_data_ends_a_goal(scan=False)
+        self.assertRegex(
+            self.assert_ended(goal, "NO_SCAN"), r"^NO_SCAN: no message on /scan for 1\.\d s \(limit 1 s\)$"
+        )
+
+    def test_scan_of_nan_ahead_for_a_second_ends_the_goal_but_not_for_less(self):
+        goal = self.start()
+        self.robot.see(math.nan, range(-40, 41))
+        for _ in range(8):
+            self.assertTrue(self.robot.tick(goal))
+        self.robot.see(math.inf, [0])
+        for _ in range(3):
+            self.assertTrue(self.robot.tick(goal))
+        self.robot.see(math.nan, [0])
+        took = self.robot.follow(goal)
+        self.assertTrue(0.85 < took < 1.25, took)
+        text = self.assert_ended(goal, "NO_SCAN")
+        self.assertRegex(text, r"^NO_SCAN: no valid beam ahead on /scan for 1\.\d s \(limit 1 s\)$")
+
+    def test_robot_does_not_move_by_a_scan_that_is_nan_from_the_start_of_the_goal(self):
+        self.robot.see(math.nan, range(360))
+        self.robot.pass_time(2.0)
+        self.robot.settle()
+        goal = self.start(ticks=0)
+        wait_for(lambda: self.robot.pass_time(PERIOD) or goal.results(), "the goal's end")
+        self.robot.end(goal, "NO_SCAN")
+        self.assertEqual(self.robot.commands.messages, [Twist()])
+        self.assert_ended(goal, "NO_SCAN")
+
+    def test_no_odometry_for_a_second_ends_the_goal_but_not_for_less(self):
+        goal = self.assert_missing_data_ends_a_goal(odom=False)
+        self.assertRegex(
+            self.assert_ended(goal, "NO_ODOM"), r"^NO_ODOM: no message on /odom for 1\.\d s \(limit 1 s\)$"
+        )
+
+    def test_stale_data_does_not_move_the_robot(self):
+        self.robot.pass_time(60.0, odom=False, scan=False)
+        goal = self.start(ticks=0)
+        wait_for(lambda: self.robot.pass_time(PERIOD, odom=False, scan=False) or goal.results(), "the goal's end")
+        self.robot.end(goal, "NO_ODOM")
+        self.assertEqual(self.robot.commands.messages, [Twist()])
+        self.assert_ended(goal, "NO_ODOM")
+
+    def test_goal_waits_up_to_one_second_for_its_first_data(self):
+        self.robot.pass_time(60.0, odom=False, scan=False)
+        goal = self.start(ticks=0)
+        self.robot.pass_time(0.8, odom=False, scan=False)
+        self.robot.pass_time_until(goal.feedback, "feedback")
+        goal.cancel()
+        self.assert_ended(goal, "PREEMPTED")
+
+    def test_goal_ends_as_stuck_after_five_seconds_without_progress(self):
+        goal = self.start()
+        self.robot.obeys = False
+        took = self.robot.follow(goal)
+        self.assertTrue(4.5 < took < 5.5, took)
+        self.assertRegex(self.assert_ended(goal, "STUCK"), r"^STUCK: no progress for 5\.\d s; 1\.\d+ m")
+
+    def test_goal_ends_as_stuck_without_turning_progress(self):
+        goal = self.start(-2.0, 0.1)
+        self.robot.obeys = False
+        self.assertLess(self.robot.follow(goal), 5.5)
+        self.assert_ended(goal, "STUCK")
+
+    def test_a_slow_turn_is_progress(self):
+        goal = self.start(-2.0, 0.1, ticks=0)
+        self.robot.obeys = False
+        for _ in range(100):  # 10 s at 0.2 rad/s
+            self.assertTrue(self.robot.tick(goal))
+            self.robot.pose = Pose2D(yaw=self.robot.pose.yaw + 0.2 * PERIOD)
+        goal.cancel()
+        self.assert_ended(goal, "PREEMPTED")
+
+    def test_goal_ends_at_its_timeout(self):
+        goal = self.start(100.0, 0.0)
+        self.assertAlmostEqual(self.robot.follow(goal) + 1.0, 15.1, delta=0.25)
+        text = self.assert_ended(goal, "TIMEOUT")
+        self.assertRegex(
+            text, r"^TIMEOUT: not reached within 15 s; 9\d\.\d+ m from the goal x 100\.00 y 0\.00 after 15\.\d s$"
+        )
+
+    def test_goal_of_nan_infinity_or_out_of_reach_is_a_bad_goal_and_does_not_move_the_robot(self):
+        for x, y in ((math.nan, 0.0), (0.0, math.inf), (-math.inf, math.nan), (-1e39, 0.0), (0.0, 1e300)):
+            goal = self.robot.send(x, y)
+            self.assertIn(f"position x {x} y {y}", self.robot.end(goal, "BAD_GOAL").result.message)
+            self.assertEqual(self.robot.commands.messages, [Twist()])
+            self.assert_ended(goal, "BAD_GOAL")
+
+    def test_odometry_of_nan_or_huge_numbers_ends_the_goal_with_one_line_and_not_the_server(self):
+        log = Recorder("/rosout", Log, wait=False)  # unlike the robot's, not cleared when the next goal is sent
+        for x, y in ((math.nan, 0.0), (1e300, 0.0), (0.0, -1e39), (0.0, math.inf)):
+            goal = self.start()
+            self.robot.stand_at(Pose2D(x, y))
+            self.robot.follow(goal)
+            expected = (
+                f"ERROR: /odom holds an impossible pose: expected finite numbers within +-1e+06 m, got x {x} y {y}"
+            )
+            self.assertEqual(goal.result("ERROR").result.message, expected)
+            log.wait_for(lambda m: "impossible pose" in m.msg, "the error in the log")
+            self.assert_ended(goal, "ERROR")
+            self.assertEqual([m.msg for m in log.messages if "impossible pose" in m.msg], [expected])
+            log.clear()
+
+    def test_clock_set_back_ends_neither_the_goal_nor_the_server(self):
+        self.robot.pass_time(1000.0)
+        self.robot.settle()
+        goal = self.start()
+        before = self.robot.now
+        self.robot.now_ns -= 900 * 1000000000
+        self.robot.pass_time_until(lambda: goal.feedback()[-1].header.stamp < before, "feedback after the jump")
+        goal.cancel()
+        self.assert_ended(goal, "PREEMPTED")  # and the next goal, older by its stamp, is reached
+
+
+if __name__ == "__main__":
+    run(ServerEnds)

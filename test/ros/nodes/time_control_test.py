@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Control of simulated time: real-time factor, steps, seeds, and a clock that is set back; and setting poses."""
+
+import rospy
+from aro_robocop_goto_as.msg import SimStatus
+from aro_robocop_goto_as.srv import Reset, SetPose, SetPoseRequest, Step
+from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure.client import Client
+from harness import (
+    BRIDGE,
+    SIMULATOR,
+    Recorder,
+    SystemTest,
+    call_simulator,
+    distance,
+    run,
+    wait_for,
+    wait_for_connection,
+)
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import String
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.ros.convert import to_quaternion
+
+
+def service(name, kind):
+    rospy.wait_for_service(f"{SIMULATOR}/{name}", 60.0)
+    return rospy.ServiceProxy(f"{SIMULATOR}/{name}", kind)
+
+
+class TimeControl(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.status = Recorder(f"{SIMULATOR}/status", SimStatus)
+        cls.clock = Recorder("/clock", Clock)
+        cls.step, cls.reset, cls.set_pose = service("step", Step), service("reset", Reset), service("set_pose", SetPose)
+
+    def tearDown(self):
+        call_simulator("unpause")
+        super().tearDown()
+
+    def test_a_step_publishes_all_messages_of_its_duration_and_then_time_stops(self):
+        call_simulator("pause")
+        odom = Recorder("odom", Odometry)
+        wait_for_connection(SIMULATOR, "odom")
+        before = self.step(0.0).stamp
+        odom.clear()
+        answer = self.step(2.0)
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual((answer.stamp - before).to_sec(), 2.0, places=6)
+        wait_for(lambda: len(odom) == 60, lambda: f"60 messages, there are {len(odom)}")
+        self.assertLessEqual(odom.messages[-1].header.stamp, answer.stamp)
+        self.assertAlmostEqual((self.step(0.0).stamp - answer.stamp).to_sec(), 1.0 / 240.0, places=6)
+
+    def test_a_step_of_an_invalid_duration_is_refused_with_the_reason(self):
+        for duration in (-1.0, float("nan"), float("inf")):
+            answer = self.step(duration)
+            self.assertFalse(answer.success)
+            self.assertIn(f"duration {duration}: expected 0 to", answer.message)
+
+    def test_the_real_time_factor_follows_dynamic_reconfigure(self):
+        client = Client(SIMULATOR[1:], timeout=60)
+        client.update_configuration({"real_time_factor": 2.0})
+        self.status.wait_for(lambda m: m.factor_asked == 2.0, "factor 2")
+        self.assertEqual(client.update_configuration({"real_time_factor": -3.0})["real_time_factor"], 2.0)
+        self.goals.log.wait_for(lambda m: "expected a number, 0 or more, got -3; keeping 2" in m.msg, "a complaint")
+        client.update_configuration({"real_time_factor": 1e-5})  # a clock tick in half an hour
+        self.status.wait_for(lambda m: m.factor_asked == 1e-5, "hardly any time")
+        client.update_configuration({"real_time_factor": 0.0})
+        self.status.wait_for(lambda m: m.factor_asked == 0.0, "as fast as possible", len(self.status))
+        client.update_configuration({"real_time_factor": 4.0})
+        self.status.wait_for(lambda m: m.factor_asked == 4.0, "factor 4", len(self.status))
+
+    def test_the_same_seed_gives_the_same_noise(self):
+        def first_scan(seed):
+            call_simulator("pause")
+            self.assertTrue(self.reset(seed).success)
+            scans = Recorder("scan", LaserScan)
+            wait_for_connection(SIMULATOR, "scan")
+            self.step(0.1)
+            return list(scans.newest().ranges)
+
+        self.assertEqual(first_scan(5), first_scan(5))
+        self.assertNotEqual(first_scan(5), first_scan(6))
+        self.assertIn("seed -3: expected a positive number", self.reset(-3).message)
+
+    def test_goals_and_reports_continue_after_the_clock_is_set_back(self):
+        self.goals.send(0.3, 0.0).result("REACHED")
+        late = self.clock.newest().clock
+        self.assertTrue(self.reset(0).success)
+        self.clock.wait_for(lambda m: m.clock < late, "an earlier time", len(self.clock) - 1)
+        reports = Recorder(f"{BRIDGE}/status", String)
+        self.goals.send(0.3, 0.1).result("REACHED")
+        self.goals.send(0.5, 0.0).result("REACHED")
+        start = len(reports)
+        wait_for(lambda: len(reports) > start, "another report of the bridge's timer")
+
+    def test_set_pose_moves_the_robot_or_names_the_problem(self):
+        request = SetPoseRequest()
+        request.pose.header.frame_id = "map"
+        request.pose.pose.position.x, request.pose.pose.position.y = 1.5, -0.4
+        request.pose.pose.orientation = to_quaternion(1.0)
+        answer = self.set_pose(request)
+        self.assertTrue(answer.success, answer.message)
+        wait_for(lambda: distance(self.robot.pose(), Pose2D(1.5, -0.4)) < 0.001, "the robot there")
+        request.pose.pose.position.x = 2.3
+        answer = self.set_pose(request)
+        self.assertFalse(answer.success)
+        self.assertEqual(
+            answer.message,
+            "pose refused: x 2.300 y -0.400 is 0.050 m from 'walls/link/east', "
+            "expected at least the robot's radius of 0.105 m",
+        )
+        request.pose.header.frame_id = "nowhere"
+        self.assertIn("its frame is 'nowhere'", self.set_pose(request).message)
+        request.pose.pose.orientation.x = float("inf")
+        self.assertIn("expected a quaternion of length 1, got x inf", self.set_pose(request).message)
+        request.robot = "robot_9"
+        self.assertIn("robot 'robot_9' is not one of: ''", self.set_pose(request).message)
+
+    def test_diagnostics_contain_world_physics_and_number_of_robots(self):
+        status = Recorder("/diagnostics", DiagnosticArray).newest().status[0]
+        values = {pair.key: pair.value for pair in status.values}
+        self.assertEqual(
+            (status.name, values["world"], values["drive"], values["robots"]),
+            ("robocop_sim: simulation", "stage_4", "wheels", "1"),
+        )
+
+
+if __name__ == "__main__":
+    run(TimeControl)

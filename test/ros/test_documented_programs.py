@@ -1,0 +1,167 @@
+"""Every ./robocop command that README, CONTRIBUTING and docs/ print runs as printed, in a folder with its files."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+from documentation import commands, inline_commands
+from students import copy_of
+from waiting import wait_for
+
+from aro_robocop_goto_as.process.ports import free_port
+
+ROOT = Path(__file__).resolve().parents[2]
+DEADLINE = 300.0  # [s, wall] for one command on a busy machine
+OVERVIEW = r"^stop +Ctrl-C|is ready, no goal yet"
+SERVING = {"run": OVERVIEW, "sim": OVERVIEW, "web": "http://", "record": "recording to", "replay": OVERVIEW}
+INTERRUPTED = (0, 130, -signal.SIGINT)
+UNFINISHED = "grade my_lab"  # exit status 1: not all points
+# Why a command, recognised by how it begins, is not run here.
+EXCEPTIONS = {
+    "axclient": "needs a display: test/gui/test_axclient.py",
+    "bench": "takes minutes: test_bench_smoke.py",
+    "clean": "removes the set-up that the tests use: test_robocop_command.py",
+    "docs": "test_docs_site.py",
+    "doctor": "its exit status reports what this machine lacks: bootstrap/test_doctor.py",
+    "grade my_lab --watch": "needs a display or a browser: test/gui",
+    "grade-class hand_ins --scheduler": "needs a scheduler: test/solutions/test_class.py",
+    "grade-worker": "needs a scheduler: test/solutions/test_class.py",
+    "image": "needs docker, podman or buildah: test_container.py",
+    "shell python3 test/solutions/graded.py": "takes minutes: test/solutions",
+    "shell rosrun aro_robocop_goto_as robocop_rviz.py": "needs a display: test/gui/test_rviz_starts.py",
+    "teleop": "needs a keyboard: rostest teleop",
+    "test": "this suite",
+}
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(600), pytest.mark.xdist_group("hosting")]
+
+
+def documented():
+    """The commands without ./robocop, except those that only name a command in a sentence."""
+    fenced = [re.sub(r"^(\w+=\S+ )*\./robocop ?", r"\1", command) for command in commands("./robocop")]
+    inline = [command[len("./robocop ") :] for command in inline_commands("./robocop") if command.count(" ") > 1]
+    return sorted({command for command in [*fenced, *inline] if command})
+
+
+def exception(command):
+    """The key of EXCEPTIONS that says why a command is not run; whole words of it."""
+    words = [word for word in command.split() if not re.match(r"[A-Z]\w*=", word)]
+    return next((begin for begin in EXCEPTIONS if words[: len(begin.split())] == begin.split()), None)
+
+
+def environment(folder):
+    """A home, a master and settings of its own, without a display."""
+    left_out = ("DISPLAY", "ROS_IP", "TURTLEBOT3_MODEL")
+    kept = {name: value for name, value in os.environ.items() if name not in left_out}
+    cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
+    master = f"http://localhost:{free_port()}"
+    own = {"HOME": str(folder), "XDG_CACHE_HOME": cache, "ROS_MASTER_URI": master, "ROS_HOSTNAME": "localhost"}
+    return {**kept, **own}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """What the commands name: a solution, a class, a package, a workspace, maps and a recording."""
+    (tmp_path / "robocop").symlink_to(ROOT / "robocop")
+    solution = copy_of("as_taught", tmp_path).rename(tmp_path / "solution")
+    shutil.copy(solution / "scripts" / "robocop_goto_as.py", solution)
+    shutil.copytree(solution, tmp_path / "hand_ins" / "somebody")
+    shutil.copytree(solution, tmp_path / "my_package")
+    shutil.copytree(solution, tmp_path / "catkin_ws" / "src" / "my_package")
+    launch = next((tmp_path / "my_package" / "launch").iterdir())
+    shutil.copy(launch, launch.with_name("other.launch"))
+    for name in ("my_map", "path/to/map"):
+        image = tmp_path / f"{name}.pgm"
+        image.parent.mkdir(parents=True, exist_ok=True)
+        image.write_bytes(b"P5 40 40 255\n" + bytes([254]) * 1600)
+        text = f"image: {image.name}\nresolution: 0.05\norigin: [-1.0, -1.0, 0.0]\nnegate: 0\n"
+        image.with_suffix(".yaml").write_text(f"{text}occupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    return tmp_path
+
+
+class Commands:
+    """Runs ./robocop as printed, in a folder; `close` ends what still runs."""
+
+    def __init__(self, folder):
+        self.folder, self.environment, self.running = folder, environment(folder), []
+
+    def start(self, command, ready):
+        """Start a command that serves until Ctrl-C, and wait until its output matches `ready`; the process."""
+        output = self.folder / f"output_{len(self.running)}"
+        with open(output, "wb") as stream:
+            process = self._popen(command, stdout=stream)
+        self.running.append(process)
+
+        def text():
+            return output.read_text(errors="replace")
+
+        def ended():
+            return process.poll() is not None
+
+        wait_for(lambda: re.search(ready, text(), re.M), lambda: f"{command}: {text()}", DEADLINE, given_up=ended)
+        return process
+
+    def run(self, command):
+        """Run a command that ends by itself; its exit status and output."""
+        output = self.folder / f"output_{len(self.running)}"
+        with open(output, "wb") as stream:
+            self.running.append(self._popen(command, stdout=stream))
+        process = self.running[-1]
+        wait_for(lambda: process.poll() is not None, lambda: f"{command}: {output.read_text()}", DEADLINE)
+        return process.returncode, output.read_text(errors="replace")
+
+    def _popen(self, command, stdout):
+        return subprocess.Popen(
+            ["bash", "-c", f"exec env {command}"],
+            cwd=self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=stdout,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+
+    def end(self, process):
+        """Ctrl-C; the exit status."""
+        os.killpg(process.pid, signal.SIGINT)
+        return process.wait(DEADLINE)
+
+    def close(self):
+        for process in reversed(self.running):
+            if process.poll() is None:
+                self.end(process)
+
+
+@pytest.fixture
+def system(folder):
+    commands = Commands(folder)
+    yield commands
+    commands.close()
+
+
+def test_each_exception_is_printed_somewhere():
+    everything = {*commands("./robocop"), *inline_commands("./robocop")}
+    assert {exception(re.sub(r".*\./robocop ?", "", command)) for command in everything} - {None} == set(EXCEPTIONS)
+    assert sum(exception(command) is None for command in documented()) > 30
+
+
+@pytest.mark.parametrize("command", [command for command in documented() if exception(command) is None])
+def test_printed_command_runs(command, system):
+    name = next(word for word in command.split() if "=" not in word)
+    printed = re.sub(r"^((?:\w+=\S+ )*)", r"\1./robocop ", command)
+    if "my_lab" in command and name != "new":
+        system.run("./robocop new my_lab")
+    if "--robot" in command or name in ("web", "record", "replay"):
+        lab = system.start("./robocop run robots:=3 web:=false", SERVING["run"])
+    if name == "replay":
+        recording = system.start("./robocop record run.bag", SERVING["record"])
+        assert system.run("./robocop goto 0.3 0 --robot robot_1")[0] == 0
+        assert system.end(recording) in INTERRUPTED and system.end(lab) in INTERRUPTED
+    if name in SERVING:
+        assert system.end(system.start(printed, SERVING[name])) in INTERRUPTED
+    else:
+        status, output = system.run(printed)
+        assert status == (1 if command == UNFINISHED else 0), output

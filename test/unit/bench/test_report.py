@@ -1,0 +1,96 @@
+"""bench.report: figures of repeats -> tables of one or of two checkouts, and JSON."""
+
+import json
+
+from aro_robocop_goto_as.bench import report
+from aro_robocop_goto_as.bench.cases import Case
+from aro_robocop_goto_as.bench.measure import Run
+from aro_robocop_goto_as.bench.report import Measured
+
+WHERE = ["Some CPU, 2 cores", "5 s per measurement"]
+
+
+def measured(name, repeats, checkout="", baselines=(), error=None):
+    """A case with (factor, CPU time at factor 1 [s/s]) of each repeat, which loses five messages of each run."""
+    one = Measured(Case(*name.split(":")), checkout, error=error)
+    for number, (factor, cpu) in enumerate(repeats):
+        runs = [Run(at, cpu, 60_000_000, 0.5, 5000, 4995, 0.25) for at in (factor, 1.0)]
+        baseline = {"baseline": baselines[number], "step_us": 13.9, "message_us": 3.4} if baselines else {}
+        one.add(*runs, baseline)
+    return one
+
+
+def rows_of(text):
+    """The rows of a table, as mappings of titles to cells."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    assert len({len(line) for line in lines}) == 1  # aligned
+    head, _, *body = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    return [dict(zip(head, cells)) for cells in body]
+
+
+def test_table_shows_medians_and_spreads_and_sums_of_messages():
+    repeats = [(500.0, 0.0041), (600.0, 0.0052), (540.0, 0.0045)]
+    text = report.table([[measured("kinematic:1", repeats, "", (1000.0, 1200.0, 1100.0))]], WHERE)
+    assert text.startswith("Some CPU, 2 cores\n5 s per measurement\n\n|")
+    assert rows_of(text) == [
+        {
+            "drive": "kinematic 30 Hz",
+            "robots": "1",
+            "factor": "540 (500-600)",
+            "baseline": "1100 (1000-1200)",
+            "of baseline": "0.50 (0.49-0.50)",
+            "CPU at 1 [ms/s]": "4.50 (4.10-5.20)",
+            "memory [MB]": "60.0 (60.0-60.0)",
+            "first scan [s]": "0.50 (0.50-0.50)",
+            "bare step [us]": "13.9 (13.9-13.9)",
+            "bare message [us]": "3.40 (3.40-3.40)",
+            "client busy": "0.25 (0.25-0.25)",
+            "messages": "29970",
+            "lost": "30",
+        }
+    ]
+
+
+def test_repeats_of_two_checkouts_are_compared_in_pairs():
+    other = measured("kinematic:1", [(100.0, 0.02), (50.0, 0.02)], "other")
+    this = measured("kinematic:1", [(300.0, 0.01), (100.0, 0.005)], "this")
+    rows = rows_of(report.table([[other, this]], WHERE))
+    assert [row[""] for row in rows] == ["other", "this", "ratio"]
+    assert [row["factor"] for row in rows] == ["75.0 (50.0-100.0)", "200 (100-300)", "2.50 (2.00-3.00)"]
+    assert rows[2]["CPU at 1 [ms/s]"] == "0.38 (0.25-0.50)"
+    assert "baseline" not in rows[0] and rows[2]["lost"] == "-"
+
+
+def test_failed_case_has_a_row_without_figures_and_a_reason():
+    broken = measured("wheels:50", [(100.0, 0.02)], "other", error="the simulator ended with status 1: no")
+    text = report.table(
+        [[measured("wheels:1", [(100.0, 0.02)])], [broken, Measured(Case("wheels", "50"), "this")]], WHERE
+    )
+    assert [row["factor"] for row in rows_of(text)] == ["100", "-", "-", "-"]
+    assert text.endswith("\n\nwheels:50, other: failed: the simulator ended with status 1: no")
+
+
+def test_busy_client_and_missed_factor_are_noted():
+    result = Measured(Case("wheels", "50"))
+    result.add(Run(1.2, 0.9, 1, 1.0, 10, 10, 0.51), Run(0.8, 1.1, 1, 1.0, 10, 10, 0.1), {})
+    assert result.notes() == [
+        "wheels:50: the client was busy for 0.51 of the time, so it may limit the factor",
+        "wheels:50: only 0.80 of the requested factor 1 reached",
+    ]
+    assert measured("wheels:1", [(9.0, 0.1)]).notes() == []
+
+
+def test_json_has_every_repeat_and_every_ratio():
+    pair = [measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [(300.0, 0.01)], "this")]
+    document = json.loads(report.as_json([pair, [Measured(Case("wheels"), error="no")]], WHERE))
+    compared, failed = document["cases"]
+    assert (document["conditions"], compared["case"]) == (WHERE, "kinematic:1")
+    assert compared["ratios"] == {"factor": [3.0], "cpu_ms": [0.5], "memory_mb": [1.0], "first_scan_s": [1.0]}
+    assert (compared["other"]["figures"]["factor"], compared["this"]["figures"]["factor"]) == ([100.0], [300.0])
+    assert (failed["this"]["error"], failed["this"]["figures"], failed["ratios"]) == ("no", {}, {})
+
+
+def test_conditions_name_processor_versions_and_settings():
+    machine, client = report.conditions(1.5, 3)
+    assert "cores; Python 3." in machine and "numpy" in machine and "load before: " in machine
+    assert client.endswith("1.5 s per measurement; medians of 3, with lowest and highest in brackets.")

@@ -1,0 +1,176 @@
+"""Programs under the agent live in simulated time, which a stub of the grader's end of the channel lets go on."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from support import ROOT
+
+AGENT = os.path.join(ROOT, "src", "robocop_grading", "agent")
+STEP = 10**7  # [ns] of simulated time between two requests
+PATIENCE = 60.0  # [s, wall] for a program to do what it does at one time
+
+
+class Program:
+    """A program under the agent."""
+
+    def __init__(self, folder, text):
+        script = folder / "script.py"
+        script.write_text("import time\nstart = time.monotonic()\n" + text)
+        mine, theirs = socket.socketpair()
+        self.process = subprocess.Popen(
+            [sys.executable, AGENT, f"{theirs.fileno()},1", str(script), "argument"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            pass_fds=[theirs.fileno()],
+        )
+        theirs.close()
+        mine.settimeout(PATIENCE)
+        self._channel, self._lines = mine, mine.makefile("rb")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+        self._channel.close()
+
+    def go_on(self, until):
+        """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended."""
+        try:
+            self._channel.sendall(json.dumps({"until": until, "sent": []}).encode() + b"\n")
+            line = self._lines.readline()
+        except OSError:
+            return None
+        return json.loads(line) if line else None
+
+    def output(self, seconds):
+        """Let it live for this simulated time, or until it ends; what it has printed."""
+        for step in range(1, int(seconds * 1e9) // STEP + 1):
+            if self.go_on(step * STEP) is None:
+                break
+        else:
+            self.process.kill()
+        return self.process.stdout.read().splitlines()
+
+
+def printed(folder, text, seconds=20.0):
+    with Program(folder, text) as program:
+        return program.output(seconds)
+
+
+AFTER = "round(time.monotonic() - start, 6)"
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("time.sleep(0.25)", 0.25),
+        ("import threading; threading.Event().wait(1.5)", 1.5),
+        ("import threading; c = threading.Condition()\nwith c: c.wait(0.3)", 0.3),
+        ("import threading; lock = threading.Lock(); lock.acquire(); lock.acquire(timeout=0.2)", 0.2),
+        ("import threading; t = threading.Thread(target=time.sleep, args=(2.0,)); t.start(); t.join()", 2.0),
+        ("import threading; t = threading.Thread(target=time.sleep, args=(2.0,)); t.start(); t.join(0.5)", 0.5),
+        ("import threading; e = threading.Event(); threading.Timer(0.7, e.set).start(); e.wait(5.0)", 0.7),
+        ("import queue\ntry: queue.Queue().get(timeout=0.4)\nexcept queue.Empty: pass", 0.4),
+        ("import queue\ntry: queue.SimpleQueue().get(timeout=0.4)\nexcept queue.Empty: pass", 0.4),
+        ("import select; select.select([], [], [], 0.6)", 0.6),
+        ("import select, socket; s = socket.socketpair(); select.select([s[0]], [], [], 0.6)", 0.6),
+        ("import select, socket; s = socket.socketpair(); p = select.poll(); p.register(s[0], 1); p.poll(300)", 0.3),
+        ("import socket; s = socket.socketpair(); s[0].settimeout(0.2)\ntry: s[0].recv(1)\nexcept OSError: pass", 0.2),
+        ("import asyncio; asyncio.run(asyncio.sleep(0.35))", 0.35),
+        ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
+        ("import sched; s = sched.scheduler(); s.enter(0.8, 1, print); s.run()", 0.8),
+        ("import rospy; rospy.rostime.wallsleep(0.1)", 0.1),
+    ],
+)
+def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
+    assert float(printed(tmp_path, f"{text}\nprint({AFTER})")[-1]) == pytest.approx(expected, abs=0.011)
+
+
+def test_time_stands_still_while_the_program_works(tmp_path):
+    text = f"for number in range(10**6): pass\nprint({AFTER}, time.time() > 1.6e9)"
+    assert printed(tmp_path, text, 0.5)[-1] == "0.0 True"
+
+
+def test_threads_meet_at_the_same_times_in_every_run(tmp_path):
+    text = (
+        "import queue, threading\nq = queue.Queue()\n"
+        "def produce(period):\n    for _ in range(5):\n        time.sleep(period); q.put(period)\n"
+        "for period in (0.1, 0.15): threading.Thread(target=produce, args=(period,)).start()\n"
+        f"print([(q.get(), {AFTER}) for _ in range(10)])"
+    )
+    (line,) = printed(tmp_path, text)
+    times = [0.1, 0.15, 0.2, 0.3, 0.3, 0.4, 0.45, 0.5, 0.6, 0.75]
+    assert [entry[1] for entry in eval(line)] == times
+
+
+def test_agent_tells_when_the_program_will_wake_up(tmp_path):
+    with Program(tmp_path, "time.sleep(3.0)\ntime.sleep(2.0)") as program:
+        assert program.go_on(STEP)["next"] == 3 * 10**9
+        assert program.go_on(4 * 10**9)["next"] == 5 * 10**9
+        assert program.go_on(6 * 10**9) is None  # rospy takes 0.1 s to end
+
+
+def test_program_that_polls_in_a_busy_loop_does_not_stop_time(tmp_path):
+    text = "time.sleep(0.001)\nwhile time.monotonic() - start < 0.2: pass\nprint('done')\ntime.sleep(60)"
+    with Program(tmp_path, text) as program:
+        assert program.go_on(STEP)["busy"]
+        answers = [program.go_on(step * STEP) for step in range(2, 30)]
+        assert not answers[-1]["busy"]
+
+
+def test_loop_that_waits_for_what_rounding_has_left_of_a_time_goes_on(tmp_path):
+    text = "end = time.monotonic() + 1e-6\nwhile time.monotonic() < end: time.sleep(1e-12)\nprint('done')"
+    assert printed(tmp_path, text, 1.0)[-1] == "done"
+
+
+def test_thread_that_waits_in_an_unknown_way_does_not_stop_time(tmp_path):
+    text = "import os, threading\nthreading.Thread(target=os.read, args=(os.pipe()[0], 1), daemon=True).start()\n"
+    assert printed(tmp_path, f"{text}time.sleep(1.0)\nprint({AFTER})")[-1] == "1.0"
+
+
+def test_other_process_that_works_holds_time_and_one_that_sleeps_does_not(tmp_path):
+    works = "import subprocess, sys\nsubprocess.run([sys.executable, '-c', 'for i in range(10**6): pass'])\n"
+    assert float(printed(tmp_path, f"{works}print({AFTER})", 60.0)[-1]) < 1.0
+    sleeps = "import subprocess\nsubprocess.Popen(['sleep', '60'], stdout=-3, stderr=-3)\ntime.sleep(5.0)\n"
+    started = time.monotonic()
+    assert printed(tmp_path, f"{sleeps}print({AFTER})")[-1] == "5.0"
+    assert time.monotonic() - started < 50.0
+
+
+def test_forked_child_lives_on_the_wall_clock(tmp_path):
+    text = "import os\nif os.fork() == 0:\n    time.sleep(0.1)\n    os._exit(7)\nprint(os.WEXITSTATUS(os.wait()[1]))"
+    assert printed(tmp_path, text, 600.0)[-1] == "7"
+
+
+def test_message_that_arrives_wakes_its_reader_before_time_goes_on(tmp_path):
+    text = (
+        "import socket, threading\ns = socket.create_server(('127.0.0.1', 0))\n"
+        "print(s.getsockname()[1], flush=True)\nc, _ = s.accept()\ndata = c.recv(5)\n"
+        f"print(data, {AFTER}, flush=True)\ntime.sleep(60)\n"
+    )
+    with Program(tmp_path, text) as program:
+        reader = threading.Thread(target=program.go_on, args=(STEP,))
+        reader.start()
+        port = int(program.process.stdout.readline())
+        reader.join()
+        with socket.create_connection(("127.0.0.1", port)) as client:
+            client.sendall(b"hello")
+            program.go_on(2 * STEP)
+            assert program.process.stdout.readline() == "b'hello' 0.01\n"
+
+
+def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):
+    text = "import sys\nprint(__name__, sys.argv[1:], __file__.endswith('script.py'))\nraise ValueError(3)"
+    lines = printed(tmp_path, text)
+    assert lines[0] == "__main__ ['argument'] True"
+    assert lines[1] == "Traceback (most recent call last):" and "script.py" in lines[2] and lines[-1] == "ValueError: 3"

@@ -1,0 +1,252 @@
+"""Each check on constructed records: a correct one passes, each mistake fails with its own cause."""
+
+import math
+from dataclasses import replace
+from typing import List, Tuple
+
+import pytest
+from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
+
+from robocop_grading import record as rec
+from robocop_grading.checks import CHECKS, Failed, NotReached, Passed
+from robocop_grading.record import Record
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "feedback_rate",
+        "feedback_position",
+        "feedback_angle",
+        "turns_to_goal",
+        "drives_straight",
+        "reaches_goal",
+        "success_result",
+        "stands_at_end",
+        "one_ending",
+        "no_exception",
+        "stays_alive",
+    ],
+)
+def test_correct_run_passes(name: str) -> None:
+    assert CHECKS[name](RIGHT, LIMITS) == Passed()
+
+
+_BEFORE = RIGHT.feedback[:1] + RIGHT.feedback[:-1]
+OLD = changed(feedback=tuple(replace(old, time=it.time) for old, it in zip(_BEFORE, RIGHT.feedback)))
+LATE = changed(results=(replace(RIGHT.results[0], time=12.0),), statuses=RIGHT.statuses[:1])
+ERROR, WARN = "[ERROR] [1668.1, 2.3]: ", "\x1b[33m[WARN] [1668.1, 2.3]: "
+TWO = "To transition to an aborted state, the goal must be in a preempting or active state, it is currently in state: 3"
+NONE = (
+    "Your executeCallback did not set the goal to a terminal status.  This is a bug in your ActionServer "
+    "implementation. Fix your code!  For now, the ActionServer will set this goal to aborted"
+)
+WRONG: List[Tuple[str, Record, str]] = [
+    ("feedback_rate", changed(feedback=()), "No feedback was sent at all"),
+    ("feedback_rate", changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
+    ("feedback_rate", changed(feedback=RIGHT.feedback * 5), "not paced"),
+    ("feedback_position", fed_back(position=lambda _: 0.7), "always 0.70"),
+    ("feedback_position", fed_back(position=lambda _: 0.0), "never filled in"),
+    ("feedback_position", fed_back(position=lambda d: d * d), "squared"),
+    ("feedback_position", fed_back(position=lambda _: math.nan), "not finite"),
+    ("feedback_angle", fed_back(angle=lambda a: a - 2.0 * math.pi), "not wrapped: -5.5 rad"),
+    ("feedback_angle", fed_back(angle=math.degrees), "degrees"),
+    ("feedback_angle", fed_back(angle=lambda a: a + 1.0 if 0.5 < a < 0.65 else a), "angle_error is not the goal's"),
+    ("feedback_angle", fed_back(angle=lambda a: -a), "sign of angle_error is wrong"),
+    ("turns_to_goal", commanded(lambda c: replace(c, v=0.1)), "drives while it turns"),
+    (
+        "turns_to_goal",
+        commanded(lambda c: replace(c, v=0.1, w=c.w if c.time < 0.4 else 0.0)),
+        "the threshold of angle_error is not 0.1 rad",
+    ),
+    ("turns_to_goal", commanded(lambda c: replace(c, w=-c.w)), "turns away"),
+    ("turns_to_goal", commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 rad but angular.z stayed 0"),
+    ("turns_to_goal", changed(commands=()), "nothing was published on /cmd_vel"),
+    ("drives_straight", commanded(lambda c: replace(c, v=-c.v)), "backward"),
+    ("drives_straight", commanded(lambda c: replace(c, v=0.0)), "does not drive"),
+    ("drives_straight", commanded(lambda c: replace(c, w=0.5)), "keeps turning"),
+    ("reaches_goal", changed(results=()), "no terminal state"),
+    ("feedback_position", fed_back(position=lambda d: d - 0.1), "always 0.10 m too small"),
+    ("feedback_angle", fed_back(angle=lambda a: a + 0.4), "always 0.40 rad too large"),
+    ("feedback_position", OLD, "position_error in the feedback is an iteration old"),
+    ("reaches_goal", LATE, "the threshold is another one"),
+    ("reaches_goal", changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
+    ("reaches_goal", changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
+    ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "result is missing"),
+    ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, ""),)), "empty"),
+    ("stands_at_end", changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept moving"),
+    ("one_ending", changed(results=RIGHT.results * 2), "two terminal states"),
+    (
+        "no_exception",
+        changed(lines=(rec.Line(3.0, "Traceback (most recent call last):"), rec.Line(3.0, "KeyError: 'x'"))),
+        "KeyError: 'x'",
+    ),
+    ("stays_alive", changed(deaths=(rec.Death(4.0, 1),)), "died"),
+]
+
+
+@pytest.mark.parametrize("name, record, words", WRONG, ids=lambda it: it if isinstance(it, str) else "")
+def test_mistake_fails_its_check_with_the_cause(name: str, record: Record, words: str) -> None:
+    verdict = CHECKS[name](record, LIMITS)
+    assert isinstance(verdict, Failed), verdict
+    assert words in verdict.cause
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in CHECKS if name not in ("no_exception", "stays_alive", "bridge_alive", "waits_for_server")]
+)
+def test_empty_record_never_passes(name: str) -> None:
+    assert not isinstance(CHECKS[name](Record("start", "server", up=False), LIMITS), Passed)
+
+
+def test_a_misspelt_name_is_reported() -> None:
+    record = Record("start", "server", up=False, servers=("/robovop_goto_as",), types=("x/GoToPositionAction",))
+    verdict = CHECKS["action_server"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "The action server is called robovop_goto_as; the handout says robocop_goto_as"
+
+
+@pytest.mark.parametrize("line", ["[INFO] on the way", "[INFO] [1668.1, 2.3]: on the way", "\x1b[32m[DEBUG] x"])
+def test_information_is_never_a_cause(line: str) -> None:
+    record = changed(deaths=(rec.Death(4.0, 1),), lines=(rec.Line(3.0, line),))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "The node died: its output names no error"
+
+
+def test_error_is_named_with_its_file_and_line() -> None:
+    traceback = (
+        "Traceback (most recent call last):",
+        '  File "/home/anna/robocop_goto_as.py", line 34, in execute_cb',
+        "    x, y = self.pose",
+        "TypeError: cannot unpack non-iterable NoneType object",
+        "[INFO] shutting down",
+    )
+    record = changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == (
+        "The node died: TypeError: cannot unpack non-iterable NoneType object "
+        "(robocop_goto_as.py, line 34: x, y = self.pose)"
+    )
+
+
+def test_exception_in_a_library_is_given_the_place_in_the_node() -> None:
+    traceback = (
+        "Traceback (most recent call last):",
+        '  File "/tmp/solution/robocop_goto_as.py", line 51, in execute_cb',
+        "    position_error = np.linalg.norm(dx, dy)",
+        '  File "<__array_function__ internals>", line 200, in norm',
+        '  File "/usr/lib/python3/dist-packages/numpy/linalg/linalg.py", line 2592, in norm',
+        '    raise ValueError("Improper number of dimensions to norm.")',
+        "ValueError: Improper number of dimensions to norm.",
+    )
+    record = changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause.endswith("norm. (robocop_goto_as.py, line 51: position_error = np.linalg.norm(dx, dy))")
+
+
+def test_check_that_was_not_reached_states_the_reason() -> None:
+    verdict = CHECKS["cancel"](RIGHT, LIMITS)
+    assert verdict == NotReached("the goal ended before it could be cancelled")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "[INFO] controller is currently in state ROTATING",
+        "[INFO] [1668.1, 2.3]: a terminal state was reached",
+        "[WARN] No terminal is attached",
+        f"[INFO] {TWO}",
+        "[INFO] no Traceback (most recent call last): here",
+        "user should have patience",
+    ],
+)
+def test_harmless_line_fails_no_check(line: str) -> None:
+    record = changed(lines=(rec.Line(3.0, line),))
+    assert CHECKS["one_ending"](record, LIMITS) == Passed()
+    assert CHECKS["no_exception"](record, LIMITS) == Passed()
+
+
+@pytest.mark.parametrize(
+    "line, words", [(ERROR + TWO, "two terminal"), (f"[ERROR] {TWO}", "two"), (WARN + NONE, "without")]
+)
+def test_message_of_actionlib_at_its_level_names_the_mistake(line: str, words: str) -> None:
+    verdict = CHECKS["one_ending"](changed(lines=(rec.Line(3.0, line),)), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_old_feedback_is_one_mistake_and_a_wrong_one_does_not_say_when_the_goal_is_reached() -> None:
+    assert CHECKS["feedback_angle"](OLD, LIMITS) == Passed()
+    assert CHECKS["reaches_goal"](fed_back(position=lambda d: d - 0.1), LIMITS) == Passed()
+
+
+@pytest.mark.parametrize("turning, words", [(True, "when the robot has turned"), (False, "drives on until then")])
+def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: bool, words: str) -> None:
+    samples = tuple(replace(it, v=0.0 if turning else 0.2, w=0.5 if turning else 0.0) for it in RIGHT.samples)
+    cancelled = changed(cancels=(rec.Cancel(5.0, "g"),), samples=samples)
+    late = replace(cancelled, results=(rec.Result(8.0, "g", rec.PREEMPTED, False, "x"),))
+    verdict = CHECKS["cancel"](late, LIMITS)
+    assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause and words in verdict.cause
+    never = CHECKS["cancel"](cancelled, LIMITS)
+    assert isinstance(never, Failed) and "is not noticed" in never.cause
+
+
+def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, ...] = ()) -> Record:
+    """A bridge's scenario: a click becomes a goal at (x, y), PENDING until 10 s, then ACTIVE."""
+    statuses = rec.Status(0.0, "g", rec.PENDING), rec.Status(10.0, "g", rec.ACTIVE)
+    return Record(
+        "click",
+        "bridge",
+        servers=servers,
+        goals=(rec.Goal("g", x, y, 0.0, ""),),
+        clicks=(rec.Click(0.0, "odom", 1.2, -0.4, 1.2, -0.4),),
+        statuses=statuses,
+        lines=tuple(rec.Line(time, text) for time, text in lines),
+        marks={"watching": 10.0},
+    )
+
+
+@pytest.mark.parametrize(
+    "pending, active, words",
+    [
+        ("[INFO] state: PENDING", "[INFO] state: ACTIVE", ""),
+        ("state 0", "state 1", ""),
+        ("published on /status: 0", "published on /status: 1", ""),
+        ("the goal is active: PENDING", "the goal is active: ACTIVE", ""),
+        ("all is well", "all is well", ""),
+        ("report 3", "report 4", ""),
+        ("ACTIVE", "ACTIVE", "reports ACTIVE while the goal is PENDING"),
+        ("active", "active", "reports ACTIVE while the goal is PENDING"),
+        ("PENDING", "PENDING", "reports PENDING while the goal is ACTIVE"),
+        ("ACTIVE", "PREEMPTED", "shifted: ACTIVE is reported for PENDING"),
+        ("published on /status: 1", "published on /status: 2", "shifted"),
+    ],
+)
+def test_reported_states_are_compared_with_the_true_ones(pending: str, active: str, words: str) -> None:
+    record = _clicked(1.2, -0.4, *((float(t), pending if t < 10 else active) for t in range(2, 30, 4)))
+    verdict = CHECKS["reports_status"](record, LIMITS)
+    assert verdict == Passed() if not words else isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize(
+    "x, y, words",
+    [
+        (-0.4, 1.2, "x and y are swapped"),
+        (1.2, 0.4, "sign of y"),
+        (0.0, 0.0, "never set"),
+        (1.2, 0.0, "y is not set"),
+        (5.0, 5.0, "does not have the message's position"),
+    ],
+)
+def test_cause_of_a_goal_elsewhere_than_the_click_is_named(x: float, y: float, words: str) -> None:
+    verdict = CHECKS["forwards_goal"](_clicked(x, y), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_misspelt_name_of_an_action_client_is_quoted() -> None:
+    record = replace(_clicked(0.0, 0.0, servers=("/robovop_goto_as", "/other")), goals=())
+    verdict = CHECKS["forwards_goal"](replace(record, marks={"clients": 0.0}), LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "The action client looks for robovop_goto_as; the handout says robocop_goto_as"

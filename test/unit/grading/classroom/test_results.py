@@ -1,0 +1,69 @@
+"""Results of a class are stored, and listed in a table."""
+
+import csv
+import io
+import shutil
+
+from class_records import PLAN, RESULTS, report
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robocop_grading.classroom.hand_ins import HandIn
+from robocop_grading.classroom.results import Result, Results, table
+
+
+def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
+    results = Results(tmp_path, {"plan": "1"})
+    hand_in = HandIn("anna", digest="digest of anna")
+    assert not results.has(hand_in)
+    results.keep(report("anna", 0.2))
+    assert results.has(hand_in)
+    assert results.read("anna").points == 0.2
+    assert not results.has(HandIn("anna", digest="another"))
+    assert not Results(tmp_path, {"plan": "2"}).has(hand_in)
+    results.keep(report("anna", 0.1))
+    assert results.read("anna").points == 0.1
+
+
+def test_incomplete_result_is_ignored_and_removed(tmp_path):
+    results = Results(tmp_path, {})
+    results.keep(report("anna", 0.2))
+    (tmp_path / "anna" / "hand_in.json").write_text("{")
+    assert not results.has(HandIn("anna", digest="digest of anna"))
+    shutil.copytree(tmp_path / "anna", tmp_path / ".new-anna")
+    Results(tmp_path, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["anna"]
+
+
+def read(text):
+    """The rows of a table that starts with a byte order mark."""
+    assert text[0] == "\ufeff"
+    return list(csv.DictReader(io.StringIO(text[1:])))
+
+
+def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
+    rows = read(table(RESULTS, PLAN))
+    assert [row["name"] for row in rows] == ["'=anna", "ben", "carl"]
+    assert [row["points"] for row in rows] == ["0.5", "0.0", "0"]
+    assert {row["of"] for row in rows} == {"8.0"}
+    assert [row["server"] for row in rows] == ["0.5", "0.0", "not handed in"]
+    assert {row["bridge"] for row in rows} == {"not handed in"}
+    assert [row["cancel"] for row in rows] == ["failed", "failed", "not handed in"]
+    assert rows[1]["problem"] == "'=cmd"
+
+
+@given(st.text(), st.text())
+def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
+    text = table([Result(name, (), (problem,), 1.0)], PLAN, {name: problem})
+    assert len(read(text)) == 2
+    for separator in ",;\t":
+        for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):
+            for cell in row:
+                assert cell.isprintable()
+                assert not cell.lstrip(" '\"").startswith(("=", "+", "@", "\uff1d")) or cell.startswith("'")
+
+
+def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
+    (row,) = read(table([], PLAN, {"dora": "could not be graded: a worker died"}))
+    assert (row["name"], row["points"], row["problem"]) == ("dora", "", "could not be graded: a worker died")
+    assert row["of"] == "8.0" and not row["cancel"]

@@ -1,0 +1,55 @@
+"""Hosted packages: found at a path."""
+
+from pathlib import Path
+from typing import Dict
+
+import pytest
+from hosted_packages import LAB, MANIFEST, tree
+
+from aro_robocop_goto_as.errors import HostingError
+from robocop_grading.hosting.package import find_package
+
+
+def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> None:
+    tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name) for name in (LAB, "tools")})
+    tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": "", "build/x/package.xml": "<package/>"})
+    for path in ("", "src", f"src/{LAB}"):
+        package = find_package(str(tmp_path / path))
+        assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
+        assert package.nodes == (("robocop_goto_as.py", "aro_robocop_goto_as_node"),)
+
+
+@pytest.mark.parametrize(
+    "files, expected",
+    [
+        ({}, "no package.xml in it or below it"),
+        ({"package.xml": "<package>"}, "package.xml: not XML that can be read: no element found"),
+        ({"package.xml": "<package/>"}, "package.xml: expected a <name>"),
+        (
+            {"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")},
+            "2 packages found, give the",
+        ),
+        ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
+    ],
+)
+def test_folder_without_a_package_to_start_is_refused(tmp_path: Path, files: Dict[str, str], expected: str) -> None:
+    with pytest.raises(HostingError, match=expected):
+        find_package(str(tree(tmp_path, files)))
+
+
+def test_missing_path_is_refused() -> None:
+    with pytest.raises(HostingError, match="/no/such/place: expected the folder of a catkin package"):
+        find_package("/no/such/place")
+
+
+PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
+
+
+def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path: Path) -> None:
+    tree(tmp_path, PAIR)
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "a.launch"
+    tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "launch" / "robocop_goto_as.launch"
+    assert find_package(str(tmp_path), "a.launch").launch_file == tmp_path / "a.launch"
+    with pytest.raises(HostingError, match="no launch file 'b.launch'; available: a.launch, robocop_goto_as.launch"):
+        find_package(str(tmp_path), "b.launch")

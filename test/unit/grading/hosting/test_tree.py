@@ -1,0 +1,72 @@
+"""Folders nested deeper than Python can recurse are walked, refused and removed."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from aro_robocop_goto_as.errors import HostingError
+from robocop_grading.hosting import tree
+from robocop_grading.sandbox.guard import Guard
+
+NESTED = "import os\nfor _ in range(1500):\n    os.mkdir('nested')\n    os.chdir('nested')\nopen('file', 'w').close()\n"
+PATIENCE = 60.0  # [s, wall]
+
+
+@pytest.fixture
+def nested(tmp_path):
+    """A folder with 1,500 nested ones, whose innermost path is longer than the system takes."""
+    folder = tmp_path / "deep"
+    folder.mkdir()
+    subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=PATIENCE)
+    yield folder
+    subprocess.run(["rm", "-rf", folder], check=True)
+
+
+def test_walk_refuses_deeply_nested_folders_without_recursion(nested):
+    with pytest.raises(HostingError, match="expected at most 100 nested folders"):
+        list(tree.walk(nested))
+
+
+def test_deeply_nested_folders_are_removed(nested):
+    tree.remove(nested)
+    assert not nested.exists()
+
+
+def test_temporary_folder_is_removed_whatever_is_in_it(tmp_path):
+    with tree.temporary_folder("made-", tmp_path) as folder:
+        subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=PATIENCE)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_guard_kills_a_process_that_nests_folders(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-c", f"{NESTED}\nimport time\ntime.sleep(600.0)"], start_new_session=True, cwd=tmp_path
+    )
+    guard = Guard(process.pid, tmp_path)
+    try:
+        assert process.wait(PATIENCE) < 0
+        assert guard.reason == "it made more than 100 nested folders"
+    finally:
+        guard.stop()
+        subprocess.run(["rm", "-rf", *tmp_path.iterdir()], check=True)
+
+
+def test_walk_lists_sorted_names_and_does_not_follow_links(tmp_path):
+    (tmp_path / "b").mkdir()
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "x.launch").touch()
+    (tmp_path / "left_out").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "a")
+    levels = [(level.path.name, level.folders, level.files) for level in tree.walk(tmp_path, {"left_out"})]
+    assert levels == [(tmp_path.name, ["a", "b"], ["link"]), ("a", [], ["x.launch"]), ("b", [], [])]
+    assert tree.find(tmp_path, "*.launch") == [tmp_path / "a" / "x.launch"]
+
+
+def test_remove_takes_a_link_and_leaves_what_it_leads_to(tmp_path):
+    (tmp_path / "kept").mkdir()
+    os.symlink(tmp_path / "kept", tmp_path / "link")
+    tree.remove(tmp_path / "link")
+    tree.remove(tmp_path / "nothing")
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]

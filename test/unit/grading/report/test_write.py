@@ -1,0 +1,37 @@
+"""The page of a report: the mistakes, then the failures, then what passed; each row leads to its plot."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from grading_records import PLAN, RIGHT
+
+from robocop_grading.judge import judge
+from robocop_grading.plan import load
+from robocop_grading.report import write as report
+
+
+def test_report_begins_with_the_mistakes_and_links_each_row_to_its_plot(tmp_path):
+    moving = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT.samples))
+    records = {"server": {"left": moving}}
+    grade = judge("<anna>", load(PLAN), records, {})
+    report.write(grade, load(PLAN), records, tmp_path)
+    html = (tmp_path / "report.html").read_text()
+    assert "name='viewport'" in html and "<anna>" not in html
+    begin, failed, passed = (html.index(text) for text in ("What to fix", ">failed: ", "'>passed<"))
+    assert begin < html.index("The robot kept moving") < failed < passed
+    not_reached = html.index("not reached, ")
+    assert html.rindex("<details>", 0, not_reached) > passed, "folded"
+    targets = set(re.findall("href='#([^']+)'", html))
+    assert targets and all(f"id='{target}'" in html for target in targets)
+    rows = html[html.index("<table>") : html.index("</table>")]
+    assert rows.count("<a href='#") == rows.count("<tr><td>") > 5
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
+    (tmp_path / "server-left.bag").write_bytes(b"")
+    records = {"server": {"left": RIGHT}}
+    report.write(judge("anna", load(PLAN), records, {}), load(PLAN), records, tmp_path, kept)
+    (command,) = re.findall(r"\./robocop replay ([^<]+)</code>", (tmp_path / "report.html").read_text())
+    assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")

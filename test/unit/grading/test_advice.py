@@ -1,0 +1,49 @@
+"""Advice on source code that is graded fairly and fails now and then in the lab."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robocop_grading.advice import AUTO_START, WALL_SLEEP, advice
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "SimpleActionServer('robocop_goto_as', GoToPositionAction, execute_cb=self.execute)",
+        "actionlib.SimpleActionServer('robocop_goto_as', GoToPositionAction, self.execute, True)",
+        "import actionlib as al; al.SimpleActionServer('a', A, self.execute, auto_start=True)",
+    ],
+)
+def test_server_that_starts_inside_its_constructor_is_named(code: str) -> None:
+    assert advice(code) == [f"line 1: {AUTO_START}"]
+
+
+def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line() -> None:
+    assert advice("import time\nwhile True:\n    time.sleep(0.1)\n    time.sleep(1)") == [f"line 3: {WALL_SLEEP}"]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "actionlib.SimpleActionServer('a', A, self.execute, False)",
+        "SimpleActionServer('a', A, execute_cb=f, auto_start=False)",
+        "SimpleActionServer('a', A, **options)",
+        "SimpleActionServer('a', A, f, auto_start=START)",
+        "rospy.sleep(0.1); rate.sleep()",
+        "# time.sleep(1)",
+        "print 'Python 2'; time.sleep(1)",
+    ],
+)
+def test_nothing_is_said_of_other_code(code: str) -> None:
+    assert advice(code) == []
+
+
+@given(st.text())
+def test_no_text_is_an_error(code: str) -> None:
+    advice(code)
+
+
+def test_deep_nesting_is_no_error() -> None:
+    advice("-" * 100_000 + "1")
+    advice("a" + ".b" * 5_000 + "()")

@@ -1,0 +1,148 @@
+"""Outcomes, points, and what follows from what."""
+
+from dataclasses import replace
+from typing import Any, Dict, cast
+
+import pytest
+from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back
+
+from robocop_grading import record as rec
+from robocop_grading.judge import Outcome, judge
+from robocop_grading.plan import Plan, load
+from robocop_grading.record import Record
+from robocop_grading.report.github import as_classroom
+from robocop_grading.report.gradescope import as_gradescope
+
+
+def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
+    stuck = changed(goals=(GOAL,), results=(), problem="the robot made no progress for 8 s, and the goal did not end")
+    records = {"server": {"left": stuck, "odd_scan": replace(stuck, name="odd_scan")}}
+    checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
+    odd = checks["odd_scans"].failure
+    assert odd is not None and odd.cause.startswith("This follows from another failed check") and "NaN" not in odd.cause
+
+
+def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
+    lines = ("bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'")
+    click = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4)
+    record = changed(goals=(), clicks=(click,), lines=tuple(rec.Line(2.0, line) for line in lines))
+    record = replace(record, name="click", part="bridge")
+    checks = {check.name: check for check in judge("anna", load(PLAN), {"bridge": {"click": record}}, {}).checks}
+    crash = checks["bridge_alive"].failure
+    assert crash is not None and "AttributeError: no attribute 'x'" in crash.cause
+    assert checks["forwards_goal"].follows == "bridge_alive"
+    assert "wait_for_server" not in checks["waits_for_server"].explanation()
+
+
+def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
+    goal = replace(GOAL, ends="ABORTED")
+    hit = changed(goals=(goal,))
+    records = {"server": {"obstacle": hit, "odd_scan_wall": replace(hit, name="odd_scan_wall")}}
+    checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
+    first, odd = checks["stops_at_obstacle"].failure, checks["odd_scans"].failure
+    assert first is not None and odd is not None
+    assert odd.cause.startswith('This follows from another failed check: "An obstacle closer than')
+    assert "NaN" not in odd.cause
+    assert checks["odd_scans"].follows == "stops_at_obstacle"
+    alone = judge("anna", load(PLAN), {"server": {"odd_scan_wall": hit}}, {})
+    cause = next(check.failure for check in alone.checks if check.name == "odd_scans")
+    assert cause is not None and "NaN hides the wall" in cause.cause
+
+
+def test_what_a_wrong_error_leads_to_follows_from_it_and_another_mistake_does_not() -> None:
+    early = (rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)
+    misled = replace(fed_back(position=lambda d: d / 20.0), results=early)
+    still_driving = {"stands_at_end": ""}
+    assert _failures(misled) == {"feedback_position": "", "reaches_goal": "feedback_position", **still_driving}
+    unrelated = replace(fed_back(position=lambda _: 1.0), results=early)  # its feedback did not say that it was there
+    assert _failures(unrelated) == {"feedback_position": "", "reaches_goal": "", **still_driving}
+
+
+def test_robot_that_acts_on_its_wrong_angle_turns_wrongly_because_of_that() -> None:
+    wrong = replace(fed_back(angle=lambda a: -a), commands=commanded(lambda c: replace(c, w=-c.w)).commands)
+    assert _failures(wrong) == {"feedback_angle": "", "turns_to_goal": "feedback_angle"}
+    assert _failures(commanded(lambda c: replace(c, w=-c.w))) == {"turns_to_goal": ""}
+
+
+def _failures(record: Record) -> Dict[str, str]:
+    """The failed checks of a scenario, and what each follows from."""
+    grade = judge("anna", load(PLAN), {"server": {record.name: record}}, {})
+    return {check.name: check.follows for check in grade.checks if check.failure is not None}
+
+
+def test_node_that_ends_while_starting_has_made_one_mistake_and_the_other_part_has_its_own() -> None:
+    lines = rec.Line(0.1, "Traceback (most recent call last):"), rec.Line(0.1, "NameError: name 'x' is not defined")
+    dead = Record("start", "server", up=False, lines=lines, deaths=(rec.Death(0.2, 1),))
+    bridge = replace(dead, name="no_server", part="bridge")
+    records = {"server": {"start": dead}, "bridge": {"no_server": bridge}}
+    names = [mistake.check.name for mistake in judge("anna", load(PLAN), records, {}).mistakes]
+    assert sorted(names) == ["action_server", "waits_for_server"]
+
+
+def test_mistake_that_blocks_most_points_comes_first() -> None:
+    """As of the empty skeleton."""
+    click = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4)
+    records = {
+        "server": {"start": Record("start", "server", up=False)},
+        "bridge": {"click": Record("click", "bridge", clicks=(click,), marks={"clients": 0.0})},
+    }
+    first, second = judge("anna", load(PLAN), records, {}).mistakes[:2]
+    assert (first.check.name, first.points, first.followers, first.blocked) == ("action_server", 4.9, 0, 19)
+    assert second.check.name == "forwards_goal" and second.points < first.points
+
+
+def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_cost() -> None:
+    wrong = replace(fed_back(angle=lambda a: -a), commands=commanded(lambda c: replace(c, w=-c.w)).commands)
+    wrong = replace(wrong, samples=tuple(replace(sample, v=0.2) for sample in wrong.samples))
+    mistakes = judge("anna", load(PLAN), {"server": {"left": wrong}}, {}).mistakes
+    found = [(mistake.check.name, mistake.points, mistake.followers) for mistake in mistakes]
+    assert found == [("feedback_angle", 0.7, 1), ("stands_at_end", 0.15, 0)]
+
+
+def _grade(plan: Plan, **records: Record) -> Any:
+    return judge("x", plan, {"server": records}, {"server": "time-out: it was at left"})
+
+
+def test_interrupted_scenario_fails_its_checks_with_the_reason() -> None:
+    checks = {check.name: check for check in _grade(load(PLAN), start=replace(RIGHT, name="start")).checks}
+    assert checks["action_server"].outcome is Outcome.PASSED
+    assert checks["reaches_goal"].outcome is Outcome.FAILED
+    assert "time-out: it was at left" in checks["reaches_goal"].explanation()
+
+
+def test_only_submitted_parts_are_graded() -> None:
+    grade = judge("x", load(PLAN), {"server": {"start": replace(RIGHT, name="start")}}, {})
+    assert grade.points_available == 5.0 and {check.part for check in grade.checks} == {"server"}
+    assert not grade.all_right
+
+
+def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
+    plan = load(PLAN)
+    grade = _grade(plan, start=replace(RIGHT, name="start"), left=replace(RIGHT, name="left"))
+    report = as_gradescope(grade, plan)
+    tests = cast("list[dict[str, Any]]", report["tests"])
+    assert report["score"] == pytest.approx(sum(test["score"] for test in tests))
+    assert len(tests) == len(grade.checks)
+    assert {test["status"] for test in tests if test["score"]} == {"passed"}
+    assert sum(test["max_score"] for test in tests) == pytest.approx(grade.points_available)
+
+
+def test_extra_check_that_failed_has_no_score_on_gradescope_and_is_no_failure_on_github() -> None:
+    plan = load(PLAN)
+    grade = judge("x", plan, {"bridge": {"frame": Record("frame", "bridge")}}, {})
+    (extra,) = [check for check in grade.checks if check.extra]
+    tests = cast("list[dict[str, Any]]", as_gradescope(grade, plan)["tests"])
+    (shown,) = [test for test in tests if test["number"] == f"bridge.{extra.name}"]
+    assert extra.outcome is not Outcome.PASSED and not {"score", "max_score", "status"}.intersection(shown)
+    assert extra.name not in str(as_classroom(grade))
+
+
+def test_topic_that_nobody_publishes_is_named_if_something_failed() -> None:
+    own = ("/robovop_goto_as/goal", "/robovop_goto_as/cancel")
+    waits = replace(
+        RIGHT, name="start", servers=("/robovop_goto_as",), unpublished=("/ground_truth_odom", "/scn", *own)
+    )
+    problems = _grade(load(PLAN), start=waits).problems
+    assert not any("robovop" in problem for problem in problems)
+    assert any("subscribes to /scn, which nobody publishes" in problem for problem in problems)
+    assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in problems)

@@ -1,0 +1,92 @@
+"""The grading plan: points, limits, and mistakes in the file."""
+
+import dataclasses
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+from grading_records import LIMITS, PLAN
+
+from aro_robocop_goto_as.errors import ParameterError, PlanError
+from robocop_grading.checks import CHECKS
+from robocop_grading.plan import load, world_of
+
+
+def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
+    plan = load(PLAN)
+    points = {
+        part: round(sum(check.points for check in plan.checks if check.part == part and not check.extra), 6)
+        for part in ("server", "bridge")
+    }
+    assert points == {"server": 5.0, "bridge": 3.0}
+    assert plan.points == 8.0
+    assert {check.name for check in plan.checks} == set(CHECKS)
+    known = {scenario.name for scenario in plan.scenarios} | {"start", "no_server", "click", "replace", "frame"}
+    assert {name for check in plan.checks for name in check.scenarios} <= known
+    assert len(world_of(plan).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in plan.scenarios)
+
+
+def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
+    section = PLAN.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
+    lines = [re.fullmatch(r"  #(\w+): (\S+) +# \S.*", line) for line in section]
+    assert all(lines) and yaml.safe_load(PLAN.read_text())["limits"] is None
+    assert {line[1]: float(line[2]) for line in lines if line} == dataclasses.asdict(LIMITS)
+    assert load(PLAN).limits == LIMITS
+
+
+@pytest.mark.parametrize(
+    "old, new, error",
+    [
+        ("  #feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
+        ("points: 0.5, scenarios: [start]", "punkte: 0.5, scenarios: [start]", "unknown: punkte"),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.7]", "expected 2 numbers"),
+        ("ends: ABORTED", "ends: FAILED", "expected SUCCEEDED, ABORTED or PREEMPTED"),
+        ("limits:", "limits: [", "line"),
+        ("limits:", "border:", "unknown: border"),
+        ("  #stall: 8.0", "  stall: .nan", "stall: expected a finite number"),
+        (
+            "goal: [0.5..0.9, 0.5..0.9]",
+            "goal: [.nan, 0.7]",
+            "expected a number or a range LOW..HIGH from -20 to 20, got nan",
+        ),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.9..0.5, 0.7]", "left: goal: 0.9..0.5: expected LOW..HIGH"),
+        (
+            "goal: [0.5..0.9, 0.5..0.9]",
+            "goal: [0.5..90, 0.7]",
+            "expected a number or a range LOW..HIGH from -20 to 20, got",
+        ),
+        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.5...9, 0.7]", "got '0.5...9'"),
+        ("for: 2.5..3.5", "for: long", "for: expected a number or a range LOW..HIGH from 0"),
+        (
+            "points: 0.5, scenarios: [start]",
+            "points: -1, scenarios: [start]",
+            "points: expected a number from 0",
+        ),
+        ("points: 0.5, scenarios: [start]", "points: 0.3..0.5, scenarios: [start]", "points: expected a number from 0"),
+        ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
+        ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
+        (
+            "part: bridge, points: 1.0, scenarios: [click]",
+            "part: bridge, points: 1.0, scenarios: [left]",
+            "unknown for a bridge: 'left'",
+        ),
+        ("  far_goal:", "  farr_goal:", "unknown: farr_goal"),
+        ("name: right", "name: left", "left: expected a unique name"),
+        ("name: right", "name: a/b", "expected letters, digits and _"),
+        (
+            "- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}",
+            "- {cancel: true}",
+            "cancel: expected an earlier goal in the script",
+        ),
+        ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
+        ("  - [1.6..1.8, 0.2, -0.35, 1.0]", "  - [1.6..1.8, 0.2]", "far: pushes: expected 4 numbers"),
+        ("box: [0.9..1.5, 0.3, 0.29, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
+    ],
+)
+def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
+    text = PLAN.read_text()
+    assert old in text
+    (tmp_path / "plan.yaml").write_text(text.replace(old, new))
+    with pytest.raises((PlanError, ParameterError), match=error):
+        load(tmp_path / "plan.yaml")

@@ -1,0 +1,12 @@
+"""Records as files."""
+
+from pathlib import Path
+
+from grading_records import RIGHT
+
+from robocop_grading import record as rec
+
+
+def test_record_is_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
+    rec.write(RIGHT, tmp_path / "r.json")
+    assert rec.read(tmp_path / "r.json") == RIGHT

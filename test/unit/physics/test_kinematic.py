@@ -1,0 +1,221 @@
+"""The kinematic engine: exact where a robot is free, never through an obstacle; and against its definition."""
+
+import math
+from typing import List, Optional, Tuple
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from reference_fleet import MARGIN, after_arc, free_part, others
+from support import ORIGIN, model_named, world_named
+
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, wrap_angle
+from aro_robocop_goto_as.physics.kinematic import KinematicEngine
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.surroundings import body_heights
+from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.fleet import Fleet
+from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.scripted_motion import Motion
+
+RADIUS = 0.105
+AT_ONCE = Limits(math.inf, math.inf, math.inf, math.inf, 0.0)
+SLACK = 1e-9  # [m] of radius: a disc that just grazes something may be stopped by it or not
+
+numbers = st.floats(-1.0, 1.0)
+velocities = st.tuples(st.floats(-3.0, 3.0), st.floats(-4.0, 4.0))
+
+
+def _world(*obstacles: Obstacle) -> World:
+    return World("w", obstacles, Pose2D(), (), "")
+
+
+def _box(x: float, y: float, yaw: float, length: float, width: float) -> Obstacle:
+    return Obstacle("box", Pose3D.from_xyz_rpy((x, y, 0.25), (0.0, 0.0, yaw)), Box((length, width, 0.5)))
+
+
+def _post(x: float, y: float, radius: float, motion: Optional[Motion] = None) -> Obstacle:
+    return Obstacle("post", Pose3D((x, y, 0.25)), Cylinder(radius, 0.5), motion)
+
+
+WALL = _world(_box(2.0, 0.0, 0.0, 0.02, 4.0))
+obstacles = st.one_of(
+    st.builds(_box, numbers, numbers, st.floats(-4.0, 4.0), st.floats(0.02, 0.5), st.floats(0.02, 0.5)),
+    st.builds(_post, numbers, numbers, st.floats(0.01, 0.4)),
+)
+
+
+def _kinematics(world: World, *spawns: Pose2D, rate: int = 30) -> KinematicEngine:
+    n = len(spawns)
+    engine = KinematicEngine(world, Fleet([model_named("burger")] * n, [AT_ONCE] * n, [RADIUS] * n), rate)
+    engine.reset(spawns)
+    return engine
+
+
+def _drive(engine: KinematicEngine, steps: int, *velocities: Tuple[float, float]) -> None:
+    for robot, (v, w) in enumerate(velocities):
+        engine.fleet.command(robot, Twist2D(v, w), 0.0)
+    engine.advance(0, steps)
+
+
+@given(st.floats(-0.3, 0.3), st.floats(-3.0, 3.0), st.integers(1, 100))
+def test_robot_without_obstacles_follows_the_exact_arc(v: float, w: float, steps: int) -> None:
+    engine = _kinematics(world_named("empty"), ORIGIN)
+    _drive(engine, steps, (v, w))
+    expected = after_arc(ORIGIN, v * steps / 30.0, w * steps / 30.0)
+    x, y, yaw = engine.fleet.pose(0)
+    assert (x, y) == pytest.approx((expected.x, expected.y), abs=1e-8)
+    assert wrap_angle(yaw - expected.yaw) == pytest.approx(0.0, abs=1e-9)
+    assert engine.fleet.twists[0] == pytest.approx((v, w), abs=1e-12)
+    assert engine.fleet.wheel_angles[0] @ [0.5, 0.5] * 0.033 == pytest.approx(v * steps / 30.0, abs=1e-9)
+
+
+@given(
+    st.lists(obstacles, max_size=4),
+    st.lists(st.tuples(numbers, numbers, st.floats(-4.0, 4.0)), min_size=1, max_size=4),
+    st.lists(st.lists(velocities, min_size=4, max_size=4), min_size=1, max_size=3),
+)
+def test_blocked_motion_is_that_of_the_definition(
+    shapes: List[Obstacle], jitters: List[Tuple[float, float, float]], commands: List[List[Tuple[float, float]]]
+) -> None:
+    world = _world(*shapes)
+    engine = _kinematics(
+        world, *(Pose2D(i % 2 + 0.3 * x, i // 2 + 0.3 * y, yaw) for i, (x, y, yaw) in enumerate(jitters))
+    )
+    poses, twists, radii = engine.fleet.poses, engine.fleet.twists, engine.fleet.radii
+    for robot in range(len(jitters)):
+        if engine.touching(robot):  # as it starts: rounding decides what blocks it
+            engine.place(robot, Pose2D(10.0 + robot, 10.0))
+    slices = [Slice(world, height) for height in body_heights(model_named("burger"))]
+    segments = np.unique(np.concatenate([cut.segments for cut in slices]), axis=0)
+    circles = np.unique(np.concatenate([cut.circles for cut in slices]), axis=0)
+    for sent in commands:
+        for _ in range(3):
+            before = poses.copy()
+            _drive(engine, 1, *sent[: len(jitters)])
+            for robot, (v, w) in enumerate(sent[: len(jitters)]):
+                free = after_arc(Pose2D(*before[robot].tolist()), v / 30.0, w / 30.0)
+                start, move = before[robot, :2], np.subtract(free[:2], before[robot, :2])
+                if move.any():
+                    around = others(before, radii, robot) + [0.0, 0.0, MARGIN]
+                    least, most = (
+                        min(
+                            free_part(start, move, RADIUS, segments, circles, slack),
+                            free_part(start, move, RADIUS, segments[:0], around, slack),
+                        )
+                        for slack in (SLACK, -SLACK)
+                    )
+                    assert least * abs(v) - 1e-8 <= math.copysign(1.0, v) * twists[robot, 0] <= most * abs(v) + 1e-8
+                    start = start + twists[robot, 0] / v * move
+                np.testing.assert_allclose(poses[robot, :2], start, atol=1e-9)
+                assert wrap_angle(poses[robot, 2] - free.yaw) == pytest.approx(0.0, abs=1e-9)
+                before[robot] = poses[robot]  # where the next robot meets it
+
+
+@pytest.fixture(name="forests", scope="module")
+def _forests() -> List[KinematicEngine]:
+    """A robot among so many walls that they are indexed, and among those nearest to the origin only."""
+    grid = [(0.5 * i + 0.25, 0.5 * j + 0.25) for i in range(-11, 11) for j in range(-11, 11)]
+    boxes = [_box(x, y, 3.0 * x, 0.1, 0.02) for x, y in grid]
+    near = [box for box in boxes if math.hypot(*box.pose.position[:2]) < 3.5]
+    engines = [_kinematics(_world(*shapes), ORIGIN) for shapes in (boxes, near)]
+    assert [bool(engine._structs[0].grid) for engine in engines] == [True, False]
+    return engines
+
+
+@given(numbers, numbers, st.lists(velocities, min_size=1, max_size=4))
+def test_walls_found_by_a_grid_index_block_as_all_walls_do(
+    forests: List[KinematicEngine], x: float, y: float, commands: List[Tuple[float, float]]
+) -> None:
+    ends = []
+    for engine in forests:
+        engine.reset([Pose2D(x, y)])
+        for command in commands:
+            _drive(engine, 5, command)
+        ends.append((engine.fleet.poses.tobytes(), engine.fleet.twists.tobytes(), engine.touching(0)))
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("v", [0.1, 1.0, 30.0, 1e4])
+@pytest.mark.parametrize("rate", [30, 100])
+def test_robot_stops_in_contact_with_a_wall_at_any_speed(v: float, rate: int) -> None:
+    engine = _kinematics(WALL, ORIGIN, rate=rate)
+    _drive(engine, int(2.5 / v * rate) + 2, (v, 0.0))
+    assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
+    assert engine.touching(0) and engine.fleet.twists[0, 0] == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+def test_robot_that_a_moving_obstacle_pushes_stops_at_another_robot(indexed: bool) -> None:
+    along_x = Motion(Pose2D(-0.3, 0.0), waypoints=((10.0, 1.0, 0.0),))
+    far = [_box(10.0 + i, 10.0, 0.0, 0.1, 0.1) for i in range(300 if indexed else 0)]
+    engine = _kinematics(_world(_post(-0.3, 0.0, 0.1, along_x), *far), ORIGIN, Pose2D(0.3, 0.0))
+    for step in range(1, 100):
+        engine.advance(step, 1)
+        engine.move_obstacles(step / 30.0)
+    assert engine.fleet.poses[:, 0] == pytest.approx([0.3 - 2.0 * RADIUS, 0.3], abs=1e-5)
+    assert engine.touching(0)
+    engine.reset([ORIGIN, Pose2D(0.3, 0.0)])
+    engine.advance(0, 1)
+    assert not engine.touching(0), "the obstacle is back at its start"
+
+
+def test_robot_at_a_wall_can_turn_and_back_out() -> None:
+    engine = _kinematics(WALL, Pose2D(1.5, 0.0))
+    _drive(engine, 60, (1.0, 0.0))
+    _drive(engine, 30, (0.0, 1.0))
+    assert engine.fleet.pose(0).yaw == pytest.approx(1.0)
+    _drive(engine, 30, (-1.0, 0.0))
+    assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS - math.cos(1.0), abs=1e-3)
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(0.01, 300.0), st.floats(-5.0, 5.0))
+def test_robot_never_penetrates_an_obstacle(yaw: float, v: float, w: float) -> None:
+    engine = _kinematics(world_named("stage_2"), Pose2D(0.0, 0.0, yaw))
+    for _ in range(40):
+        _drive(engine, 1, (v, w))
+        x, y, _ = engine.fleet.pose(0)
+        assert max(abs(x), abs(y)) < 1.85 - RADIUS + 1e-9
+        for cx in (-0.6, 0.6):
+            for cy in (-0.6, 0.6):
+                assert math.hypot(x - cx, y - cy) > 0.15 + RADIUS - 1e-9
+
+
+@given(st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-3, 3)), min_size=4, max_size=4))
+def test_colliding_robots_never_overlap(velocities: List[Tuple[float, float]]) -> None:
+    spawns = [Pose2D(0.0, 0.0, 0.0), Pose2D(0.4, 0.0, math.pi), Pose2D(0.0, 0.4, -1.5), Pose2D(0.4, 0.4, -2.3)]
+    engine = _kinematics(_world(_post(1.0, 0.0, 0.1)), *spawns)
+    for _ in range(60):
+        _drive(engine, 1, *velocities)
+        places = engine.fleet.poses[:, :2]
+        apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(4)
+        assert apart.min() > 2.0 * RADIUS - 1e-9
+
+
+def test_robot_blocked_by_a_wall_can_be_reset_in_a_world_without_round_obstacles() -> None:
+    engine = _kinematics(WALL, Pose2D(1.85, 0.0))
+    _drive(engine, 10, (1.0, 0.0))
+    assert engine.touching(0)
+    engine.reset([Pose2D(1.0, 0.0)])
+    assert engine.fleet.pose(0) == Pose2D(1.0, 0.0) and not engine.fleet.wheel_angles.any()
+    assert not engine.touching(0)
+
+
+def test_another_world_blocks_from_the_next_step_on() -> None:
+    engine = _kinematics(world_named("empty"), Pose2D(1.5, 0.0))
+    _drive(engine, 5, (1.0, 0.0))
+    engine.change_world(WALL, 0.0)
+    _drive(engine, 30, (1.0, 0.0))
+    assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
+
+
+def test_robots_of_different_heights_and_radii_are_blocked_by_what_is_at_their_height() -> None:
+    bar = Obstacle("bar", Pose3D((1.0, 0.0, 0.25)), Box((0.1, 10.0, 0.2)))  # from 0.15 m up
+    fleet = Fleet([model_named("burger"), model_named("waffle")], [AT_ONCE] * 2, [0.1, 0.2])
+    engine = KinematicEngine(_world(bar, _post(1.5, 2.0, 0.1)), fleet, 30)
+    engine.reset([ORIGIN, Pose2D(0.0, 2.0)])
+    fleet.command(1, Twist2D(1.0, 0.0), 0.0)
+    _drive(engine, 60, (1.0, 0.0))
+    assert fleet.poses[0, 0] == pytest.approx(0.95 - 0.1, abs=1e-4)
+    assert fleet.poses[1, 0] == pytest.approx(1.4 - 0.2, abs=1e-4), "lower than the bar"

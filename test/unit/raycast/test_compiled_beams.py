@@ -1,0 +1,126 @@
+"""The compiled caster: equal to the reference definition of a scan, independent of batching."""
+
+import math
+from typing import List, Tuple
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from reference_beams import bounds, circles, cut_of, cuts, fans, lattice, poses, segments
+
+from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.grid_index import Tiles
+from aro_robocop_goto_as.raycast.scene import ScanPlane, Scene
+
+Pose = Tuple[float, float, float]
+LAB = Fan(0.0, 6.28319 / 359, 360)
+
+
+@given(fans, cuts, poses)
+def test_every_beam_of_any_fan_matches_the_definition(fan: Fan, cut: Slice, pose: Pose) -> None:
+    x, y, yaw = pose
+    seen = fan.cast(np.array([pose]), cut)[0]
+    for beam, distance in enumerate(seen.tolist()):
+        least, greatest = bounds(cut, x, y, yaw + fan.angle_min + beam * fan.increment)
+        assert least * (1.0 - 1e-7) - 1e-7 <= distance <= greatest * (1.0 + 1e-7) + 1e-7, f"beam {beam}"
+
+
+@given(fans, cuts, poses, st.floats(0.0, 5.0))
+def test_maximum_range_removes_only_returns_beyond_it(fan: Fan, cut: Slice, pose: Pose, max_range: float) -> None:
+    every = fan.cast(np.array([pose]), cut)
+    seen = fan.cast(np.array([pose]), cut, reach=max_range)
+    np.testing.assert_array_equal(seen, np.where(every <= max_range, every, np.inf))
+
+
+@given(fans, poses, st.data(), st.floats(0.01, 9.0), st.floats(0.3, 2.8), st.floats(0.01, 3.0), st.booleans())
+def test_beam_aimed_at_the_end_of_a_segment_hits_it(
+    fan: Fan, pose: Pose, data: st.DataObject, away: float, slant: float, length: float, left: bool
+) -> None:
+    beam = data.draw(st.integers(0, fan.samples - 1))
+    angle = pose[2] + fan.angle_min + beam * fan.increment
+    x, y = pose[0] + away * math.cos(angle), pose[1] + away * math.sin(angle)
+    along = angle + (slant if left else -slant)
+    segment = [[(x, y), (x + length * math.cos(along), y + length * math.sin(along))]]
+    assert fan.cast(np.array([pose]), cut_of(np.array(segment), np.zeros((0, 3))))[0, beam] == pytest.approx(away)
+
+
+@given(fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([1.0, 8.0]))
+def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
+    fan: Fan, walls: List[object], posts: List[object], pose: Pose, max_range: float, scale: float
+) -> None:
+    cut = cut_of(scale * np.array(walls, float), scale * np.array(posts, float))
+    every = fan.cast(np.array([pose]), cut, reach=max_range)
+    cut.tiles = Tiles(cut.segments)
+    assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
+
+
+@given(lattice, lattice, st.integers(0, 7))
+def test_beams_along_tile_borders_see_segments_on_the_border(x: float, y: float, eighth: int) -> None:
+    walls = [((i, j), (i + 0.5, j)) for i in range(-3, 4) for j in range(-3, 4)]
+    cut, yaw = cut_of(np.array(walls, float), np.zeros((0, 3))), eighth * math.pi / 4.0
+    every = Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut)
+    cut.tiles = Tiles(cut.segments)
+    assert Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut).tobytes() == every.tobytes()
+
+
+def test_mark_counter_restarts_at_its_limit() -> None:
+    cut = cut_of(np.random.default_rng(1).uniform(-5.0, 5.0, (300, 2, 2)), np.zeros((0, 3)))
+    expected = LAB.cast(np.zeros((1, 3)), cut)
+    cut.tiles = Tiles(cut.segments)
+    cut.tiles.struct.mark = 2**31 - 3
+    for _ in range(5):
+        np.testing.assert_array_equal(LAB.cast(np.zeros((1, 3)), cut), expected)
+    assert cut.tiles.struct.mark == 3
+
+
+@given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
+def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
+    fan: Fan, footprints: List[Pose], walls: List[Slice], data: st.DataObject
+) -> None:
+    robots = range(len(footprints))
+    bodies = np.array(data.draw(st.lists(st.tuples(lattice, lattice, st.floats(0.05, 0.5)), max_size=9)))
+    owners = np.array([i % len(footprints) for i in range(len(bodies))], np.int64)
+    planes = [ScanPlane(cut, bodies.reshape(-1, 3), owners) for cut in walls]
+    plane_of = [data.draw(st.integers(0, len(planes) - 1)) for _ in robots]
+    scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]))
+    scene.footprints[:] = footprints
+    together = fan.scan(scene, robots, 5.0)
+    order = data.draw(st.permutations(robots))
+    assert fan.scan(scene, order, 5.0).tobytes() == together[order].tobytes()
+    for robot in robots:
+        assert fan.scan(scene, [robot], 5.0).tobytes() == together[robot].tobytes()
+
+
+def test_robots_see_each_others_bodies_but_not_their_own() -> None:
+    bodies, owners = np.array([[0.5, 0.0, 0.1], [0.5, 0.0, 0.2]]), np.array([0, 1], np.int64)
+    scene = Scene([ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))), bodies, owners)], [0, 0], np.zeros((2, 3)))
+    scene.footprints[:] = (0.0, 0.0, 0.0), (3.0, 0.0, math.pi)
+    assert Fan(0.0, 1.0, 1).scan(scene, [0, 1]).tolist() == [[pytest.approx(2.3)], [pytest.approx(2.4)]]
+
+
+# What is refused
+
+
+@pytest.mark.parametrize("angles", [(0.0, -0.1, 10), (0.0, math.nan, 10), (math.inf, 0.1, 10), (0.0, math.inf, 2)])
+def test_fan_with_negative_increment_or_non_finite_angles_is_refused(angles: "tuple[float, float, int]") -> None:
+    with pytest.raises(ValueError, match="^expected (increment > 0|finite angles)"):
+        Fan(*angles)
+
+
+def test_invalid_scenes_and_scans_are_refused() -> None:
+    plane = ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))
+    scene = Scene([plane], [0, 0], np.zeros((2, 3)))
+    for robot in (-1, 2, 2**40):
+        with pytest.raises(ValueError, match="^robots: "):
+            LAB.scan(scene, [0, robot])
+    scene.footprints[1, 2] = np.nan
+    with pytest.raises(ValueError, match="^poses: "):
+        LAB.scan(scene, [0])
+    with pytest.raises(ValueError, match="^plane_of: expected numbers from 0 to 0, got "):
+        Scene([plane], [0, 1], np.zeros((2, 3)))
+    with pytest.raises(ValueError, match=r"^mounts: expected shape \(2, 3\), got \(1, 3\)"):
+        Scene([plane], [0, 0], np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="^owners: expected numbers from 0 to 0"):
+        Scene([ScanPlane(plane.walls, np.zeros((1, 3)), np.array([1], np.int64))], [0], np.zeros((1, 3)))

@@ -1,0 +1,165 @@
+"""Every model drives accurately, stands upright and still, and is seen with its own shape; others are refused."""
+
+import math
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+import pytest
+from support import lean, model_named, world_named
+
+from aro_robocop_goto_as.errors import RobocopError, RobotModelError
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.raycast.scanners import circles_at
+from aro_robocop_goto_as.robot.catalog import load_figures
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.simulator import Simulator
+
+Make = Callable[..., Simulator]
+OTHERS = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]  # than the Burger, which test_simulator.py tests
+BURGER_BOX = math.sqrt(0.14 * 0.14 / math.pi)  # [m] radius of the circle of the same area
+
+
+def _drive(sim: Simulator, twist: Twist2D, until: Callable[[], bool]) -> None:
+    """Command a velocity until a condition holds, then stop and come to rest."""
+    while not until():
+        sim.command(twist)
+        sim.step({})
+    for _ in range(2 * sim.rate):
+        sim.command(STANDSTILL)
+        sim.step({})
+
+
+def _after(sim: Simulator, seconds: float) -> Callable[[], bool]:
+    end = sim.steps + int(round(seconds * sim.rate))
+    return lambda: sim.steps >= end
+
+
+@pytest.mark.parametrize("model", OTHERS)
+@pytest.mark.parametrize("v", [0.2, -0.2])
+def test_driving_two_metres_is_accurate_to_one_percent(simulator: Make, model: str, v: float) -> None:
+    sim = simulator(model=model)
+    _drive(sim, Twist2D(v, 0.0), _after(sim, 10.0))
+    pose = sim.world_from_footprint()
+    assert math.hypot(pose.x - 10.0 * v, pose.y) < 0.02
+    assert abs(pose.yaw) < math.radians(2.0)
+
+
+@pytest.mark.parametrize("model", OTHERS)
+@pytest.mark.parametrize("w", [1.0, -1.8])
+def test_full_turn_in_place_is_accurate_to_two_degrees(simulator: Make, model: str, w: float) -> None:
+    sim = simulator(model=model)
+    _drive(sim, Twist2D(0.0, w), _after(sim, abs(2.0 * math.pi / w)))
+    pose = sim.world_from_footprint()
+    assert abs(pose.yaw) < math.radians(2.0)
+    assert math.hypot(pose.x, pose.y) < 0.01
+
+
+@pytest.mark.parametrize("model", OTHERS)
+def test_a_robot_without_a_command_does_not_drift(simulator: Make, model: str) -> None:
+    sim = simulator(model=model)
+    _drive(sim, Twist2D(0.15, 0.4), _after(sim, 3.0))
+    start = sim.world_from_footprint()
+    for _ in range(60 * 240):
+        sim.step({})
+    end = sim.world_from_footprint()
+    assert math.hypot(end.x - start.x, end.y - start.y) < 1e-3
+    assert abs(wrap_angle(end.yaw - start.yaw)) < math.radians(0.1)
+
+
+@pytest.mark.parametrize("model", OTHERS)
+def test_robot_stops_upright_at_a_wall_and_can_back_out(simulator: Make, model: str) -> None:
+    sim = simulator("stage_1", Pose2D(1.0, 0.0), model=model)
+    _drive(sim, Twist2D(0.26, 0.0), _after(sim, 6.0))
+    stuck = sim.world_from_footprint()
+    assert 1.5 < stuck.x < 1.85 - 0.03, "the robot has not reached the wall, or is in it"
+    assert sim.touching()
+    assert lean(sim) < math.radians(3.0)
+    _drive(sim, Twist2D(-0.2, 0.0), _after(sim, 3.0))
+    assert sim.world_from_footprint().x < stuck.x - 0.4
+    assert not sim.touching()
+
+
+@pytest.mark.parametrize("model", OTHERS)
+def test_robot_stays_upright_at_its_highest_speeds(simulator: Make, model: str) -> None:
+    sim = simulator(model=model)
+    limits = model_named(model).figures
+    leans = []
+    for twist in (Twist2D(limits.max_linear_velocity, 0.0), STANDSTILL, Twist2D(0.0, limits.max_angular_velocity)):
+        for _ in range(3 * sim.rate):
+            sim.command(twist)
+            sim.step({})
+            leans.append(lean(sim))
+    assert max(leans) < math.radians(3.0)
+
+
+def _sees(sim: Simulator, robot: int) -> float:
+    return float(sim.exact_distances(robot).min())
+
+
+@pytest.mark.parametrize("params", [{"drive": "wheels"}, {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}])
+def test_robots_of_different_models_see_each_other_at_their_scanners_heights(params: "dict[str, object]") -> None:
+    names = ["burger", "waffle", "turtlebot2"]
+    places = [Pose2D(0.0, 0.0), Pose2D(0.0, 3.0), Pose2D(0.0, -3.0)]
+    robots = [RobotSpec(name, model_named(name), place) for name, place in zip(names, places)]
+    sim = make_simulator(SimParams.of(**params), world_named("empty"), robots)  # type: ignore[arg-type]
+    # A Burger looks over a Waffle and, at 0.182 m, between the plates of a TurtleBot 2.
+    assert _sees(sim, 0) == np.inf
+    # A Waffle's scanner, at 0.132 m, sees the Burger's box; the two scanners are 3.2 cm apart in x.
+    assert _sees(sim, 1) == pytest.approx(math.hypot(3.0, 0.032) - BURGER_BOX, abs=1e-3)
+    # A TurtleBot 2's, at 0.160 m, is below the Burger's scanner (0.166 m) and above its box (0.153 m).
+    assert _sees(sim, 2) == np.inf
+    sim.close()
+
+
+def test_box_is_seen_as_a_circle_of_equal_area_and_cylinder_exactly() -> None:
+    burger, turtlebot2 = model_named("burger"), model_named("turtlebot2")
+    assert circles_at(burger, 0.1)[0] == pytest.approx((-0.032, 0.0, BURGER_BOX))
+    assert circles_at(burger, 0.182).tolist() == [pytest.approx([-0.032, 0.0, 0.055])]
+    assert circles_at(turtlebot2, 0.1).tolist() == [pytest.approx([0.0, 0.0, 0.178])]
+    assert len(circles_at(burger, 0.5)) == 0
+
+
+def test_kinematic_robots_of_different_models_stop_when_their_footprints_touch() -> None:
+    robots = [
+        RobotSpec("a", model_named("burger"), Pose2D(-0.5, 0.0)),
+        RobotSpec("b", model_named("waffle"), Pose2D(0.5, 0.0, math.pi)),
+    ]
+    sim = make_simulator(SimParams.of(drive="kinematic", physics_rate=60, imu_rate=60), world_named("empty"), robots)
+    for _ in range(6 * 60):
+        for robot in (0, 1):
+            sim.command(Twist2D(0.2, 0.0), robot)
+        sim.step({})
+    assert sim.world_from_footprint(1).x - sim.world_from_footprint(0).x == pytest.approx(0.105 + 0.220, abs=1e-3)
+    assert sim.touching(0) and sim.touching(1)
+    sim.close()
+
+
+@pytest.mark.parametrize("name", ["wafle", "../burger", ""])
+def test_unknown_model_is_refused_with_the_known_ones(name: str) -> None:
+    with pytest.raises(RobotModelError, match=f"no model {name!r}; known are: burger, burger_rgbd, turtlebot2, waffle"):
+        model_named(name)
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("footprint_radius: 0.1\n", "max_linear_velocity: missing, expected float"),
+        ("radius: 0.1\n", "radius: unknown parameter"),
+        ("- 1\n", "expected lines of 'NAME: VALUE'"),
+        ("a: [\n", ":2: not YAML: expected the node content"),
+        (b"a: \xff\n", "not UTF-8 text"),
+        ("footprint_radius: 2023-02-31\n", "day is out of range for month"),
+        pytest.param("a: " + 5000 * "[", "nested too deeply", id="nested too deeply"),
+        ("a: \0\n", "special characters are not allowed"),
+        ("? [a]\n: 1\n", "not YAML: found unhashable key"),
+    ],
+)
+def test_wrong_or_missing_figures_are_refused_by_name(tmp_path: Path, text: "str | bytes", expected: str) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(RobocopError) as refusal:
+        load_figures(str(path))
+    assert str(path) in str(refusal.value) and expected in str(refusal.value)

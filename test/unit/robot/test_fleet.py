@@ -1,0 +1,42 @@
+"""A fleet: rows of arrays that Python and C share."""
+
+import pytest
+from support import model_named
+
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.fleet import COLUMNS, Fleet
+from aro_robocop_goto_as.robot.model import RobotModel
+
+LIMITS = Limits(0.22, 2.84, 2.5, 3.2, 0.5)
+
+
+def test_rows_are_in_the_order_of_the_robots(burger: RobotModel) -> None:
+    waffle = model_named("waffle")
+    fleet = Fleet([burger, waffle], [LIMITS, LIMITS._replace(max_v=0.26)], [0.1, 0.2])
+    assert len(fleet) == fleet.struct.n == 2
+    assert fleet.wheels[1].tolist() == [waffle.wheel_radius, waffle.wheel_separation]
+    assert fleet.limits[1].tolist() == [0.26, 2.84, 2.5, 3.2, 0.5]
+    for name in COLUMNS:
+        assert getattr(fleet.struct, name) == getattr(fleet, name).ctypes.data, name
+
+
+def test_placed_robot_stands_without_a_command_and_keeps_its_wheel_angles(burger: RobotModel) -> None:
+    fleet = Fleet([burger] * 2, [LIMITS] * 2, [0.1] * 2)
+    for rows in (fleet.velocities, fleet.targets, fleet.twists, fleet.wheel_angles, fleet.wheel_speeds):
+        rows[:] = 1.0
+    fleet.command(1, Twist2D(0.1, 0.2), 3.0)
+    assert fleet.commands[1].tolist() == [0.1, 0.2] and fleet.commanded_at.tolist() == [0.0, 3.0]
+    fleet.place(1, Pose2D(1.0, 2.0, 3.0))
+    state = fleet.state(1)
+    assert state.world_from_footprint == fleet.pose(1) == Pose2D(1.0, 2.0, 3.0)
+    assert (state.twist, state.wheel_velocities, state.wheel_angles) == (Twist2D(), (0.0, 0.0), (1.0, 1.0))
+    assert not fleet.commands[1].any() and not fleet.velocities[1].any() and not fleet.targets[1].any()
+    assert fleet.state(0).twist == Twist2D(1.0, 1.0), "the other robot drives on"
+
+
+def test_limits_of_every_robot_are_needed(burger: RobotModel) -> None:
+    with pytest.raises(ValueError):
+        Fleet([burger] * 2, [LIMITS], [0.1] * 2)
+    with pytest.raises(ValueError, match="^radii: expected shape"):
+        Fleet([burger] * 2, [LIMITS] * 2, [0.1])

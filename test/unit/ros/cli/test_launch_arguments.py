@@ -1,0 +1,58 @@
+"""What is typed for a launch file."""
+
+import pytest
+
+from aro_robocop_goto_as.ros.cli.launch_arguments import LaunchArguments, names
+
+FILE = """<launch>
+  <!-- <arg name="commented" default=""/> -->
+  <arg name="needed" doc="no default: given by whoever includes this file"/>
+  <arg
+      name="world"
+      default=""/>
+  <arg name="made" value="$(arg world)"/>
+  <arg name="web" default="false"/>
+</launch>"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "my.launch").write_text(FILE)
+    return tmp_path / "my.launch"
+
+
+def test_arguments_are_those_with_a_default_wherever_the_lines_break(file):
+    assert names(file) == ["world", "web"]
+
+
+def test_verbose_is_no_argument_of_the_file_and_options_of_roslaunch_pass(file):
+    given = LaunchArguments.parse(file, ["--verbose", "--screen", "__name:=x", "web:=1"])
+    assert (given.verbose, given.words) == (True, ("--screen", "__name:=x", "web:=1"))
+
+
+def test_the_last_value_counts(file):
+    given = LaunchArguments.parse(file, ["web:=true", "web:=false"])
+    assert (given.value("web"), given.is_true("web"), given.value("world")) == ("false", False, "")
+
+
+@pytest.mark.parametrize(
+    "word, message",
+    [
+        ("world=x", "expected NAME:=VALUE, such as world:=stage_1; got 'world=x'"),
+        ("needed:=1", "there is no argument needed; there are: world web"),
+        ("map:=x", "there is no argument map; there are: world web; did you mean world?"),
+        ("speed:=3", "there is no argument speed; there are: world web"),
+        ("wordl:=x", "there is no argument wordl; there are: world web; did you mean world?"),
+    ],
+)
+def test_other_words_are_refused(file, word, message):
+    with pytest.raises(SystemExit) as refused:
+        LaunchArguments.parse(file, [word])
+    assert refused.value.code == f"robocop: {message}"
+
+
+def test_path_of_a_file_is_made_absolute_but_not_the_name_of_a_world(file, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "maze").write_text("")
+    words = LaunchArguments.parse(file, ["world:=my.launch", "world:=maze", "world:=./maze", "world:=no.sdf"]).words
+    assert words == (f"world:={file}", "world:=maze", f"world:={tmp_path}/maze", "world:=no.sdf")

@@ -1,0 +1,60 @@
+"""The overview that ./robocop run prints."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from aro_robocop_goto_as.ros.cli.overview import overview
+
+
+def shown(*nodes, arguments=""):
+    """The overview's rows for nodes of these names."""
+    nodes = [SimpleNamespace(name=name, namespace="/", args="" if name == "rviz" else arguments) for name in nodes]
+    text = overview(SimpleNamespace(nodes=nodes), {}, Path("/logs"))
+    return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
+
+
+def test_the_logs_and_how_to_stop_are_always_shown():
+    assert shown()["all messages"].startswith("/logs ")
+    assert "Ctrl-C" in shown()["stop"]
+
+
+@pytest.mark.parametrize(
+    "arguments, address",
+    [
+        ("web_host:= web_port:=", "http://localhost:8080"),
+        ("web_host:=0.0.0.0 web_port:=8090", "http://localhost:8090"),
+    ],
+)
+def test_the_address_of_the_web_page_is_shown_if_it_is_started(arguments, address):
+    assert shown("robocop_web", arguments=arguments)["view"] == f"in a browser: {address}"
+    assert "view" not in shown("robocop_sim")
+
+
+def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser():
+    arguments = "web_host:= web_port:=8090 replay:='/a.bag'"
+    assert shown("replay", arguments=arguments)["view"].startswith("in a browser: http://localhost:8090; it plays when")
+    assert shown("replay", "rviz", arguments=arguments)["view"] == "in a browser: http://localhost:8090"
+
+
+def test_goals_are_offered_only_with_a_server():
+    assert "send a goal" in shown("aro_robocop_goto_as_node")
+    assert "send a goal" not in shown("robocop_sim")
+
+
+def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
+    server = SimpleNamespace(name="aro_robocop_goto_as_node", namespace="/", args="")
+    texts = [
+        overview(SimpleNamespace(nodes=[server]), {"world": world}, Path("/logs")) for world in ("stage_4", "world")
+    ]
+    assert "goto 0.3 0\n" in texts[0]
+    assert "goto X Y " in texts[1]
+
+
+def test_world_and_robot_are_shown_only_of_a_simulator():
+    nothing = SimpleNamespace(nodes=[])
+    assert overview(nothing, {"world": "maze_1"}, Path("/logs")).startswith(
+        "world         maze_1\nrobot         burger\n"
+    )
+    assert "world" not in overview(nothing, None, Path("/logs"))

@@ -1,0 +1,33 @@
+"""What is refused before a simulator is started."""
+
+import pytest
+
+from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.ros.cli.preflight import check
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"world": "stag_1"}, "there is no world 'stag_1'"),
+        ({"world": "stag_1"}, "; did you mean stage_1?"),
+        ({"model": "burgr"}, "; did you mean burger?"),
+        ({"robots": "0"}, "robots: expected at least 1"),
+        ({"robots": "red:burgr 0 0"}, "there is no model 'burgr'"),
+        ({"robots": "red"}, "robots: expected 'NAME X Y [YAW]; ...'"),
+        ({"spawn": "here"}, "spawn: expected 'x y'"),
+        ({"real_time_factor": -1.0}, "parameters of /robocop_sim: real_time_factor: expected at least 0, got -1.0"),
+        ({"wrold": "empty"}, "parameters of /robocop_sim: wrold: unknown parameter; did you mean 'world'?"),
+    ],
+)
+def test_what_the_simulator_would_refuse_is_refused(given, words):
+    with pytest.raises(RobocopError) as refused:
+        check(given, "/robocop_sim")
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"world": "random"}, {"robots": "3"}, {"robots": "red:waffle 0 0; blue 1 1 1.5"}, {"spawn": "1 2"}]
+)
+def test_what_it_accepts_is_accepted(given):
+    check(given, "/robocop_sim")

@@ -1,0 +1,57 @@
+"""One goal's control periods: when lack of progress ends it."""
+
+import math
+from types import SimpleNamespace
+from typing import Iterable, List, Optional, Tuple, cast
+
+import pytest
+from aro_robocop_goto_as.msg import GoToPositionGoal
+from geometry_msgs.msg import Point
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.goto import Outcome
+from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.ros.server.goal_execution import GoalExecution
+from aro_robocop_goto_as.ros.server.inputs import Inputs
+from aro_robocop_goto_as.ros.server.tuning import Tuning
+
+PERIOD = 100  # [ms] of the control loop
+
+
+class BlockedRobot:
+    """Inputs of a robot that never moves, with nothing ahead."""
+
+    def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
+        """Nothing."""
+
+    def read(self) -> Tuple[Pose2D, float]:
+        """The same pose every time."""
+        return Pose2D(), math.inf
+
+
+def end_of_goal(ticks: Iterable[int]) -> Tuple[int, Outcome]:
+    """The time [ms] at which a goal ahead of the robot ends, and how, with a step at each of these times."""
+    tuning = cast(Tuning, SimpleNamespace(params=GotoParams()))
+    goal = GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), tuning, cast(Inputs, BlockedRobot()))
+    for tick in ticks:
+        _, ending = goal.step(tick * 1_000_000)
+        if ending is not None:
+            return tick, ending.outcome
+    raise AssertionError("the goal did not end")
+
+
+def test_goal_without_progress_ends_after_the_timeout() -> None:
+    assert end_of_goal(range(0, 20_000, PERIOD)) == (5_000 + PERIOD, Outcome.STUCK)
+
+
+@pytest.mark.parametrize("gap", [1_000, 6_000, 60_000])
+def test_time_in_which_the_server_did_not_run_is_no_lack_of_progress(gap: int) -> None:
+    before = list(range(0, 1_000, PERIOD))
+    after: List[int] = list(range(before[-1] + gap, before[-1] + gap + 20_000, PERIOD))
+    ended, outcome = end_of_goal(before + after)
+    assert outcome is Outcome.STUCK
+    assert ended == pytest.approx(5_000 + gap, abs=3 * PERIOD)
+
+
+def test_slow_control_loop_is_no_gap() -> None:
+    assert end_of_goal(range(0, 20_000, 2 * PERIOD)) == (5_000 + 2 * PERIOD, Outcome.STUCK)

@@ -1,0 +1,110 @@
+"""The server's view of its inputs: it changes in one piece, and what is missing is said in the right words."""
+
+import math
+import re
+
+import pytest
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+
+from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.goto import Outcome
+from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.ros.server.inputs import FIRST_MESSAGE, Inputs
+
+
+class Server:
+    """Inputs with clocks and parameters that a test sets."""
+
+    def __init__(self):
+        self.ros_time, self.wall, self.params = 1.5, 100.0, GotoParams()
+        self.inputs = Inputs(self, lambda: self.ros_time, lambda: self.wall)
+
+    def receive(self, ahead, orientation_w=1.0):
+        """Odometry, and a scan with one beam [m]."""
+        odom = Odometry()
+        odom.pose.pose.orientation.w = orientation_w
+        self.inputs.on_odom(odom)
+        self.inputs.on_scan(LaserScan(angle_increment=0.1, range_max=5.0, ranges=[ahead]))
+
+
+@pytest.fixture
+def server():
+    return Server()
+
+
+def test_scan_of_nan_is_called_invalid_even_if_it_arrives_after_the_control_period_began(server):
+    server.receive(math.nan)
+    outcome, text = server.inputs.missing(now=1.45, started=0.0, accepted=0.0)
+    assert outcome is Outcome.NO_SCAN
+    assert text == "no valid beam ahead on /scan so far (limit 1 s)"
+
+
+def test_topic_without_any_message_since_the_goal_was_accepted_may_be_connecting(server):
+    assert server.inputs.missing(now=50.0, started=0.0, accepted=100.0) is None
+    server.wall += FIRST_MESSAGE
+    missing = server.inputs.missing(now=50.0, started=0.0, accepted=100.0)
+    assert missing == (Outcome.NO_ODOM, "no message on /odom so far (limit 1 s)")
+
+
+def test_topic_that_fell_silent_after_the_goal_was_accepted_is_missing_at_once(server):
+    server.receive(2.0)
+    server.ros_time = 50.0
+    missing = server.inputs.missing(now=50.0, started=0.0, accepted=100.0)
+    assert missing == (Outcome.NO_ODOM, "no message on /odom for 48.5 s (limit 1 s)")
+
+
+def test_parameters_that_were_changed_hold_at_once(server):
+    server.receive(2.0)
+    server.ros_time = 50.0
+    assert server.inputs.read() is None
+    server.params = GotoParams(data_timeout=100.0)
+    assert server.inputs.missing(now=50.0, started=0.0, accepted=100.0) is None
+    assert server.inputs.read() is not None
+
+
+def test_new_scan_is_visible_only_once_it_is_known_whether_it_is_valid(server, monkeypatch):
+    looked, inputs = [], server.inputs
+    real = inputs._clearance_in
+
+    def look_and_compute(message):
+        looked.append(inputs.scan)
+        return real(message)
+
+    monkeypatch.setattr(inputs, "_clearance_in", look_and_compute)
+    server.receive(2.0)
+    assert looked == [None]
+    first = inputs.scan
+    assert first is not None and inputs.valid_scan is first
+    server.receive(math.nan)
+    assert inputs.scan is not first and inputs.valid_scan is first
+
+
+@pytest.mark.parametrize("w", [0.0, 1.2, math.nan])
+def test_odometry_whose_orientation_is_no_rotation_is_refused(server, w):
+    server.receive(2.0, w)
+    with pytest.raises(
+        RobocopError, match="/odom holds an impossible pose: expected a quaternion of length 1, got x 0"
+    ):
+        server.inputs.read()
+
+
+@pytest.mark.parametrize(
+    "first, last, increment", [(-3.14, 3.14, -0.0175), (3.14, -3.14, 0.0175), (0.0, 0.0, 0.0), (0.0, 359.0, 1.0)]
+)
+def test_scan_whose_angles_contradict_themselves_ends_the_goal(server, first, last, increment):
+    server.receive(2.0)
+    server.inputs.on_scan(
+        LaserScan(angle_min=first, angle_max=last, angle_increment=increment, range_max=5.0, ranges=[2.0] * 360)
+    )
+    expected = f"/scan has no beam within 30 degrees of straight ahead (360 beams, angles {first:g} to {last:g} rad"
+    with pytest.raises(RobocopError, match=re.escape(f"{expected}, increment {increment:g} rad)")):
+        server.inputs.read()
+
+
+def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
+    server.receive(2.0)
+    server.inputs.on_scan(
+        LaserScan(angle_min=3.14, angle_max=-3.14, angle_increment=-0.0175, range_max=5.0, ranges=[2.0] * 360)
+    )
+    assert server.inputs.read()[1] == 2.0

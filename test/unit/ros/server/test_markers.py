@@ -1,0 +1,51 @@
+"""What RViz shows of the server: the newest goal stays, in a colour that says how it ended."""
+
+from types import SimpleNamespace
+
+import pytest
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+
+from aro_robocop_goto_as.goto import Goal, Outcome
+from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.ros import markers
+from aro_robocop_goto_as.ros.server.markers import (
+    BLOCKED,
+    FREE,
+    NEAR,
+    NOT_REACHED,
+    REACHED,
+    UNKNOWN,
+    sector_color,
+    server_markers,
+)
+
+ODOM, SCAN = Odometry(child_frame_id="base_footprint"), LaserScan()
+ODOM.header.frame_id, SCAN.header.frame_id = "odom", "base_scan"
+INPUTS = SimpleNamespace(odom=SimpleNamespace(message=ODOM), scan=SimpleNamespace(message=SCAN), clearance=lambda: 1.0)
+
+
+def shown(goal):
+    """The markers by namespace."""
+    return {marker.ns: marker for marker in server_markers(GotoParams(), INPUTS, goal, "idle").markers}
+
+
+def test_there_is_no_goal_before_the_first_one():
+    assert set(shown(None)) == {"safety_cone", "robot_ring", "state"}
+
+
+@pytest.mark.parametrize(
+    "outcome, color",
+    [(None, markers.GOAL_COLOR), (Outcome.REACHED, REACHED), (Outcome.OBSTACLE, NOT_REACHED)],
+)
+def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
+    made = shown(SimpleNamespace(goal=Goal(1.0, -2.0), outcome=outcome))
+    for name in ("goal_circle", "goal_pin"):
+        assert made[name].header.frame_id == "odom"
+        assert (made[name].pose.position.x, made[name].pose.position.y) == (1.0, -2.0)
+        assert made[name].color == color
+
+
+@pytest.mark.parametrize("clearance, color", [(None, UNKNOWN), (0.29, BLOCKED), (0.31, NEAR), (0.61, FREE)])
+def test_sector_ahead_says_by_its_colour_how_near_an_obstacle_is(clearance, color):
+    assert sector_color(clearance, 0.3) == color

@@ -1,0 +1,39 @@
+"""What /gazebo/model_states and /gazebo/link_states hold, and that their types are gazebo_msgs' to a subscriber."""
+
+import math
+from io import BytesIO
+from typing import Callable
+
+import pytest
+
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.ros.sim import gazebo_topics
+from aro_robocop_goto_as.simulation.simulator import Simulator
+
+Make = Callable[..., Simulator]
+
+
+@pytest.mark.parametrize("name", ["ModelStates", "LinkStates"])
+def test_types_have_gazebos_names_and_md5sums(name: str) -> None:
+    kind = gazebo_topics.message_type(name)
+    assert kind._type == f"gazebo_msgs/{name}"
+    assert kind._md5sum == "48c080191eb15c41858319b4d8a609c2"
+
+
+def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make) -> None:
+    sim = simulator("stage_2", Pose2D(1.0, -1.0, math.pi / 2.0), drive="kinematic", max_linear_acceleration=1e3)
+    sim.command(Twist2D(0.2, 0.0))
+    for _ in range(24):
+        sim.step({})
+    models = {name: (pose, twist) for name, pose, twist in gazebo_topics._models(sim)}
+    assert set(models) == {*sim.world.models, "robot_1"}
+    pose, twist = models["robot_1"]
+    assert pose.position == pytest.approx((1.0, -0.98, 0.0), abs=1e-9)
+    assert (twist.linear.x, twist.linear.y) == pytest.approx((0.0, 0.2), abs=1e-9)
+    links = {name: pose for name, pose, _ in gazebo_topics.links(sim)}
+    assert links["robot_1::wheel_left_link"].position == pytest.approx((0.92, -0.98, 0.033), abs=1e-9)
+    assert links["robot_1::wheel_right_link"].position == pytest.approx((1.08, -0.98, 0.033), abs=1e-9)
+    content = BytesIO()
+    kind = gazebo_topics.message_type("ModelStates")
+    gazebo_topics.to_message(kind, gazebo_topics._models(sim)).serialize(content)
+    assert b"robot_1" in content.getvalue()

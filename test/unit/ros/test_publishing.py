@@ -1,0 +1,129 @@
+"""Publishers and batches with rospy's own connections, without a ROS master."""
+
+import itertools
+import os
+import resource
+import socket
+import struct
+import subprocess
+import sys
+import weakref
+from types import SimpleNamespace
+from typing import Callable, Iterator, List
+
+import pytest
+import rospy
+from rospy.impl.tcpros_base import TCPROSTransport
+from sensor_msgs.msg import LaserScan
+from subscriber_links import Link
+
+from aro_robocop_goto_as.ros.outbox import Batch
+from aro_robocop_goto_as.ros.packed import PackedMessage
+from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher
+from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
+from aro_robocop_goto_as.simulation.simulator import Simulator
+
+SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
+NAMES = (f"/topic_{i}" for i in itertools.count())
+
+
+@pytest.fixture(name="topic")
+def _topic() -> Iterator[Callable[[], DirectPublisher]]:
+    made: List[DirectPublisher] = []
+
+    def make() -> DirectPublisher:
+        made.append(publisher(next(NAMES), LaserScan))
+        return made[-1]
+
+    yield make
+    for topic in made:
+        topic.unregister()
+
+
+def _send(topic: DirectPublisher, message: PackedMessage = SCAN) -> None:
+    Batch([(topic, message)]).send(0)
+
+
+def test_descriptors_of_gone_subscribers_are_closed(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans = topic()
+    links = [connect(scans) for _ in range(10)]
+    duplicates = [weakref.ref(outlet.socket) for outlet in scans.outlets]
+    for connection, end in links:
+        end.close()
+        if connection is links[4].connection:
+            rospy.topics.get_topic_manager().check_all()  # rospy notices a part of them by itself
+    while scans.get_num_connections():
+        _send(scans)
+    assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
+
+
+def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans, new = topic(), []
+    gone, slow = connect(scans), connect(scans)
+    number = gone.connection.fileno()
+    gone.connection.socket.shutdown(socket.SHUT_RDWR)
+
+    def finish(_rest: memoryview) -> None:
+        new.append(connect(scans).connection)
+        scans.impl.check()  # as one of rospy's threads does twice a second
+
+    first, second = scans.outlets
+    scans.outlets = (first, second._replace(socket=SimpleNamespace(sendall=finish)))
+    del first
+    _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
+    assert [connection.fileno() for connection in new] == [number]
+    assert scans.impl.connections == [slow.connection, *new]
+
+
+def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans, limits = topic(), resource.getrlimit(resource.RLIMIT_NOFILE)
+    kept = connect(scans)
+    add = scans.impl.add_connection
+
+    def add_without_descriptors(connection: TCPROSTransport) -> None:
+        unused = [os.dup(0)]
+        while unused[-1] < connection.fileno():
+            unused.append(os.dup(0))
+        resource.setrlimit(resource.RLIMIT_NOFILE, (connection.fileno() + 1, limits[1]))
+        try:
+            add(connection)
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+            for number in unused:
+                os.close(number)
+
+    scans.impl.add_connection = add_without_descriptors
+    lost = connect(scans)
+    lost.socket.settimeout(10.0)
+    assert lost.socket.recv(1) == b""
+    scans.impl.check()
+    assert scans.impl.connections == [kept.connection]
+
+
+def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
+    program = (
+        "import resource\n"
+        "from aro_robocop_goto_as.process.rlimits import raise_descriptor_limit\n"
+        "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
+        "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
+        "raise_descriptor_limit()\n"
+        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (min(hard, 65_536), hard)\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
+    sim, sent = simulator(scan_profile="lds02"), []
+    lds02 = RobotTopics(0, sim, lambda: None)
+    for beams in (230, 231, 230, 229, 230):
+        sim.observed.scans = sim.ranges(beams)
+        message = lds02.scan_message()
+        _send(lds02.topics["scan"], message)
+        sent.append(struct.unpack_from("<I", message.data, 4)[0])
+    assert sent == [1, 2, 3, 4, 5]

@@ -1,0 +1,44 @@
+"""Ticks are whole multiples of the period, whatever the clock does."""
+
+import itertools
+
+from aro_robocop_goto_as.ros.ticker import Ticker, wait_until
+
+MS = 1_000_000  # [ns]
+
+
+def ticks(*times, interrupted=lambda: False):
+    """The times [ms] of ticks with a period of 100 ms, by a clock that shows these times [ms] and then the last one."""
+    clock = itertools.chain(times, itertools.repeat(times[-1]))
+    end = iter(times)
+
+    def over():
+        return interrupted() or next(end, None) is None
+
+    ticker = Ticker(0.1, over, lambda: next(clock) * MS)
+    found = []
+    while ticker.wait():
+        found.append(ticker.tick_ns // MS)
+    return found
+
+
+def test_ticks_are_the_next_multiples_of_the_period():
+    assert ticks(30, 60, 99, 100, 140, 200) == [100, 200]
+
+
+def test_ticks_that_were_missed_are_left_out():
+    assert ticks(30, 100, 475, 480, 501) == [100, 400, 500]
+
+
+def test_after_a_clock_was_set_back_the_ticks_are_those_of_the_new_time():
+    assert ticks(930, 1000, 20, 60, 110) == [1000, 100]
+
+
+def test_a_request_ends_the_wait_without_a_tick():
+    assert ticks(30, 40, 100, interrupted=lambda: True) == []
+
+
+def test_wait_until_says_whether_the_condition_became_true():
+    answers = iter([False, False, True])
+    assert wait_until(lambda: next(answers), 10.0, 0.0)
+    assert not wait_until(lambda: False, 0.0)

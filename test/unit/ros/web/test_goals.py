@@ -1,0 +1,92 @@
+"""What a click on the floor requests, and what is remembered of goals."""
+
+from unittest.mock import MagicMock
+
+import pytest
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
+
+from aro_robocop_goto_as.geometry import Pose2D, lifted
+from aro_robocop_goto_as.ros.web import goals
+from aro_robocop_goto_as.ros.web.part import Context
+from aro_robocop_goto_as.web.frames import FrameTree
+from aro_robocop_goto_as.web.state import PageState, SharedState
+
+CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
+
+
+def made(**state):
+    shared = SharedState(PageState(robots=("blue", "red"), chosen="red", pose=lifted(Pose2D(0.0, 0.0, 3.0)), **state))
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
+    return goals.Goals(context), context
+
+
+def test_a_click_sends_a_2d_nav_goal():
+    part, context = made()
+    part._on_click(CLICK)
+    what, topic, pose, _ = context.requests.publish.call_args[0]
+    assert (what, topic, pose.header.frame_id) == ("goal (1.00, 2.00) in map", "move_base_simple/goal", "map")
+    assert (pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w) == (1.0, 2.0, 1.0)
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+def test_a_click_places_the_robot_with_the_heading_that_it_has(simulated):
+    part, context = made(simulated=simulated)
+    part._mode.value = goals.PLACE_ROBOT
+    part._on_click(CLICK)
+    if simulated:
+        _, service, _, robot, pose = context.requests.call.call_args[0]
+        assert (service, robot) == ("set_pose", "red")
+    else:
+        _, topic, estimate = context.requests.publish.call_args[0]
+        assert topic == "initialpose" and estimate.pose.covariance[0] == goals.POSITION_VARIANCE
+        pose = estimate
+    pose = pose.pose if simulated else pose.pose.pose
+    assert pose.orientation.z == pytest.approx(goals.convert.to_quaternion(3.0).z)
+
+
+def test_a_click_into_the_sky_requests_nothing():
+    part, context = made()
+    part._on_click(MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, 1.0)))
+    assert not context.requests.method_calls
+
+
+def test_a_goal_is_executed_while_there_is_feedback(monkeypatch):
+    part, context = made()
+    part._on_feedback(goals.time.monotonic(), GoToPositionActionFeedback())
+    part.show(context.state.now)
+    assert context.state.now.executing
+    part._on_feedback(goals.time.monotonic() - goals.FEEDBACK_AGE, GoToPositionActionFeedback())
+    part.show(context.state.now)
+    assert not context.state.now.executing
+
+
+def test_the_history_names_the_robot_whose_server_sent_the_result_until_another_moment_is_shown():
+    part, _ = made()
+    goal, result = GoToPositionActionGoal(), GoToPositionActionResult()
+    goal.goal_id.id = result.status.goal_id.id = "goal"
+    goal.goal.position.x = 1.0
+    result.status.status, result.result.message = GoalStatus.SUCCEEDED, "REACHED"
+    part._on_goal(0.0, goal)
+    part._result_handler("blue")(0.0, result)
+    (ended,) = part._history.latest()
+    assert (ended.robot, ended.state, ended.message, ended.goal) == ("blue", "SUCCEEDED", "REACHED", (1.0, 0.0))
+    part.forget()
+    assert part._history.latest() == []
+
+
+def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names():
+    part, context = made()
+    goal, status = GoToPositionActionGoal(), GoalStatus(status=GoalStatus.ACTIVE)
+    goal.goal_id.id = status.goal_id.id = "goal"
+    goal.goal.position.x = 1.0
+    part._on_goal(0.0, goal)
+    part._on_status(goals.time.monotonic(), GoalStatusArray(status_list=[status]))
+    assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
+    context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
+    assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20) in map")]
+    part.show(context.state.now)
+    assert context.state.now.answering
+    part._on_status(goals.time.monotonic() - goals.STATUS_AGE, GoalStatusArray())
+    part.show(context.state.now)
+    assert not context.state.now.answering

@@ -1,0 +1,49 @@
+"""Arguments of robocop_web are accepted unchanged or refused by name."""
+
+import os
+
+import pytest
+from support import ROOT
+
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.params import WebParams
+from aro_robocop_goto_as.ros.web.node import load_params
+
+
+def test_arguments_of_ros_and_empty_ones_are_left_out():
+    assert load_params(["__name:=robocop_web", "__log:=/tmp/x", "web_host:=", "web_port:="]) == WebParams()
+
+
+def test_the_environment_chooses_the_address_unless_it_is_given(monkeypatch):
+    monkeypatch.setenv("ROBOCOP_WEB_HOST", "0.0.0.0")
+    assert load_params(["web_host:="]).web_host == "0.0.0.0"
+    assert load_params(["web_host:=127.0.0.1"]).web_host == "127.0.0.1"
+
+
+def test_values_are_taken_as_they_are_written():
+    given = load_params(["web_host:=0.0.0.0", "web_port:=8090", "web_linear_velocity:=1", "web_frame:=odom"])
+    assert given == WebParams(web_host="0.0.0.0", web_port=8090, web_linear_velocity=1.0, web_frame="odom")
+
+
+@pytest.mark.parametrize(
+    "argument, reason",
+    [
+        ("web_prot:=1", "did you mean 'web_port'"),
+        ("web_port:=80.5", "web_port: expected int, got float 80.5"),
+        ("web_port:=70000", "web_port: expected at most 65535"),
+        ("web_port:=[", "web_port: "),
+        ("web_frame:=/map", "web_frame: expected a frame name"),
+        ("8090", "expected NAME:=VALUE, got '8090'"),
+    ],
+)
+def test_wrong_arguments_are_refused_with_the_reason(argument, reason):
+    with pytest.raises(ParameterError) as refused:
+        load_params([argument])
+    assert reason in str(refused.value)
+
+
+def test_every_argument_is_documented():
+    with open(os.path.join(ROOT, "docs", "web.md"), encoding="utf-8") as stream:
+        text = stream.read()
+    for name in WebParams.__dataclass_fields__:
+        assert f"`{name}`" in text

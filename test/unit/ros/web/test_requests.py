@@ -1,0 +1,47 @@
+"""Visitors' requests: whatever one of them fails with is its answer, and the next one is served."""
+
+import pytest
+from waiting import wait_for
+
+from aro_robocop_goto_as.ros.web import requests
+from aro_robocop_goto_as.web.state import PageState, SharedState
+
+
+class Service:
+    """Stands in for all services: a call raises what is in `problems`, then it answers."""
+
+    message = "running"
+
+    def __init__(self, monkeypatch, problems):
+        self.problems = problems
+        monkeypatch.setattr(requests.rospy, "wait_for_service", lambda *_: None)
+        monkeypatch.setattr(requests.rospy, "ServiceProxy", lambda *_: self)
+
+    def __call__(self, *_):
+        if self.problems:
+            raise self.problems.pop()
+        return self
+
+
+@pytest.mark.parametrize(
+    "problem, answer",
+    [
+        (TypeError("required argument is not a float"), "TypeError: required argument is not a float"),
+        (requests.rospy.ServiceException("no such robot"), "no such robot"),
+    ],
+)
+def test_a_request_that_fails_in_any_way_says_so_and_the_next_one_is_served(monkeypatch, problem, answer):
+    Service(monkeypatch, [problem])
+    state = SharedState(PageState(registered=True, master_problem=""))
+    made = requests.Requests(state)
+    made.call("pause", "pause", object)
+    wait_for(lambda: state.now.answer == f"pause: {answer}", "the failure is the answer")
+    made.call("continue", "unpause", object)
+    wait_for(lambda: state.now.answer == "continue: running", "the next request is served")
+
+
+def test_a_page_that_only_watches_sends_nothing(monkeypatch):
+    monkeypatch.setattr(requests, "start_daemon", lambda *_: None)
+    made = requests.Requests(SharedState(PageState(live=False, registered=True, master_problem="")))
+    made.call("pause", "pause", object)
+    assert made._jobs.empty()

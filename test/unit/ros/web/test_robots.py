@@ -1,0 +1,34 @@
+"""Where the page takes robots' places from."""
+
+from unittest.mock import MagicMock
+
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
+
+from aro_robocop_goto_as.ros.web.part import Context
+from aro_robocop_goto_as.ros.web.robots import Robots
+from aro_robocop_goto_as.web.frames import FrameTree
+from aro_robocop_goto_as.web.state import PageState, SharedState
+
+
+def odometry(x):
+    message = Odometry(child_frame_id="base_footprint")
+    message.header.frame_id, message.pose.pose.position.x, message.pose.pose.orientation.w = "odom", x, 1.0
+    return message
+
+
+def transform(x):
+    stamped = TransformStamped(child_frame_id="base_footprint")
+    stamped.header.frame_id, stamped.transform.translation.x, stamped.transform.rotation.w = "odom", x, 1.0
+    return TFMessage([stamped])
+
+
+def test_odometry_is_the_transform_where_nobody_publishes_that_one():
+    frames = FrameTree()
+    robots = Robots(Context(MagicMock(), MagicMock(), SharedState(PageState()), MagicMock(), frames, "map"))
+    robots._on_odometry(0.0, odometry(1.0))
+    assert frames.lookup("odom", "base_footprint").position == (1.0, 0.0, 0.0)
+    robots._on_tf(0.0, transform(2.0))
+    robots._on_odometry(0.0, odometry(1.0))
+    assert frames.lookup("odom", "base_footprint").position == (2.0, 0.0, 0.0)

@@ -1,0 +1,68 @@
+"""What becomes of the pad's buttons: cmd_vel, one stop at the end, and a goal that is cancelled."""
+
+from unittest.mock import MagicMock
+
+import pytest
+from waiting import wait_for
+
+from aro_robocop_goto_as.geometry import Twist2D
+from aro_robocop_goto_as.ros.web import teleop
+from aro_robocop_goto_as.ros.web.part import Context
+from aro_robocop_goto_as.web.frames import FrameTree
+from aro_robocop_goto_as.web.state import PageState, SharedState
+
+LEFT = Twist2D(0.0, 1.0)
+
+
+class Publishers:
+    """Stands in for rospy.Publisher: topics and velocities that were published; the first attempts may fail."""
+
+    def __init__(self, problems=()):
+        self.problems = list(problems)
+        self.sent = []
+
+    def __call__(self, topic, *_, **__):
+        if self.problems:
+            raise self.problems.pop()
+        publisher = MagicMock()
+        publisher.publish = lambda message: self.sent.append((topic, message.angular.z))
+        return publisher
+
+
+def driven(monkeypatch, publishers, **state):
+    monkeypatch.setattr(teleop.rospy, "Publisher", publishers)
+    ready = {"registered": True, "master_problem": "", "robots": ("blue", "red"), "chosen": "red", **state}
+    context = Context(MagicMock(), MagicMock(), SharedState(PageState(**ready)), MagicMock(), FrameTree(), "map")
+    return teleop.Teleop(context, 0.2, 1.0), context
+
+
+@pytest.mark.parametrize("problems", [[], [TypeError("unexpected")]])
+def test_the_selected_robot_is_driven_and_stopped_once_also_after_an_unexpected_failure(monkeypatch, problems):
+    publishers = Publishers(problems)
+    pad, _ = driven(monkeypatch, publishers)
+
+    def turns():
+        pad.drive(1, LEFT)
+        return publishers.sent
+
+    wait_for(turns, "cmd_vel")
+    pad.stop()
+    wait_for(lambda: publishers.sent[-1] == ("/red/cmd_vel", 0.0), "a stop")
+    assert [sent for sent in publishers.sent if sent[1] == 0.0] == [("/red/cmd_vel", 0.0)]
+    assert set(publishers.sent) == {("/red/cmd_vel", 1.0), ("/red/cmd_vel", 0.0)}
+
+
+@pytest.mark.parametrize("executing", [True, False])
+def test_a_goal_that_is_executed_is_cancelled_once_when_driving_begins(monkeypatch, executing):
+    pad, context = driven(monkeypatch, Publishers(), executing=executing)
+    pad.drive(1, LEFT)
+    pad.drive(1, LEFT)
+    assert context.requests.publish.call_count == int(executing)
+    pad.stop()
+
+
+def test_a_page_that_only_watches_drives_nothing(monkeypatch):
+    monkeypatch.setattr(teleop, "start_daemon", lambda *_: None)
+    pad, _ = driven(monkeypatch, Publishers(), live=False)
+    pad.drive(1, LEFT)
+    assert not pad._dead_man.active

@@ -1,0 +1,168 @@
+"""Camera images agree with the geometry of the world."""
+
+import math
+from pathlib import Path
+from typing import Any, Callable, Dict
+
+import numpy as np
+import pytest
+from support import ROOT, analytic_distances, drive, everything, model_named, world_named
+
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.robot.urdf import load_robot
+from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, points_of
+from aro_robocop_goto_as.sensors.camera_renderer import CameraRenderer
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.simulator import Simulator
+from aro_robocop_goto_as.world.model import Box, Obstacle, World
+
+Make = Callable[..., Simulator]
+KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
+WITH_CAMERA = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
+TOLERANCE = 0.003  # [m] of depth on flat walls; larger at a cylinder's edge, which is seen at a slant
+
+
+def _image(sim: Simulator, robot: int = 0) -> CameraImage:
+    while True:
+        seen = sim.step({"camera": [robot]})
+        if seen is not None and seen.of("camera"):
+            return seen.images[robot]
+
+
+def _world_from_camera(model: str, pose: Pose2D) -> Pose3D:
+    robot = model_named(model)
+    assert robot.base_from_camera is not None
+    return compose3(compose3(lifted(pose), robot.footprint_from_base), robot.base_from_camera)
+
+
+def _points(image: CameraImage, world_from_camera: Pose3D, spec: CameraSpec) -> np.ndarray:
+    """An image's points in the world frame: (height, width, 3) [m]."""
+    points = points_of(image.depth, spec).astype(float)
+    return points @ rotation_matrix(world_from_camera.orientation).T + np.array(world_from_camera.position)
+
+
+@pytest.mark.parametrize("model", WITH_CAMERA)
+@pytest.mark.parametrize(
+    "world, pose",
+    [("stage_1", Pose2D(0.0, 0.0, 0.4)), ("maze_1", Pose2D(0.0, 0.0, 0.1)), ("stage_4", Pose2D(-0.7, 0.0, 2.0))],
+)
+def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, world: str, pose: Pose2D) -> None:
+    description = world_named(world)
+    walls = World(world, tuple(o for o in description.obstacles if isinstance(o.geometry, Box)), pose, (), "")
+    sim = simulator(world, pose, model=model, **KINEMATIC)
+    camera, spec = _world_from_camera(model, pose), sim.cameras.spec(0)
+    points = _points(_image(sim), camera, spec)
+    x, y, _ = camera.position
+    away = np.hypot(points[..., 0] - x, points[..., 1] - y)
+    bearings = np.arctan2(points[..., 1] - y, points[..., 0] - x)
+    compared = 0
+    for row in (spec.height // 2, spec.height // 2 - 10, spec.height // 2 + 10):
+        on_wall = (points[row, :, 2] > 0.005) & np.isfinite(away[row])
+        expected = analytic_distances(walls, x, y, bearings[row][on_wall], 20.0)
+        off = np.abs(away[row][on_wall] - expected)
+        compared += int((off < TOLERANCE).sum())
+        if world != "stage_4":  # where cylinders occlude walls
+            assert off.max(initial=0.0) < TOLERANCE
+    assert compared > 150
+
+
+def test_cylinders_are_seen_with_their_radius(simulator: Make) -> None:
+    sim = simulator("stage_2", Pose2D(0.0, 0.0, math.pi / 4.0), model="burger_rgbd", **KINEMATIC)
+    camera, spec = _world_from_camera("burger_rgbd", Pose2D(0.0, 0.0, math.pi / 4.0)), sim.cameras.spec(0)
+    points = _points(_image(sim), camera, spec)[60]
+    radii = np.hypot(points[:, 0] - 0.6, points[:, 1] - 0.6)
+    on_it = radii < 0.2
+    assert on_it.sum() > 30
+    assert np.abs(radii[on_it] - 0.15).max() < 0.001
+
+
+def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
+    sim = simulator("empty", model="waffle", **KINEMATIC)
+    image, spec = _image(sim), sim.cameras.spec(0)
+    points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
+    assert np.abs(points[70:, :, 2]).max() < 0.001
+    assert np.isinf(image.depth[:58]).all()
+    assert np.isnan(points_of(image.depth, spec)[:58]).all()
+
+
+def _see_a_box(simulator: Make, model: str, place: Vector3) -> "tuple[float, float]":
+    """Mean column and row of a small box at a position in base_footprint in the camera's image."""
+    world = World("box", (Obstacle("box", Pose3D(place), Box((0.05, 0.05, 0.05))),), Pose2D(), (), "")
+    sim = make_simulator(
+        SimParams.of(model=model, **KINEMATIC),
+        world,
+        [  # type: ignore[arg-type]
+            RobotSpec("", model_named(model), Pose2D())
+        ],
+    )
+    points = _points(_image(sim), _world_from_camera(model, Pose2D()), sim.cameras.spec(0))
+    sim.close()
+    on_it = (np.abs(points - place) < 0.026).all(axis=-1)
+    rows, columns = np.nonzero(on_it)
+    return float(columns.mean()), float(rows.mean())
+
+
+def test_image_is_neither_mirrored_nor_upside_down(simulator: Make) -> None:
+    column, row = _see_a_box(simulator, "burger_rgbd", (1.5, 0.3, 0.4))
+    assert column < 70 and row < 50
+    column, row = _see_a_box(simulator, "burger_rgbd", (1.5, -0.3, 0.05))
+    assert column > 90 and row > 62
+
+
+def test_camera_sees_other_robots_but_not_its_own(simulator: Make) -> None:
+    without_others = _image(simulator("empty", model="burger_rgbd"))
+    sim = simulator("empty", Pose2D(), Pose2D(1.0, 0.0), model="burger_rgbd")
+    image = _image(sim)
+    assert np.isinf(without_others.depth[57]).all()
+    assert image.depth[57].min() == pytest.approx(1.0 - 0.045 - 0.032 - 0.069, abs=0.05)
+    assert np.isinf(image.depth[57, [0, -1]]).all()
+    between_plates = _image(simulator("empty", model="turtlebot2"))
+    assert between_plates.depth.min() > 0.6, "not the floor, which is 0.7 m away at the image's lower edge"
+
+
+def test_a_robot_is_seen_at_its_base_wherever_its_centre_of_mass_is(tmp_path: Path) -> None:
+    text, figures = Path(ROOT, "urdf", "burger.urdf").read_text(), model_named("burger").figures
+    spec, above = CameraSpec(64, 48, 1.0, 0.1, 5.0), Pose3D.from_xyz_rpy((0.0, 0.0, 1.0), (math.pi, 0.0, 0.0))
+    depths = []
+    for origin in ("", '<origin xyz="0.05 0 0.02" rpy="0 0 1"/>'):
+        path = tmp_path / "robot.urdf"
+        path.write_text(text.replace("<inertial>", f"<inertial>{origin}", 1))
+        renderer = CameraRenderer(world_named("empty"), [model_named("burger"), load_robot(str(path), figures)])
+        depths.append(renderer.render(spec, above, 0, [Pose3D(), Pose3D((0.1, 0.0, 0.01))], 0.0).depth)
+        renderer.close()
+    assert depths[0].min() < 0.9
+    assert np.abs(depths[1] - depths[0]).max() < 1e-5
+
+
+@pytest.mark.parametrize("params", [{}, KINEMATIC])
+def test_images_are_reproducible(simulator: Make, params: Dict[str, Any]) -> None:
+    one, other = (_image(simulator("stage_4", Pose2D(-0.7, 0.0), model="turtlebot2", **params)) for _ in range(2))
+    assert (one.rgb == other.rgb).all() and (one.depth == other.depth).all()
+    assert one.rgb.std() > 10.0
+
+
+def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> None:
+    sim = simulator("stage_3", Pose2D(0.0, 0.0, 0.0), model="burger_rgbd", moving=True, **KINEMATIC)
+    first = _image(sim)
+    for _ in range(5 * 60):
+        sim.step({})
+    later = _image(sim)
+    assert (first.depth != later.depth).any()
+    sim.change_world(world_named("empty"))
+    assert np.isinf(_image(sim).depth[:50]).all()
+
+
+def test_a_robot_without_a_camera_sends_no_images(simulator: Make) -> None:
+    sim = simulator("stage_1")
+    assert all(
+        not seen.images for seen in (sim.step(everything(len(sim.robots))) for _ in range(240)) if seen is not None
+    )
+
+
+def test_camera_rate_is_the_number_of_images_per_second_and_zero_disables_them(simulator: Make) -> None:
+    for rate in (10, 0):
+        sim = simulator("stage_1", model="waffle", camera_rate=rate, camera_width=8, camera_height=6, **KINEMATIC)
+        seen = drive(sim, STANDSTILL, 1.0, ["camera"])
+        assert sum(bool(observed.of("camera")) for observed in seen) == rate

@@ -1,0 +1,109 @@
+"""Scan profiles: figures, quirks of real drivers, and overrides by parameters."""
+
+import math
+from dataclasses import replace
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.sensors.lidar import Lidar
+from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.simulation.simulator import Simulator
+
+Make = Callable[..., Simulator]
+
+
+def _measured(profile: str, distances: "list[float]", **changes: Any) -> "list[float]":
+    spec = replace(PROFILES[profile].spec, samples=len(distances), **changes)
+    ranges = np.zeros((1, len(distances)))
+    Lidar(spec).measure(np.array([distances]), [0], 1, 2, ranges)
+    return ranges[0].tolist()
+
+
+def _scans(sim: Simulator, count: int) -> "list[np.ndarray]":
+    found: list[np.ndarray] = []
+    while len(found) < count:
+        seen = sim.step({"scan": [0]})
+        found += [seen.scans[0].copy()] if seen is not None and seen.of("scan") else []
+    return found
+
+
+def test_the_default_is_the_labs_gazebo_sensor() -> None:
+    scan = SimParams().scan
+    spec = scan.lidar()
+    assert (scan.rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
+    assert (spec.range_min, spec.range_max, spec.noise) == (0.12, 10.0, 0.01)
+    assert _measured("gazebo", [0.1, 1.0, math.inf], noise=0.0) == [-math.inf, 1.0, math.inf]
+
+
+def test_beams_are_spread_as_lab_code_expects() -> None:
+    spec = SimParams().scan.lidar()
+    assert spec.increment == pytest.approx(6.28319 / 359)
+    assert len(np.arange(spec.angle_min, spec.angle_max + spec.increment, spec.increment)) == 360
+    inc = np.float32(spec.increment)
+    assert len(np.arange(np.float32(spec.angle_min), np.float32(spec.angle_max) + inc / 2, inc)) == 360
+
+
+def test_an_lds01_scans_at_5_hz_with_one_beam_per_degree() -> None:
+    scan = SimParams.of(scan_profile="lds01").scan
+    spec = scan.lidar()
+    assert (scan.rate, spec.samples, spec.range_min, spec.range_max) == (5, 360, 0.12, 3.5)
+    assert spec.angle_max == pytest.approx(2.0 * math.pi - spec.increment)
+    assert spec.increment == pytest.approx(math.radians(1.0))
+
+
+def test_an_lds01_reports_no_return_as_zero_and_ranges_in_whole_millimetres() -> None:
+    assert _measured("lds01", [0.119, 0.12, 1.23449, 3.5, 3.51, math.inf], noise=0.0) == pytest.approx(
+        [0.0, 0.12, 1.234, 3.5, 0.0, 0.0], abs=1e-12
+    )
+
+
+def test_ideal_scans_are_exact(simulator: Make) -> None:
+    sim = simulator("stage_1", scan_profile="ideal")
+    (scan,) = _scans(sim, 1)
+    assert (scan == sim.exact_distances()).all()
+
+
+@pytest.mark.parametrize("distance, limit", [(0.2, 0.010), (0.3, 0.010), (1.0, 0.03), (6.0, 0.18), (7.0, 0.35)])
+def test_an_lds02s_error_stays_within_its_accuracy(distance: float, limit: float) -> None:
+    errors = np.array(_measured("lds02", [distance] * 10_000)) - distance
+    assert (errors.min(), errors.max()) == pytest.approx((-limit, limit), rel=1e-9)
+    assert errors.std() == pytest.approx(0.48 * limit, rel=0.03)  # of a normal distribution cut at two sigma
+
+
+def test_an_lds02_reports_no_return_as_zero() -> None:
+    assert _measured("lds02", [0.1, math.inf, 9.0]) == [0.0, 0.0, 0.0]
+
+
+def test_an_lds02s_number_of_beams_varies_reproducibly(simulator: Make) -> None:
+    def run() -> "list[np.ndarray]":
+        return _scans(simulator("stage_1", scan_profile="lds02"), 20)
+
+    scans = run()
+    assert len({len(scan) for scan in scans}) > 5
+    assert all(225 <= len(scan) <= 235 for scan in scans)
+    assert all((one == other).all() for one, other in zip(scans, run()))
+
+
+def test_any_number_of_beams_covers_the_same_full_turn(simulator: Make) -> None:
+    spec = PROFILES["lds02"].spec
+    for samples in (225, 230, 235):
+        turned = spec.with_samples(samples)
+        assert turned.increment * samples == pytest.approx(2.0 * math.pi)
+    sim = simulator("stage_1", Pose2D(0.5, 0.0), scan_profile="lds02", scan_noise=0.0)
+    for scan in _scans(sim, 5):
+        assert scan[0] == pytest.approx(1.85 - 0.5 + 0.032, abs=1e-3)
+        assert scan[round(len(scan) / 2)] == pytest.approx(1.85 + 0.5 - 0.032, abs=2e-3)
+
+
+def test_explicit_value_overrides_the_profile_and_is_listed() -> None:
+    given = {"scan_rate": 5, "scan_noise": 0.02, "scan_angle_min": 0.0, "scan_angle_max": 3.0}
+    scan = SimParams.of(scan_profile="lds02", **given).scan
+    assert scan.given() == given
+    spec = scan.lidar()
+    assert (scan.rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)
+    assert (spec.samples, spec.range_max) == (230, 8.0)
+    assert SimParams().scan.given() == {}

@@ -1,0 +1,119 @@
+"""Commands, and how long a control tick in lockstep is held for its answers."""
+
+import math
+
+import pytest
+from fakes import Owner
+from support import ORIGIN
+
+from aro_robocop_goto_as.geometry import Twist2D
+from aro_robocop_goto_as.simulation.lockstep import Controller
+
+NODE, ANSWERING = Controller(0, "/controller"), Controller(0, "/answering")
+AHEAD, INVALID = Twist2D(0.1, 0.0), Twist2D(math.nan, 0.0)
+
+
+def lockstep(end: float, *nodes: str, **params: object) -> Owner:
+    """As fast as possible, with these nodes connected."""
+    owner = Owner(end, real_time_factor=0.0, sync="lockstep", **params)
+    owner.nodes = set(nodes)
+    return owner
+
+
+def test_command_that_is_not_finite_is_refused_and_the_previous_one_stays_in_force() -> None:
+    owner = Owner(1.0)
+    owner.simulation.controllers.command(NODE, AHEAD)
+    owner.simulation.controllers.command(NODE, INVALID)
+    owner.run()
+    assert "linear.x nan m/s" in str(owner.events)
+    assert owner.simulator.velocity().v == pytest.approx(0.1)
+
+
+def test_command_that_is_not_finite_is_refused_at_the_end_of_the_tick_in_lockstep() -> None:
+    owner = lockstep(0.15, NODE.node)
+    owner.simulation.controllers.command(NODE, INVALID)
+    owner.run()
+    assert "linear.x nan m/s" in str(owner.events)
+    assert owner.simulator.world_from_footprint() == ORIGIN
+
+
+def test_tick_waits_for_each_answer_without_a_miss() -> None:
+    owner = lockstep(0.55, "/answering")
+    stamps = []
+
+    def answer(stamp: int) -> None:
+        stamps.append(stamp)
+        owner.post(0.3, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD))
+
+    owner.on_tick = answer
+    owner.run()
+    assert stamps == [tick * 10**8 for tick in range(1, 6)]
+    assert owner.clock.time == pytest.approx(101.5)
+    assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
+    assert owner.simulation.controllers.awaited() == [ANSWERING]
+    assert owner.simulator.world_from_footprint().x > 0.03
+
+
+def test_time_goes_on_without_a_silent_controller() -> None:
+    owner = lockstep(0.3, "/answering", lockstep_timeout=3.0)
+    owner.run()
+    assert owner.events == [("late", [ANSWERING])]
+    assert owner.simulation.controllers.lockstep.misses == 1
+    assert owner.clock.time == pytest.approx(103.0)
+
+
+def test_robot_of_a_controller_that_disconnects_is_stopped() -> None:
+    owner = lockstep(1.0, "/answering")
+    owner.post(0.1, lambda: owner.simulation.controllers.answer(ANSWERING, 10**8, AHEAD))
+    owner.clock.at(0.2, owner.nodes.clear)
+    owner.run()
+    assert ("gone", ANSWERING) in owner.events
+    assert owner.simulator.world_from_footprint().x < 0.03, "one tick at most, and braking"
+    assert owner.clock.time == pytest.approx(100.25, abs=0.06)
+
+
+def test_another_controllers_command_outlives_one_that_disconnects() -> None:
+    owner = lockstep(0.15, "/answering")
+    owner.post(0.01, lambda: owner.simulation.controllers.command(NODE, AHEAD))
+    owner.clock.at(0.02, owner.nodes.clear)
+    owner.run()
+    assert ("gone", ANSWERING) in owner.events
+    assert owner.simulator.world_from_footprint().x > 0.0
+
+
+def test_answer_from_before_time_was_set_back_is_ignored() -> None:
+    owner = lockstep(0.35, "/answering")
+    controllers = owner.simulation.controllers
+    controllers.lockstep.enroll(ANSWERING)
+    controllers.answer(ANSWERING, 100 * 10**9, AHEAD)
+    owner.on_tick = lambda stamp: owner.post(0.1, lambda: controllers.answer(ANSWERING, stamp, None))
+    owner.run()
+    assert owner.clock.time == pytest.approx(100.3), "every tick waits for its own answer"
+    assert owner.simulator.world_from_footprint() == ORIGIN
+
+
+def test_reset_while_controllers_are_waited_for_asks_nobody_twice() -> None:
+    owner = lockstep(0.35, "/answering_a", "/answering_b")
+    controllers = owner.simulation.controllers
+    first, second = Controller(0, "/answering_a"), Controller(0, "/answering_b")
+
+    def answer(stamp: int) -> None:
+        owner.post(0.1, lambda: controllers.answer(first, stamp, None))
+        if stamp == 10**8:
+            owner.post(0.15, owner.simulation.reset)
+        owner.post(0.2, lambda: controllers.answer(second, stamp, None))
+
+    owner.on_tick = answer
+    owner.run()
+    assert controllers.lockstep.misses == 0
+    assert owner.clock.time < 101.0
+
+
+def test_controllers_that_connect_while_time_stands_still_are_waited_for_from_the_first_tick() -> None:
+    owner = lockstep(0.15, start_paused=True)
+    controllers = owner.simulation.controllers
+    owner.clock.at(0.5, lambda: owner.nodes.add("/answering"))
+    owner.post(1.0, lambda: owner.simulation.set_paused(False))
+    owner.on_tick = lambda stamp: owner.post(0.3, lambda: controllers.answer(ANSWERING, stamp, None))
+    owner.run()
+    assert owner.clock.time == pytest.approx(101.3) and controllers.lockstep.misses == 0

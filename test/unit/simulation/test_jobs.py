@@ -1,0 +1,58 @@
+"""What other threads ask of the owner of a simulation."""
+
+import threading
+from typing import List
+
+import pytest
+from fakes import FakeClock
+
+from aro_robocop_goto_as.errors import ShutdownError, WorldError
+from aro_robocop_goto_as.simulation.jobs import Jobs, WallClock
+
+
+def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() -> None:
+    done = threading.Event()
+    jobs = Jobs(WallClock(), done.is_set)
+    outcomes: List[object] = []
+
+    def refuse() -> None:
+        raise WorldError("no such model")
+
+    def caller() -> None:
+        outcomes.append(jobs.call(threading.get_ident))
+        with pytest.raises(WorldError, match="no such model"):
+            jobs.call(refuse)
+        outcomes.append("raised")
+        done.set()
+
+    thread = threading.Thread(target=caller)
+    thread.start()
+    while not done.is_set():
+        jobs.run_next(0.1)
+    thread.join(10.0)
+    assert outcomes == [threading.get_ident(), "raised"]
+    with pytest.raises(ShutdownError):
+        jobs.call(lambda: None)
+
+
+def test_jobs_that_come_while_the_queued_ones_are_run_stay_queued() -> None:
+    jobs, run = Jobs(FakeClock()), []
+
+    def again() -> None:
+        run.append(1)
+        jobs.post(again)
+
+    jobs.post(again)
+    jobs.post(again)
+    jobs.run_queued()
+    assert len(run) == len(jobs) == 2
+
+
+def test_run_next_waits_no_longer_than_it_may() -> None:
+    clock, run = FakeClock(), []
+    jobs = Jobs(clock)
+    clock.at(0.3, lambda: jobs.post(lambda: run.append(clock.time)))
+    jobs.run_next(0.2)
+    assert run == [] and clock.time == pytest.approx(100.2)
+    jobs.run_next(0.2)
+    assert run == [pytest.approx(100.3)]

@@ -1,0 +1,128 @@
+"""A simulation in its owner's loop: pacing, pausing, spans, and what it says has changed."""
+
+import pytest
+from fakes import Owner
+from support import ORIGIN, world_named
+
+from aro_robocop_goto_as.errors import PlaceError
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.simulation.lockstep import Controller
+from aro_robocop_goto_as.simulation.simulation import Change
+
+NODE = Controller(0, "/controller")
+AHEAD = Twist2D(0.1, 0.0)
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 10.0])
+def test_simulated_time_keeps_to_the_real_time_factor(factor: float) -> None:
+    owner = Owner(2.0, real_time_factor=factor)
+    owner.run()
+    assert owner.clock.time - 100.0 == pytest.approx(2.0 / factor, rel=0.02)
+    assert sum(seen.due.clock for seen in owner.observed) == 120
+    assert [seen.stamp_ns for seen in owner.observed] == sorted(seen.stamp_ns for seen in owner.observed)
+
+
+def test_with_factor_zero_the_loop_never_waits() -> None:
+    owner = Owner(5.0, real_time_factor=0.0)
+    owner.run()
+    assert owner.clock.time == 100.0
+
+
+def test_factor_may_change_while_time_runs() -> None:
+    owner = Owner(3.0)
+    owner.post(1.0, lambda: owner.simulation.time.set_real_time_factor(4.0, owner.simulator.steps))
+    owner.run()
+    assert owner.clock.time == pytest.approx(101.5, abs=0.05)
+
+
+def test_paused_simulation_repeats_the_clock_and_runs_jobs_until_it_is_resumed() -> None:
+    owner = Owner(0.5, start_paused=True)
+    times: list[float] = []
+    owner.post(0.95, lambda: times.append(owner.simulator.time))
+    owner.post(1.0, lambda: owner.simulation.set_paused(False))
+    owner.run()
+    assert times == [0.0]
+    assert owner.events.count("clock repeated") == pytest.approx(9, abs=1)
+    assert owner.clock.time == pytest.approx(101.5, abs=0.05)
+    assert owner.simulation.take_changes() == {Change.STATUS} and owner.simulation.take_changes() == set()
+
+
+def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
+    owner = Owner(start_paused=True, clock_rate=1)
+    time, begun = owner.simulation.time, []
+    owner.post(0.1, lambda: begun.extend(time.begin_span(seconds, 0) for seconds in (0.26, 1.0)))
+    owner.is_stopped = lambda: owner.clock.time > 103.0
+    owner.run()
+    span, refused = begun
+    assert refused is None, "while the first one runs"
+    assert span is not None and span.result(0) == owner.simulator.steps == 62
+    assert time.paused and time.standing
+
+
+def test_shortest_span_is_one_step() -> None:
+    owner = Owner(start_paused=True, real_time_factor=0.0)
+    owner.simulation.time.begin_span(0.0, 0)
+    owner.is_stopped = lambda: owner.clock.time > 101.0
+    owner.run()
+    assert owner.simulator.steps == 1
+
+
+def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
+    owner, spans = Owner(1.0, start_paused=True), []
+    owner.post(0.1, lambda: spans.append(owner.simulation.time.begin_span(0.25, owner.simulator.steps)))
+    owner.post(0.2, lambda: owner.simulation.set_paused(False))
+    owner.run()
+    assert spans[0] is not None and spans[0].result(0) == 60
+    assert owner.clock.time < 102.0
+
+
+def test_span_keeps_its_length_when_a_reset_sets_time_back() -> None:
+    owner = Owner(real_time_factor=0.0, start_paused=True, reset_time=True)
+    time, simulator = owner.simulation.time, owner.simulator
+    spans = [time.begin_span(2.0, 0)]
+    owner.is_stopped = lambda: owner.clock.time > 101.0
+    owner.run()
+    assert simulator.steps == 480
+    spans.append(time.begin_span(0.5, simulator.steps))
+    owner.simulation.reset()
+    assert Change.TIME in owner.simulation.take_changes()
+    owner.clock.time = 100.0
+    owner.run()
+    assert [span is not None and span.result(0) for span in spans] == [480, 120]
+
+
+def test_command_moves_the_robot() -> None:
+    owner = Owner(1.0)
+    owner.simulation.jobs.post(lambda: owner.simulation.controllers.command(NODE, AHEAD))
+    owner.run()
+    assert owner.simulator.world_from_footprint().x > 0.05
+
+
+def test_reset_and_place_announce_new_frames_and_drop_pending_commands() -> None:
+    owner = Owner(0.25, real_time_factor=0.0, sync="lockstep")
+    simulation = owner.simulation
+    simulation.controllers.command(NODE, AHEAD)
+    simulation.place(Pose2D(1.0, 2.0))
+    assert simulation.take_changes() == {Change.FRAMES}
+    owner.run()
+    assert owner.simulator.world_from_footprint() == Pose2D(1.0, 2.0)
+    simulation.controllers.command(NODE, AHEAD)
+    simulation.reset()
+    assert simulation.take_changes() == {Change.FRAMES, Change.STATUS}
+    owner.end = 0.5
+    owner.run()
+    assert owner.simulator.world_from_footprint() == ORIGIN
+
+
+def test_robot_is_placed_only_where_it_has_room_unless_it_may_be_anywhere() -> None:
+    owner = Owner()
+    simulation, simulator = owner.simulation, owner.simulator
+    simulation.change_world(lambda world: world_named("stage_2"))
+    assert simulation.take_changes() == {Change.WORLD}
+    with pytest.raises(PlaceError, match="expected at least the robot's radius"):
+        simulation.place(Pose2D(0.6, 0.6))
+    assert simulator.world_from_footprint() == ORIGIN and simulation.take_changes() == set()
+    simulation.place(Pose2D(0.0, 1.0))
+    assert simulator.world_from_footprint() == Pose2D(0.0, 1.0)
+    simulation.place(Pose2D(0.6, 0.6), anywhere=True)
+    assert simulator.newly_placed_in_contact() == [0] and simulator.newly_placed_in_contact() == []

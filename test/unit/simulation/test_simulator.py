@@ -1,0 +1,349 @@
+"""The simulator, compared with an ideal differential drive and an analytic ray cast; rates, seeds and resets."""
+
+import math
+from typing import Callable, Dict, List, Tuple
+
+import numpy as np
+import pytest
+from support import ORIGIN, analytic_distances, drive, everything, lean, world_named
+
+from aro_robocop_goto_as.errors import CommandError
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, wrap_angle
+from aro_robocop_goto_as.simulation.simulator import Simulator
+
+Make = Callable[..., Simulator]
+LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another Burger's scan sees of a Burger
+KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
+DRIVES: List[Dict[str, object]] = [{"drive": "wheels"}, KINEMATIC]
+
+
+def _drive_and_stop(sim: Simulator, twist: Twist2D, seconds: float) -> None:
+    drive(sim, twist, seconds)
+    drive(sim, STANDSTILL, 1.0)
+
+
+def _odom(sim: Simulator) -> Pose2D:
+    """odom_from_footprint at the next update."""
+    seen = None
+    while seen is None or not seen.of("odom"):
+        seen = sim.step({"odom": [0]})
+    return Pose2D(*seen.odometry.poses[0].tolist())
+
+
+@pytest.mark.parametrize("v", [0.2, -0.2])
+def test_driving_two_metres_is_accurate_to_one_percent(simulator: Make, v: float) -> None:
+    sim = simulator()
+    _drive_and_stop(sim, Twist2D(v, 0.0), 10.0)
+    pose = sim.world_from_footprint()
+    assert math.hypot(pose.x - 10.0 * v, pose.y) < 0.02
+    assert abs(pose.yaw) < math.radians(2.0)
+
+
+@pytest.mark.parametrize("w", [1.0, -2.5])
+def test_full_turn_in_place_is_accurate_to_two_degrees(simulator: Make, w: float) -> None:
+    sim = simulator()
+    _drive_and_stop(sim, Twist2D(0.0, w), abs(2.0 * math.pi / w))
+    pose = sim.world_from_footprint()
+    assert abs(pose.yaw) < math.radians(2.0)
+    assert math.hypot(pose.x, pose.y) < 0.01
+
+
+@pytest.mark.parametrize("before", [0.0, 3.0])
+def test_a_robot_without_a_command_does_not_drift(simulator: Make, before: float) -> None:
+    sim = simulator()
+    if before:
+        _drive_and_stop(sim, Twist2D(0.15, 0.4), before)
+    start = sim.world_from_footprint()
+    for _ in range(60 * 60):
+        sim.advance({}, 4)
+    end = sim.world_from_footprint()
+    assert math.hypot(end.x - start.x, end.y - start.y) < 1e-3
+    assert abs(wrap_angle(end.yaw - start.yaw)) < math.radians(0.1)
+
+
+def test_both_engines_agree_without_slip(simulator: Make) -> None:
+    ends = []
+    for params in DRIVES:
+        sim = simulator("empty", **params)
+        drive(sim, Twist2D(0.15, 0.4), 5.0)
+        ends.append(sim.world_from_footprint())
+    assert math.hypot(ends[0].x - ends[1].x, ends[0].y - ends[1].y) < 0.01
+    assert abs(ends[0].yaw - ends[1].yaw) < math.radians(1.0)
+
+
+def test_robot_stops_upright_at_a_wall_and_can_back_out(simulator: Make) -> None:
+    sim = simulator("stage_1", Pose2D(1.5, 0.0))
+    _drive_and_stop(sim, Twist2D(0.22, 0.0), 5.0)
+    stuck = sim.world_from_footprint()
+    assert stuck.x < 1.85 - 0.033, "the robot is in the wall"
+    assert sim.touching()
+    assert lean(sim) < math.radians(3.0)
+    _drive_and_stop(sim, Twist2D(-0.2, 0.0), 3.0)
+    assert sim.world_from_footprint().x < stuck.x - 0.4
+    assert not sim.touching()
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("stage_1", Pose2D(1.86, 0.0), **params)
+    sim.step({})
+    assert sim.newly_placed_in_contact() == [0] and sim.newly_placed_in_contact() == []
+    sim.place(ORIGIN)
+    sim.step({})
+    assert not sim.touching() and sim.newly_placed_in_contact() == []
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_bumper_reports_walls_but_not_the_floor(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("stage_1", Pose2D(1.5, 0.0), **params)
+    pressed = [seen.bumpers[0] for seen in drive(sim, Twist2D(0.2, 0.0), 4.0, ["bumper"]) if seen.bumpers]
+    assert pressed[0] is False and pressed[-1] is True
+
+
+@pytest.mark.parametrize("world", ["stage_4", "world", "maze_1"])
+def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world: str) -> None:
+    description = world_named(world)
+    sim = simulator(world, description.spawn, scan_noise=0.0)
+    rng = np.random.default_rng(7)
+    half = max(abs(value) for obstacle in description.obstacles for value in obstacle.pose.position[:2])
+    tried = 0
+    while tried < 10:
+        x, y, yaw = rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-math.pi, math.pi)
+        ring = analytic_distances(description, x, y, np.linspace(0, 2 * math.pi, 90), 50.0)
+        if not (0.3 < ring.min() and np.isfinite(ring).all()):  # too close to an obstacle, or outside the walls
+            continue
+        sim.place(Pose2D(x, y, yaw))
+        _drive_and_stop(sim, Twist2D(0.1, rng.uniform(-1.0, 1.0)), 1.0)
+        pose = sim.world_from_footprint()
+        scan_x, scan_y = pose.x - 0.032 * math.cos(pose.yaw), pose.y - 0.032 * math.sin(pose.yaw)
+        angles = pose.yaw + np.arange(360) * sim.lidar.spec.increment
+        expected = analytic_distances(description, scan_x, scan_y, angles, 10.0)
+        assert np.abs(sim.exact_distances() - expected)[np.isfinite(expected)].max() < 0.002
+        assert (np.isfinite(sim.exact_distances()) == np.isfinite(expected)).all()
+        tried += 1
+
+
+# Rates, noise, subscriptions
+
+
+def test_observations_of_a_step_carry_its_stamp_and_rates_are_exact_over_one_second(simulator: Make) -> None:
+    seen = drive(simulator("stage_1"), STANDSTILL, 1.0, everything(1))
+    expected = dict(scan=10, odom=30, tf=30, joints=30, imu=200, ground_truth=30, bumper=30, magnetic_field=0)
+    assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected
+    assert sum(observed.due.clock for observed in seen) == 60 and sum(observed.due.control for observed in seen) == 10
+    assert seen[-1].stamp_ns == 1000000000
+    assert all(observed.stamp_ns % 100000000 == 0 for observed in seen if observed.of("scan"))
+
+
+def test_every_rate_parameter_is_kept(simulator: Make) -> None:
+    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10, battery_state=12, magnetic_field=13)
+    given = {f"{name}_rate": rate for name, rate in rates.items()}
+    sim = simulator("empty", drive="kinematic", physics_rate=600, clock_rate=1, control_rate=2, **given)
+    seen = drive(sim, STANDSTILL, 1.0, everything(1))
+    rates.update(joints=rates.pop("joint_state"), battery=rates.pop("battery_state"), tf=rates["odom"])
+    assert {name: sum(bool(observed.of(name)) for observed in seen) for name in rates} == rates
+    assert (sum(observed.due.clock for observed in seen), sum(observed.due.control for observed in seen)) == (1, 2)
+
+
+@pytest.mark.parametrize("sensors", [(), ("odom", "scan"), ("imu",)])
+def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sensors: Tuple[str, ...]) -> None:
+    def run(most: int) -> "list[object]":
+        sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive="kinematic", moving=True)
+        seen: list[object] = []
+        while sim.steps < 240:
+            sim.command(Twist2D(0.1, 0.5) if sim.steps < 120 else STANDSTILL)
+            observed = sim.advance({sensor: [0] for sensor in sensors}, most)
+            if observed is not None:
+                rows = [rows.tobytes() for rows in (observed.odometry.poses, observed.scans, observed.imus)]
+                seen.append((observed.stamp_ns, observed.due.clock, rows))
+        return [*seen, sim.world_from_footprint()]
+
+    assert run(1) == run(10**9)
+
+
+def test_simulator_measures_after_the_step_and_reads_bodies_only_for_subscribed_imus(
+    simulator: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sim, calls = simulator("empty", drive="kinematic", imu_rate=60), []
+    advance, body = sim.engine.advance, sim.engine.body
+    monkeypatch.setattr(sim.engine, "advance", lambda first, steps: calls.append(steps) or advance(first, steps))
+    monkeypatch.setattr(sim.engine, "body", lambda robot: calls.append("body") or body(robot))
+    sim.advance({}, 1000)
+    sim.advance({"imu": [0]}, 1000)
+    assert calls == [4, 3, "body", 1, "body"]
+
+
+def test_same_seed_gives_the_same_run_whatever_is_subscribed(simulator: Make) -> None:
+    def run(seed: int, listening: bool) -> "tuple[list[float], Pose2D]":
+        sim = simulator("stage_2", seed=seed)
+        for step in range(480):
+            sim.command(Twist2D(0.2, 0.3))
+            seen = sim.step(everything(1) if listening or step == 479 else {})
+        assert seen is not None
+        return list(seen.scans[0]), sim.world_from_footprint()
+
+    assert run(1, True) == run(1, False)
+    assert run(1, True)[0] != run(2, True)[0]
+    assert run(1, True)[1] == run(2, True)[1]
+
+
+def test_scan_noise_of_one_robot_does_not_depend_on_which_other_scans_are_subscribed(simulator: Make) -> None:
+    def scan(wanted: "list[int]") -> "list[float]":
+        sim = simulator("stage_1", ORIGIN, Pose2D(1.0, 0.0))
+        for _ in range(24):
+            seen = sim.step({"scan": wanted})
+        assert seen is not None
+        return list(seen.scans[1])
+
+    assert scan([1]) == scan([0, 1])
+
+
+def test_invalid_command_leaves_the_previous_one_in_force(simulator: Make) -> None:
+    sim = simulator()
+    sim.command(Twist2D(0.2, 0.0))
+    with pytest.raises(CommandError):
+        sim.command(Twist2D(math.nan, 0.0))
+    for _ in range(100):
+        sim.step({})
+    assert sim.velocity().v == pytest.approx(0.2, rel=0.02)
+
+
+# Odometry in the simulator
+
+
+def _odom_and_truth(sim: Simulator) -> Tuple[Pose2D, Pose2D]:
+    seen = drive(sim, Twist2D(0.2, 0.0), 8.0, ["odom"])
+    return Pose2D(*seen[-1].odometry.poses[0].tolist()), sim.world_from_footprint()
+
+
+def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make) -> None:
+    odom, truth = _odom_and_truth(simulator("empty", odom_slip=0.05, **KINEMATIC))
+    assert odom.x > 1.02 * truth.x
+    assert odom.yaw != 0.0
+    assert _odom_and_truth(simulator("empty", odom_slip=0.05, **KINEMATIC))[0] == odom
+    assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
+
+
+def test_wheel_radius_error_scales_the_distance(simulator: Make) -> None:
+    odom, truth = _odom_and_truth(simulator("empty", odom_wheel_radius_error=0.02, **KINEMATIC))
+    assert odom.x == pytest.approx(1.02 * truth.x)
+
+
+def test_odometry_without_errors_is_exact(simulator: Make) -> None:
+    odom, truth = _odom_and_truth(simulator("empty", **KINEMATIC))
+    assert odom == pytest.approx(truth)
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_encoders_keep_counting_while_the_wheels_slip_at_a_wall(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("stage_1", Pose2D(1.7, 0.0), **params)
+    odom = drive(sim, Twist2D(0.22, 0.0), 2.0, ["odom"])[-1].odometry.poses[0]
+    assert sim.touching()
+    assert odom[0] > sim.world_from_footprint().x - 1.7 + 0.05
+
+
+def test_odometry_of_the_world_is_the_true_pose_from_the_start(simulator: Make) -> None:
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", odom_slip=0.1)
+    _drive_and_stop(sim, Twist2D(0.2, 0.3), 1.0)
+    (seen,) = [
+        seen for seen in (sim.step({"odom": [0], "ground_truth": [0]}) for _ in range(8)) if seen and seen.of("odom")
+    ]
+    np.testing.assert_array_equal(seen.odometry.poses, seen.fleet.poses)
+    np.testing.assert_array_equal(seen.odometry.twists, seen.fleet.twists)
+    sim.place(Pose2D(1.0, -1.0, 1.0))
+    assert sim.map_from_odom() == Pose2D()
+
+
+def test_true_localization_follows_odometrys_errors(simulator: Make) -> None:
+    sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, **KINEMATIC)
+    odom, truth = _odom_and_truth(sim)
+    assert compose(sim.map_from_odom(), odom) == pytest.approx(truth)
+    assert sim.map_from_odom().x < -0.1
+
+
+# Places and resets
+
+
+def test_placing_the_robot_changes_map_from_odom_instead_of_odometry(simulator: Make) -> None:
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0))
+    _drive_and_stop(sim, Twist2D(0.2, 0.0), 1.0)
+    for _ in range(8):
+        sim.step({})
+    sim.place(Pose2D(1.0, -1.0, 1.0))
+    assert sim.map_from_odom().yaw == pytest.approx(1.0, abs=0.01)
+    assert sim.map_from_odom().x == pytest.approx(1.0 - 0.2 * math.cos(1.0), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "params, accuracy", [({}, 1e-9), ({"encoder_tick": 0.0015}, 1e-3), ({"odom_slip": 0.05}, 0.012)]
+)
+def test_placing_the_robot_between_odometry_updates_loses_no_travel(
+    simulator: Make, params: Dict[str, float], accuracy: float
+) -> None:
+    sim = simulator("empty", drive="kinematic", max_linear_acceleration=1e3, odom_rate=10, **params)
+    drive(sim, Twist2D(0.2, 0.0), (240 + 23) / 240, ["odom"])  # 23 of the 24 steps between two updates
+    sim.place(Pose2D(1.0, -1.0, 1.0))
+    assert compose(sim.map_from_odom(), _odom(sim)) == pytest.approx((1.0, -1.0, 1.0), abs=accuracy)
+
+
+def test_reset_returns_the_robot_to_its_spawn_while_time_continues(simulator: Make) -> None:
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0))
+    _drive_and_stop(sim, Twist2D(0.2, 0.5), 2.0)
+    before = sim.stamp_ns
+    sim.reset()
+    assert _odom(sim) == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
+    assert sim.stamp_ns > before
+    assert sim.world_from_footprint() == pytest.approx((-0.7, 0.0, 0.0), abs=1e-4)
+
+
+def test_reset_restarts_the_noise_sequence(simulator: Make) -> None:
+    sim = simulator("stage_2")
+
+    def first_scan() -> "list[float]":
+        return list(drive(sim, STANDSTILL, 0.1, ["scan"])[-1].scans[0])
+
+    once = first_scan()
+    sim.reset()
+    again = first_scan()
+    sim.reset(seed=9)
+    other = first_scan()
+    assert once == again and once != other
+
+
+def test_reset_sets_time_back_only_on_request(simulator: Make) -> None:
+    sim = simulator("empty")
+    for _ in range(10):
+        sim.step({})
+    sim.reset()
+    assert sim.steps == 10
+    sim.reset(restart_time=True)
+    assert sim.stamp_ns == 0
+
+
+# Several robots
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_robots_see_each_others_scanners_but_not_their_own(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("empty", ORIGIN, Pose2D(1.0, 0.0, math.pi), **params)
+    for robot in (0, 1):
+        distances = sim.exact_distances(robot)
+        assert distances.min() == pytest.approx(1.0 + 2 * 0.032 - LIDAR_RADIUS, abs=1e-6)
+        assert np.isfinite(distances).sum() < 10
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_command_moves_only_its_own_robot(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("empty", ORIGIN, Pose2D(0.0, 1.0), **params)
+    drive(sim, Twist2D(0.2, 0.0), 1.0, robot=1)
+    assert sim.world_from_footprint(0).x == pytest.approx(0.0, abs=1e-4)
+    assert sim.world_from_footprint(1).x > 0.15
+
+
+@pytest.mark.parametrize("params", DRIVES)
+def test_two_robots_driving_towards_each_other_collide_and_stop(simulator: Make, params: Dict[str, object]) -> None:
+    sim = simulator("empty", ORIGIN, Pose2D(0.6, 0.0, math.pi), **{**params, "cmd_vel_timeout": 0.0})
+    sim.command(Twist2D(0.15, 0.0), robot=0)
+    drive(sim, Twist2D(0.15, 0.0), 4.0, robot=1)
+    assert sim.touching(0) and sim.touching(1)
+    assert sim.world_from_footprint(1).x - sim.world_from_footprint(0).x > 0.05

@@ -1,0 +1,106 @@
+"""The compiled libraries: how they are found and checked, what C may read, and that it reads nothing else."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import ROOT
+
+from aro_robocop_goto_as import compiled
+from aro_robocop_goto_as.errors import InstallationError
+from aro_robocop_goto_as.raycast import caster_library
+
+NAME = compiled.file_name("caster")
+SOURCES = {
+    "caster": ["raycast/caster.c", "raycast/movers.c", "sensors/lidar.c"],
+    "sender": ["ros/sender.c"],
+    "fleet": ["robot/base_controller.c", "physics/kinematic.c", "sensors/odometry.c"],
+}
+ARRAYS = {
+    "shape": (np.zeros((4, 2)), r"^footprints: expected shape \('any', 3\), got \(4, 2\)"),
+    "dimensions": (np.zeros(3), r"^footprints: expected shape \('any', 3\), got \(3,\)"),
+    "type": (np.zeros((4, 3), np.float32), "^footprints: expected a C-contiguous array of float64, got float32"),
+    "order": (
+        np.zeros((3, 4)).T,
+        r"^footprints: expected a C-contiguous array of float64, got float64, strides \(8, 32\)",
+    ),
+    "list": ([[0.0] * 3], "^footprints: expected a C-contiguous array of float64, got list"),
+}
+
+
+@pytest.mark.parametrize("case", ARRAYS)
+def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> None:
+    array, message = ARRAYS[case]
+    with pytest.raises(ValueError, match=message):
+        compiled.address("footprints", array, (None, 3))  # type: ignore[arg-type]
+
+
+def _compile(tmp_path: Path, text: str) -> str:
+    source, path = tmp_path / "other.c", tmp_path / NAME
+    source.write_text(text)
+    subprocess.run(["cc", "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
+    return str(path)
+
+
+def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path) -> None:
+    with pytest.raises(InstallationError, match=rf"^{NAME} is in none of {tmp_path}: build .*\./robocop setup"):
+        compiled.find("caster", [str(tmp_path)])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 2: build"),
+        ("int other(void) { return 1; }", "can't be used .*aro_caster_version.*: build"),
+    ],
+)
+def test_library_built_from_other_sources_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = _compile(tmp_path, text)
+    with pytest.raises(InstallationError, match=message):
+        compiled.load("caster", caster_library.VERSION, path)
+
+
+def test_file_that_is_not_a_library_is_refused(tmp_path: Path) -> None:
+    (tmp_path / NAME).write_text("no library")
+    with pytest.raises(InstallationError, match="can't be used .*: build"):
+        compiled.load("caster", caster_library.VERSION, compiled.find("caster", [str(tmp_path)]))
+
+
+@pytest.fixture(scope="module")
+def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A folder with the libraries, built with the address and undefined-behaviour sanitizers."""
+    folder = str(tmp_path_factory.mktemp("sanitized"))
+    checks = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
+    warnings = ["-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
+    for name, sources in SOURCES.items():
+        paths = [os.path.join(ROOT, "src", "aro_robocop_goto_as", source) for source in sources]
+        options = ["-std=c99", "-g", "-O1", *warnings, *checks, "-fPIC", "-shared"]
+        path = os.path.join(folder, compiled.file_name(name))
+        subprocess.run(["cc", *options, *paths, "-lm", "-o", path], check=True)
+    return folder
+
+
+def _under_sanitizers(folder: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    runtime = subprocess.run(["cc", "-print-file-name=libasan.so"], check=True, capture_output=True, text=True).stdout
+    return subprocess.run(
+        [sys.executable, os.path.join(os.path.dirname(__file__), "under_sanitizers.py"), folder, *arguments],
+        env={**os.environ, "LD_PRELOAD": runtime.strip(), "ASAN_OPTIONS": "detect_leaks=0", "PYTHONMALLOC": "malloc"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=240,
+    )
+
+
+def test_sanitizers_report_nothing(sanitized: str) -> None:
+    done = _under_sanitizers(sanitized)
+    assert (done.returncode, done.stdout) == (0, "sound\n")
+
+
+@pytest.mark.parametrize("library", SOURCES)
+def test_sanitizers_detect_a_read_beyond_an_array(sanitized: str, library: str) -> None:
+    done = _under_sanitizers(sanitized, f"--beyond={library}")
+    assert done.returncode != 0 and "AddressSanitizer: heap-buffer-overflow" in done.stdout

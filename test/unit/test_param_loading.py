@@ -1,0 +1,80 @@
+"""Plain values become a parameter dataclass, or are refused with source, key, value and expectation."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Dict, List, Optional
+
+import pytest
+
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.param_loading import declared, from_dict, group, parameter, positive
+
+
+@dataclass(frozen=True)
+class Speeds:
+    slow: float = positive(0.1, high=1.0)
+    fast: Optional[float] = positive(None, otherwise="the model's value")
+
+
+@dataclass(frozen=True)
+class Params:
+    speeds: Speeds = group(Speeds)
+    count: int = parameter(1, low=1, high=5)
+    mode: str = parameter("free", choices=("free", "strict"))
+    shown: bool = False
+
+    def conflicts(self) -> List[str]:
+        return ["count: expected 2 in mode strict"] if self.mode == "strict" and self.count != 2 else []
+
+
+@dataclass(frozen=True)
+class Required:
+    name: str = parameter()
+
+
+def test_groups_take_their_own_keys_without_a_prefix() -> None:
+    assert list(declared(Params)) == ["slow", "fast", "count", "mode", "shown"]
+    assert from_dict(Params, {}, "x") == Params()
+    assert from_dict(Params, {"fast": 2.5, "count": 3}, "x") == Params(Speeds(0.1, 2.5), 3)
+    with pytest.raises(ParameterError, match="speeds: unknown parameter"):
+        from_dict(Params, {"speeds": {"slow": 0.1}}, "x")
+
+
+def test_integer_is_accepted_for_a_float() -> None:
+    slow = from_dict(Params, {"slow": 1}, "x").speeds.slow
+    assert slow == 1.0 and isinstance(slow, float)
+
+
+@pytest.mark.parametrize(
+    "raw, expected",
+    [
+        ({"cuont": 2}, "cuont: unknown parameter; did you mean 'count'?"),
+        ({"zzz": 1}, "zzz: unknown parameter; known are: count, fast, mode, shown, slow"),
+        ({"count": "2"}, "count: expected int, got str '2'"),
+        ({"count": 2.0}, "count: expected int, got float 2.0"),
+        ({"count": True}, "count: expected int, got bool True"),
+        ({"shown": 1}, "shown: expected bool, got int 1"),
+        ({"count": 0}, "count: expected at least 1, got 0"),
+        ({"count": 10**22}, "count: expected at most 5, got 10000000000000000000000"),
+        ({"slow": 0}, "slow: expected at least 1e-09, got 0.0"),
+        ({"slow": math.nan}, "slow: expected a finite number, got nan"),
+        ({"slow": 10**400}, "slow: expected a finite number, got inf"),
+        ({"fast": None}, "fast: expected float, got NoneType None; omit it to use the model's value"),
+        ({"fast": -1}, "fast: expected at least 1e-09, got -1.0; omit it to use the model's value"),
+        ({"mode": "gps"}, "mode: expected one of free, strict, got 'gps'"),
+        ({"mode": "strict"}, "count: expected 2 in mode strict"),
+        (
+            {"count": 0, "slow": 2, "mode": "strict"},
+            "count: expected at least 1, got 0; slow: expected at most 1, got 2.0",
+        ),
+    ],
+)
+def test_wrong_values_are_refused_all_at_once(raw: Dict[str, Any], expected: str) -> None:
+    with pytest.raises(ParameterError) as refusal:
+        from_dict(Params, raw, "sim.yaml")
+    assert str(refusal.value) == f"sim.yaml: {expected}"
+
+
+def test_key_without_a_default_is_required() -> None:
+    with pytest.raises(ParameterError, match="^x: name: missing, expected str$"):
+        from_dict(Required, {}, "x")

@@ -1,0 +1,98 @@
+"""What is sent to the browsers when groups of shapes change."""
+
+from dataclasses import replace
+from typing import Any, List
+
+import pytest
+
+from aro_robocop_goto_as.geometry import Pose3D
+from aro_robocop_goto_as.web.scene import PageScene
+from aro_robocop_goto_as.web.shapes import BODY, BOX, LINE, MESH, POINTS, TEXT, Shape
+
+AWAY = Pose3D((1.0, 0.0, 0.0))
+
+
+class Api:
+    """Stands in for the scene of a viser server: names of the nodes that are there, and all that were added."""
+
+    def __init__(self) -> None:
+        self.nodes: List[str] = []
+        self.added: List[Handle] = []
+
+    def __getattr__(self, name: str) -> Any:
+        def add(node: str, *arguments: Any, **options: Any) -> Any:
+            self.nodes.append(node)
+            self.added.append(Handle(self, node))
+            return self.added[-1]
+
+        return add
+
+
+class Handle:
+    def __init__(self, api: Api, name: str) -> None:
+        self.api, self.name = api, name
+
+    def remove(self) -> None:
+        self.api.nodes = [node for node in self.api.nodes if not (node + "/").startswith(self.name + "/")]
+
+
+@pytest.fixture
+def api() -> Api:
+    return Api()
+
+
+@pytest.fixture
+def scene(api: Api) -> PageScene:
+    scene = PageScene(api)
+    api.nodes, api.added = [], []
+    return scene
+
+
+def test_a_group_shows_its_shapes_and_nothing_that_it_held_before(api: Api, scene: PageScene) -> None:
+    scene.show("world", {"a": (Shape(BOX), Pose3D()), "b": (Shape(BOX), Pose3D())})
+    assert len(api.nodes) == 2
+    scene.show("world", {"b": (Shape(BOX), Pose3D())})
+    assert api.nodes == [api.added[1].name] and len(api.added) == 2
+    scene.show("world", {})
+    assert api.nodes == []
+
+
+def test_a_shape_is_moved_only_when_its_pose_changes(api: Api, scene: PageScene) -> None:
+    for pose in (Pose3D(), Pose3D((1e-6, 0.0, 0.0))):
+        scene.show("world", {"a": (Shape(BOX), pose)})
+    assert not hasattr(api.added[0], "position")
+    scene.show("world", {"a": (Shape(BOX), AWAY)})
+    assert api.added[0].position == (1.0, 0.0, 0.0) and len(api.added) == 1
+
+
+TRIANGLE = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "shape, change, sent",
+    [
+        (Shape(BOX), {"color": (1, 2, 3)}, "color"),
+        (Shape(MESH, points=TRIANGLE), {"opacity": 0.5}, "opacity"),
+        (Shape(TEXT, text="ready"), {"text": "moving"}, "text"),
+        (Shape(LINE, points=TRIANGLE), {"points": TRIANGLE * 2}, "points"),
+        (Shape(POINTS, points=TRIANGLE), {"points": TRIANGLE * 2}, "points"),
+    ],
+)
+def test_what_can_be_changed_in_place_is_not_drawn_anew(api: Api, scene: PageScene, shape, change, sent) -> None:
+    for new in (shape, replace(shape, **change)):
+        scene.show("world", {"a": (new, Pose3D())})
+    assert len(api.added) == 1 and hasattr(api.added[0], sent)
+
+
+def test_another_size_is_drawn_anew(api: Api, scene: PageScene) -> None:
+    for size in (1.0, 2.0):
+        scene.show("world", {"a": (Shape(BOX, (size, size, size)), Pose3D())})
+    assert api.nodes == [api.added[1].name]
+
+
+def test_the_parts_of_a_body_move_and_go_with_it(api: Api, scene: PageScene) -> None:
+    body = Shape(BODY, parts=((Shape(BOX), AWAY), (Shape(BOX), AWAY)))
+    scene.show("robots", {"a": (body, Pose3D())})
+    assert len(api.nodes) == 3 and scene.draws("robots")
+    scene.show("robots", {})
+    assert api.nodes == [] and not scene.draws("robots")

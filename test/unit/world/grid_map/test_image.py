@@ -1,0 +1,113 @@
+"""Images of maps are read as by SDL_image, and refused before they take memory."""
+
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from map_files import room, write_map, write_map_over
+from PIL import Image
+
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.world.grid_map.image import read_image
+from aro_robocop_goto_as.world.load import load_world
+
+
+def test_plain_and_binary_pgm_and_png_of_8_and_16_bits_give_the_same_map(tmp_path):
+    pixels = room().astype(np.uint8)
+    worlds = [load_world(write_map(tmp_path, pixels)), load_world(write_map(tmp_path, pixels, image="m.png"))]
+    (tmp_path / "m.pgm").write_text("P2\n# by hand\n40 30\n255\n" + " ".join(map(str, pixels.ravel())))
+    worlds.append(load_world(write_map_over(tmp_path, "m.pgm")))
+    Image.fromarray(pixels.astype(np.uint16) * 257).save(str(tmp_path / "m16.png"))
+    worlds.append(load_world(write_map_over(tmp_path, "m16.png")))
+    for world in worlds[1:]:
+        assert (world.occupancy.cells == worlds[0].occupancy.cells).all()
+
+
+PNM = {  # bytes of a 3 x 2 image: its pixels by SDL_image's arithmetic, rows from the top
+    b"P1 3 2\n010 1#no\n10": [[255, 0, 255], [0, 0, 255]],
+    b"P4\n3 2\n\x40\xdf": [[255, 0, 255], [0, 0, 255]],
+    b"P2 3 2 255 0 1 2 # two\n 253 254 255": [[0, 1, 2], [253, 254, 255]],
+    b"P2 3 2 100 0 1 50 77 99 100": [[0, 2, 127], [196, 252, 255]],
+    b"P5\n#a\n3 2\n#b\n100\n\x00\x01\x32\x4d\x63\x64": [[0, 2, 127], [196, 252, 255]],
+    b"P5 3 2 65535\n\x00\x00\x00\xff\x01\x01\xfe\xff\xff\x00\xff\xff": [[0, 0, 1], [254, 255, 255]],
+    b"P3 3 2 255 " + b"7 8 9 " * 6: [[[7, 8, 9]] * 3] * 2,
+    b"P6 3 2 255\n" + b"\x07\x08\x09" * 6: [[[7, 8, 9]] * 3] * 2,
+    b"P6 3 2 15\n" + b"\x0f\x07\x00" * 6: [[[255, 119, 0]] * 3] * 2,
+}
+
+
+@pytest.mark.parametrize("content", PNM)
+def test_every_kind_of_pnm_is_read_as_by_map_servers_image_loader(tmp_path, content):
+    (tmp_path / "m.pnm").write_bytes(content)
+    assert read_image(str(tmp_path / "m.pnm")).squeeze(-1 if content[1:2] not in b"36" else ()).tolist() == PNM[content]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"P5 3 0 255\n",
+        b"P5 3 2 0\n123456",
+        b"P5 3 2 99999\n123456",
+        b"P2 3 2 255 1 2 3 a b c",
+        b"P2 3 2 255 1 2 3 4 5 256",
+        b"P5 20 20 65535\n" + bytes(799),
+        b"P5 20 20 255\n" + bytes(399),
+        b"P2 20 20 255\n" + b"254 " * 399,
+        b"P2 20 20 255",
+        b"P5",
+        b"BM",
+        b"",
+    ],
+)
+def test_image_without_pixels_or_maximum_or_numbers_is_refused(tmp_path, content):
+    (tmp_path / "m.pnm").write_bytes(content)
+    with pytest.raises(WorldError, match="m.pnm: .+; expected a PGM, PNG or BMP image"):
+        read_image(str(tmp_path / "m.pnm"))
+
+
+GREY, COLOUR = [[0, 120], [205, 254]], [[[1, 2, 3], [4, 5, 6]], [[7, 8, 9], [250, 251, 252]]]
+
+
+@pytest.mark.parametrize(("mode", "pixels"), [("L", GREY), ("RGB", COLOUR), ("P", COLOUR), ("1", [[0, 255], [255, 0]])])
+def test_bmp_of_every_depth_is_read(tmp_path, mode, pixels):
+    image = Image.fromarray(np.array(pixels, np.uint8))
+    (image.quantize() if mode == "P" else image.convert(mode)).save(str(tmp_path / "m.bmp"))
+    found = read_image(str(tmp_path / "m.bmp"))
+    assert found.squeeze(-1).tolist() == pixels if found.shape[-1] == 1 else found.tolist() == pixels
+
+
+@pytest.mark.parametrize("header", ["P5", "P2\n# written by hand\n"])
+def test_pgm_with_exactly_the_pixels_its_header_claims_is_read(tmp_path, header):
+    pixels = room().astype(np.uint8)
+    body = pixels.tobytes() if header == "P5" else " ".join(map(str, pixels.ravel())).encode()
+    (tmp_path / "m.pgm").write_bytes(f"{header} 40 30 255\n".encode() + body)
+    assert load_world(write_map_over(tmp_path, "m.pgm")).occupancy.cells.shape == (30, 40)
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"P5 100000 100000 255\n0", r"Image size \(10000000000 pixels\) exceeds limit of .*; expected a PGM"),
+        (b"P5 9000 9000 255\n0", "the header claims 9000 x 9000 pixels, expected no more than the 148608 that"),
+        (b"P2 9000 9000 255\n1 2 3", "the header claims 9000 x 9000 pixels, expected no more than the 181632 that"),
+    ],
+)
+def test_image_that_claims_too_much_is_refused_before_memory_is_allocated(tmp_path, content, problem, monkeypatch):
+    def loaded(_image):
+        raise AssertionError("the pixels were decoded")
+
+    (tmp_path / "m.pgm").write_bytes(content)
+    monkeypatch.setattr(Image.Image, "load", loaded)
+    with pytest.raises(WorldError, match=f"^{tmp_path}/m.pgm: {problem}"):
+        load_world(write_map_over(tmp_path, "m.pgm"))
+
+
+def test_png_that_claims_more_than_its_file_can_hold_is_refused(tmp_path):
+    Image.fromarray(room().astype(np.uint8)).save(str(tmp_path / "m.png"))
+    content = bytearray((tmp_path / "m.png").read_bytes())
+    content[16:24] = struct.pack(">II", 9000, 9000)
+    content[29:33] = struct.pack(">I", zlib.crc32(bytes(content[12:29])))
+    (tmp_path / "m.png").write_bytes(bytes(content))
+    with pytest.raises(WorldError, match="m.png: the header claims 9000 x 9000 pixels, expected no more than the "):
+        load_world(write_map_over(tmp_path, "m.png"))

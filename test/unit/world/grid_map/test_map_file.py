@@ -1,0 +1,115 @@
+"""Maps of map_server are interpreted as by map_server."""
+
+import numpy as np
+import pytest
+from map_files import room, write_map, write_yaml, yaml_of
+from PIL import Image
+
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.world.load import load_world
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({}, [100, 100, -1, -1, 0, 0]),
+        ({"mode": "scale"}, [100, 100, 72, 59, 0, 0]),
+        ({"mode": "raw"}, [0, 50, 120, -120, -46, -1]),
+        ({"mode": "raw", "negate": 1}, [-1, -51, -121, 119, 45, 0]),
+        ({"negate": 1}, [0, -1, -1, -1, 100, 100]),
+        ({"negate": "true", "mode": "scale"}, [0, 1, 60, 73, 100, 100]),
+        ({"occupied_thresh": 0.5}, [100, 100, 100, -1, 0, 0]),
+        ({"free_thresh": 0.4}, [100, 100, -1, -1, 0, 0]),
+        ({"free_thresh": 0.5}, [100, 100, -1, 0, 0, 0]),
+    ],
+)
+def test_grey_values_are_interpreted_as_by_map_server(tmp_path, keys, expected):
+    pixels = np.concatenate([np.full((30, 12), 254), np.repeat([[0, 50, 120, 136, 210, 255]], 2, axis=1)])
+    if keys.get("negate"):
+        pixels[:30] = 0
+    if keys.get("mode") == "raw":
+        pixels[:30] = 254 if keys.get("negate") else 1
+    world = load_world(write_map(tmp_path, pixels, **keys))
+    assert world.occupancy.cells[0, ::2].tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("pixel", "mode", "expected"),
+    [
+        ((0, 0, 0), "trinary", 100),
+        ((0, 90, 255), "trinary", -1),
+        ((255, 255, 255, 255), "trinary", 0),
+        ((0, 0, 0, 255), "trinary", 100),
+        ((120, 120, 120, 0), "scale", -1),
+        ((120, 120, 120, 1), "scale", -1),
+        ((120, 120, 120, 254), "scale", -1),
+        ((0, 0, 0, 254), "scale", 100),
+        ((255, 255, 255, 254), "scale", 0),
+        ((120, 120, 1), "scale", 72),
+        ((120, 120, 0), "scale", -1),
+        ((100, 140, 255), "scale", 72),
+        ((100, 21, 255), "raw", 60),
+        ((100, 21, 5, 255), "raw", 42),
+        ((120, 120, 120, 255), "scale", 72),
+        ((205, 205, 205), "scale", 1),
+        ((90, 90, 90), "scale", 98),
+        ((0, 0, 0, 0), "scale", 100),
+        ((0, 0, 0, 0), "trinary", 100),
+    ],
+)
+def test_colours_are_averaged_and_alpha_counts_as_in_map_server(tmp_path, pixel, mode, expected):
+    pixels = np.full((20, 20, len(pixel)), 1 if mode == "raw" else 255)
+    pixels[-1, 0] = pixel
+    world = load_world(write_map(tmp_path, pixels, image="m.png", mode=mode))
+    assert world.occupancy.cells[0, 0] == expected
+
+
+def test_unused_yaml_keys_are_listed(tmp_path):
+    assert load_world(write_map(tmp_path, room(), author="me")).ignored == ("key 'author' of the map",)
+
+
+BROKEN = {  # case: (text of the YAML, line of the error or None, what the message must name)
+    "not YAML": ("image: [m.pgm\nresolution: 1\n", 2, ["YAML"]),
+    "too deep": ("image: " + 5000 * "[", None, ["nested too deeply"]),
+    "not text": ("image: \ud800", None, ["not UTF-8 text"]),
+    "a control character": ("image: \0", None, ["special characters are not allowed"]),
+    "a list": ("- m.pgm\n", 1, ["image, resolution, origin"]),
+    "empty": ("", 1, ["image, resolution, origin"]),
+    "keys missing": ("image: m.pgm\nresolution: 0.05\n", None, ["no origin, negate", "occupied_thresh"]),
+    "image missing": (yaml_of(image="none.pgm"), 1, ["none.pgm", "no file"]),
+    "image not one": (yaml_of(image="text.pgm"), None, ["text.pgm", "PGM, PNG or BMP"]),
+    "image cut short": (yaml_of(image="cut.png"), None, ["cut.png", "PGM, PNG or BMP"]),
+    "image a photograph": (yaml_of(image="m.jpg"), None, ["m.jpg", "JPEG", "PGM, PNG or BMP"]),
+    "no resolution": (yaml_of(resolution="0"), 2, ["resolution is '0'", "greater than 0"]),
+    "resolution in words": (yaml_of(resolution="5 cm"), 2, ["resolution is '5 cm'", "metres per cell"]),
+    "origin without yaw": (yaml_of(origin="[0, 0]"), 3, ["origin is [0, 0], expected three numbers [x, y, yaw]"]),
+    "origin in words": (yaml_of(origin="[0, left, 0]"), 3, ["origin is [0, left, 0], expected three numbers"]),
+    "origin of one number": (yaml_of(origin="0"), 3, ["origin is '0', expected three numbers"]),
+    "origin within a list": (yaml_of(origin="[[0, 0, 0]]"), 3, ["origin is [[0, 0, 0]], expected three numbers"]),
+    "origin by names": (
+        yaml_of(origin="{x: 0, y: 0, yaw: 0}"),
+        3,
+        ["origin is {x: 0, y: 0, yaw: 0}, expected three numbers"],
+    ),
+    "origin without end": (yaml_of(origin=str([0] * 99)), 3, ["origin is a sequence, expected three numbers"]),
+    "origin not finite": (yaml_of(origin="[0, .nan, 0]"), 3, ["origin", "[x, y, yaw]"]),
+    "negate unclear": (yaml_of(negate="maybe"), 4, ["negate is 'maybe'", "0 or 1"]),
+    "threshold in percent": (yaml_of(occupied_thresh="65"), 5, ["occupied_thresh is '65'", "from 0 to 1"]),
+    "thresholds crossed": (yaml_of(free_thresh="0.7"), 6, ["free_thresh is '0.7'", "occupied_thresh, which is 0.65"]),
+    "unknown mode": (yaml_of(mode="ternary"), 7, ["mode is 'ternary'", "trinary or scale or raw"]),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_broken_map_is_refused_with_file_line_and_key(tmp_path, case):
+    text, line, named = BROKEN[case]
+    for name, pixels in {"m.pgm": room(), "m.jpg": room(), "cut.png": room()}.items():
+        Image.fromarray(pixels.astype(np.uint8)).save(str(tmp_path / name))
+    (tmp_path / "text.pgm").write_text("no image")
+    (tmp_path / "cut.png").write_bytes((tmp_path / "cut.png").read_bytes()[:60])
+    path = write_yaml(tmp_path, text)
+    with pytest.raises(WorldError) as caught:
+        load_world(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}:{line}: " if line else str(tmp_path))
+    assert [word for word in named if word not in message] == []

@@ -1,0 +1,129 @@
+"""Poses compose through models, links, frames and joints."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from sdf_files import BOX, SPHERE, collision, model, only_obstacle, world_file
+
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
+from aro_robocop_goto_as.world.load import load_world
+
+coordinate = st.floats(-10.0, 10.0)
+
+
+angle = st.floats(-7.0, 7.0)
+
+
+six_numbers = st.tuples(coordinate, coordinate, coordinate, angle, angle, angle)
+
+
+def matrix(x, y, z, roll, pitch, yaw):
+    """The (4, 4) transform of SDF's six numbers: rotations about the fixed x, y, z in that order, then a shift."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    transform = np.eye(4)
+    transform[:3, :3] = about_z @ about_y @ about_x
+    transform[:3, 3] = x, y, z
+    return transform
+
+
+@given(six_numbers, six_numbers, six_numbers)
+def test_poses_of_model_link_and_collision_compose(tmp_path_factory, in_world, in_model, in_link):
+    tags = [f"<pose>{' '.join(map(repr, pose))}</pose>" for pose in (in_world, in_model, in_link)]
+    body = model(tags[1] + collision(SPHERE, pose=tags[2]), pose=tags[0])
+    (obstacle,) = load_world(world_file(tmp_path_factory.getbasetemp(), body)).obstacles
+    expected = matrix(*in_world) @ matrix(*in_model) @ matrix(*in_link)
+    np.testing.assert_allclose(obstacle.pose.position, expected[:3, 3], atol=1e-9)
+    np.testing.assert_allclose(rotation_matrix(obstacle.pose.orientation), expected[:3, :3], atol=1e-9)
+
+
+RELATIVE = "<pose relative_to='{}'>1 0 0 0 0 0</pose>"
+
+
+@pytest.mark.parametrize("attribute", ["relative_to", "frame"])
+def test_pose_may_name_its_default_frame(tmp_path, attribute):
+    world, own, empty = (f"<pose {attribute}='{name}'>1 0 0 0 0 0</pose>" for name in ("world", "__model__", ""))
+    spawn = f'<frame name="robot_spawn">{world}</frame>'
+    include = f"<include><uri>model://ground_plane</uri>{world}</include>"
+    link = f'<link name="l">{own}{collision(SPHERE, pose=empty)}</link>'
+    body = f'<model name="m">{world}<model name="in">{own}{link}</model></model>'
+    world_read = load_world(world_file(tmp_path, spawn + include + body))
+    assert world_read.spawn == Pose2D(1.0, 0.0, 0.0)
+    assert {o.name: o.pose.position for o in world_read.obstacles} == {
+        "ground_plane/link/collision": (1, 0, 0),
+        "m/in/l/c": (4, 0, 0),
+    }
+
+
+def test_pose_relative_to_the_world_counts_from_the_world_at_any_depth(tmp_path):
+    in_world = "<pose relative_to='world'>1 2 3 0 0 0</pose>"
+    moved = "<pose>10 20 30 0 0 1</pose>"
+    link = f'<link name="l">{in_world}{collision(SPHERE)}</link>'
+    inner = f'<model name="in">{in_world}<link name="l">{collision(SPHERE)}</link></model>'
+    include = f"<include><uri>model://ground_plane</uri>{in_world}</include>"
+    found = load_world(
+        world_file(tmp_path, f'<model name="m"><static>1</static>{moved}{link}{inner}{include}</model>', "1.8")
+    )
+    assert [o.pose for o in found.obstacles] == [Pose3D((1.0, 2.0, 3.0))] * 3
+
+
+def test_poses_relative_to_what_is_beside_compose(tmp_path):
+    quarter = "0 0 1.5707963267948966"
+    frame = f'<frame name="f"><pose>1 0 0 {quarter}</pose></frame><frame name="g" attached_to="f"/>'
+    link = f'<link name="a"><pose relative_to="b">1 0 0 0 0 0</pose>{collision(SPHERE)}</link>'
+    other = f'<link name="b"><pose>0 0 0 {quarter}</pose>{collision(SPHERE, pose=RELATIVE.format("a"))}</link>'
+    own = f'<link name="c"><pose>5 5 5 1 1 1</pose>{collision(SPHERE, pose=RELATIVE.format("__model__"))}</link>'
+    links = model("", pose="").replace('<link name="l">\n\n</link>', link + other + own)
+    body = frame + model(collision(SPHERE), "n", '<pose relative_to="g">2 0 0 0 0 0</pose>') + links
+    found = {o.name: o.pose for o in load_world(world_file(tmp_path, body, "1.8")).obstacles}
+    expected = {"n/l/c": (1, 2, 0), "m/a/c": (0, 1, 0), "m/b/c": (0, 2, 0), "m/c/c": (1, 0, 0)}
+    assert set(found) == set(expected)
+    for name, position in expected.items():
+        np.testing.assert_allclose(found[name].position, position, atol=1e-12)
+    np.testing.assert_allclose(rotation_matrix(found["m/c/c"].orientation), np.eye(3), atol=1e-12)
+
+
+def test_poses_relative_to_joints_compose_as_in_a_urdf_that_gz_converted(tmp_path):
+    # `gz sdf -p ROBOT.urdf` places each joint in its parent link, and the child link at the joint, by an empty <pose>.
+    quarter = "0 0 1.5707963267948966"
+    joints = (
+        f'<joint name="j" type="fixed"><pose relative_to="a">1 0 0 {quarter}</pose><child>b</child></joint>'
+        '<joint name="k" type="fixed"><pose>0 0 3 0 0 0</pose><child>b</child></joint>'
+    )
+    links = "".join(
+        f'<link name="{name}"><pose relative_to="{to}"{pose}{collision(SPHERE)}</link>'
+        for name, to, pose in (("b", "j", "/>"), ("c", "b", " degrees='false'>2 0 0 0 0 0</pose>"), ("d", "k", "/>"))
+    )
+    body = f'<model name="m"><static>1</static><link name="a"><pose>0 1 0 0 0 0</pose></link>{joints}{links}</model>'
+    found = {o.name: o.pose for o in load_world(world_file(tmp_path, body, "1.8")).obstacles}
+    for name, position in {"m/b/c": (1, 1, 0), "m/c/c": (1, 3, 0), "m/d/c": (1, 1, 3)}.items():
+        np.testing.assert_allclose(found[name].position, position, atol=1e-12)
+
+
+def test_collision_may_be_placed_in_the_world(tmp_path):
+    in_world = collision(SPHERE, pose="<pose relative_to='world'>1 2 3 0 0 0</pose>")
+    (obstacle,) = load_world(world_file(tmp_path, model(in_world, pose="<pose>5 5 5 1 1 1</pose>"), "1.8")).obstacles
+    assert obstacle.pose == Pose3D((1.0, 2.0, 3.0))
+
+
+@given(st.text(alphabet="0123456789 .eE+-_xinfa\n", max_size=30))
+def test_arbitrary_pose_text_raises_only_world_errors(tmp_path_factory, pose):
+    path = world_file(tmp_path_factory.getbasetemp(), model(f"<pose>{pose}</pose>" + collision(SPHERE)))
+    try:
+        (obstacle,) = load_world(path).obstacles
+    except WorldError:
+        return
+    assert np.isfinite(obstacle.pose.position).all() and np.isfinite(obstacle.pose.orientation).all()
+
+
+def test_poses_of_nested_models_compose_and_names_show_the_nesting(tmp_path):
+    inner = f'<model name="in"><pose>1 0 0 0 0 0</pose>{BOX}</model>'
+    body = f'<model name="out"><static>1</static><pose>0 0 1 0 0 1.5707963267948966</pose>{inner}</model>'
+    obstacle = only_obstacle(world_file(tmp_path, body))
+    assert obstacle.name == "out/in/l/c"
+    assert obstacle.pose.position == pytest.approx((0, 1, 1))
+    assert rotation_matrix(obstacle.pose.orientation)[:, 0] == pytest.approx([0, 1, 0])

@@ -1,0 +1,123 @@
+"""Meshes of every format: their triangles, for scans and physics."""
+
+import numpy as np
+import pytest
+import trimesh
+from bullet_rays import bullet_engine, bullet_rays
+from sdf_files import mesh_world, only_obstacle, raised_by, world_file
+
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.world.load import load_world
+from aro_robocop_goto_as.world.model import Mesh
+
+# An upright triangle on the x axis; the unit is centimetres, and x is declared to be up, which Gazebo ignores.
+TRIANGLE_DAE = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit name="centimeter" meter="0.01"/><up_axis>X_UP</up_axis></asset>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="p"><float_array id="a" count="9">0 0 0 100 0 0 0 0 200</float_array>
+      <technique_common><accessor source="#a" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s"><node><translate>0 300 0</translate>
+    <instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+"""
+
+
+def test_collada_mesh_is_read_with_unit_scene_and_scale(tmp_path):
+    (tmp_path / "t.dae").write_text(TRIANGLE_DAE)
+    obstacle = only_obstacle(mesh_world(tmp_path, "t.dae", "<scale>2 1 1</scale>"))
+    assert isinstance(obstacle.geometry, Mesh)
+    assert obstacle.geometry.corners == pytest.approx(np.array([[[0, 3, 0], [2, 3, 0], [0, 3, 2]]]))
+    assert obstacle.geometry.file == str(tmp_path / "t.dae")
+
+
+@pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj"])
+def test_mesh_of_a_box_equals_the_box_for_scans_and_physics(tmp_path, kind):
+    name = "box." + kind[:3]
+    trimesh.creation.box((0.5, 1.0, 1.5)).export(str(tmp_path / name), file_type=kind)
+    pose = "<pose>1.5 0.2 0.3 0.2 0.3 0.4</pose>"
+    box = "<link name='l'><collision name='c'><geometry><box><size>1 1 1.5</size></box></geometry></collision></link>"
+    as_box = world_file(tmp_path, f'<model name="m"><static>1</static>{pose}{box}</model>', name="box.world")
+    as_mesh = mesh_world(tmp_path, name, "<scale>2 1 1</scale>", pose)
+    fan = Fan(-3.1, 0.01, 620)
+    ends = 5.0 * np.stack([np.cos(np.arange(620)), np.sin(np.arange(620)), np.zeros(620)], axis=1) + [0, 0, 0.182]
+    seen, met = [], []
+    for path in (as_box, as_mesh):
+        world = load_world(path)
+        seen.append(fan.cast(np.zeros((1, 3)), Slice(world, 0.182))[0])
+        physics = bullet_engine(world)
+        met.append(bullet_rays(physics, (0.0, 0.0, 0.182), ends))
+        physics.close()
+    assert np.isfinite(seen[0]).sum() > 50
+    np.testing.assert_allclose(seen[1], seen[0], atol=1e-6)
+    np.testing.assert_allclose(met[1], met[0], atol=2e-3)
+
+
+def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
+    ball = trimesh.creation.icosphere(subdivisions=6, radius=1.0)
+    assert len(ball.faces) > 60000
+    ball.export(str(tmp_path / "ball.stl"))
+    world = load_world(mesh_world(tmp_path, "ball.stl"))
+    physics = bullet_engine(world)
+    turns = np.linspace(0.0, 6.2, 50)
+    starts_far = np.stack([3.0 * np.cos(turns), 3.0 * np.sin(turns), np.full(50, 0.1)], axis=1)
+    met = [bullet_rays(physics, tuple(start), np.array([[0.0, 0.0, 0.1]]))[0] for start in starts_far.tolist()]
+    physics.close()
+    assert np.array(met) == pytest.approx(2.0 / 3.0, abs=0.003)
+    cut = Slice(world, 0.1)
+    assert np.hypot(cut.segments[..., 0], cut.segments[..., 1]) == pytest.approx(np.sqrt(0.99), abs=1e-3)
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_robot_is_stopped_by_a_mesh_where_its_scan_sees_it(tmp_path, burger, drive):
+    trimesh.creation.box((0.1, 2.0, 0.6)).export(str(tmp_path / "wall.stl"))
+    world = load_world(mesh_world(tmp_path, "wall.stl", pose="<pose>0.5 0 0.3 0 0 0</pose>"))
+    sim = make_simulator(SimParams.of(drive=drive, cmd_vel_timeout=0.0), world, [RobotSpec("", burger, Pose2D())])
+    ahead = sim.exact_distances()[0]
+    sim.command(Twist2D(0.2))
+    for _ in range(240 * 5):
+        sim.step({})
+    assert ahead == pytest.approx(0.45 + 0.032, abs=0.001)
+    assert 0.2 < sim.world_from_footprint().x < 0.45 and sim.touching()
+    sim.close()
+
+
+CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 0 1\n"
+BROKEN_MESHES = {  # file: (content, what the message must name)
+    "empty.stl": (b"", ["empty.stl"]),
+    "text.obj": (b"hello", ["text.obj", "triangle"]),
+    "nan.obj": (b"v 0 0 0\nv 1 0 0\nv nan 0 1\nf 1 2 3\n", ["nan.obj:3: v is 'nan 0 1', expected 3 finite numbers"]),
+    "words.obj": (b"v 0 0 0\nv 1 a 0\n", ["words.obj:2: v is '1 a 0', expected 3 finite numbers"]),
+    "flat.obj": (b"v 0 0\n", ["flat.obj:1: v is '0 0', expected 3 finite numbers"]),
+    "beyond.obj": (CORNERS + b"f 1 2 9\n", ["beyond.obj:4: f has vertex 9, expected one of the file's 3"]),
+    "zero.obj": (CORNERS + b"f 0 1 2\n", ["zero.obj:4: f is '0 1 2', expected 3 or more vertices, whole numbers"]),
+    "before.obj": (CORNERS + b"f -4 1 2\n", ["before.obj:4: f is '-4 1 2', expected", "below 0, of the 3 before it"]),
+    "part.obj": (CORNERS + b"f 1 2 3.5\n", ["part.obj:4: f is '1 2 3.5', expected 3 or more vertices"]),
+    "edge.obj": (CORNERS + b"f 1 2\n", ["edge.obj:4: f is '1 2', expected 3 or more vertices"]),
+    "binary.obj": (b"f " + bytes(range(128, 256)) * 9, ["binary.obj:1: f is '\\\\x80", "expected 3 or more vertices"]),
+    "cut.dae": (TRIANGLE_DAE[:700].encode(), ["cut.dae", "XML"]),
+    "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), ["unit.dae", "meter='0'"]),
+    "entity.dae": (b"<!DOCTYPE COLLADA [<!ENTITY e SYSTEM 'file:///etc/hostname'>]><COLLADA/>", ["DOCTYPE"]),
+    "house.fbx": (b"", ["house.fbx", ".dae, .obj, .stl"]),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN_MESHES)
+def test_unreadable_mesh_is_refused_with_the_line_that_uses_it(tmp_path, name):
+    content, named = BROKEN_MESHES[name]
+    (tmp_path / name).write_bytes(content)
+    path = mesh_world(tmp_path, name)
+    message = raised_by(path)
+    assert message.startswith(f"{path}:3: in 'm/l/c': ")
+    assert [word for word in named if word not in message] == []

@@ -1,0 +1,298 @@
+"""Worlds and models: what is read, what is listed as ignored, and what is refused with file and line."""
+
+import math
+
+import pytest
+from sdf_files import BOX, SPHERE, collision, model, only_obstacle, raised_by, sdf_file, world_file
+
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.world.load import load_world
+from aro_robocop_goto_as.world.model import Plane, Sphere
+
+
+@pytest.mark.parametrize("version", ["1.4", "1.5", "1.6", "1.7"])
+def test_gazebos_ground_plane_and_sun_can_be_included(tmp_path, version):
+    includes = "<include><uri>model://sun</uri></include>\n<include><uri> model://ground_plane </uri></include>"
+    world = load_world(world_file(tmp_path, includes, version))
+    (ground,) = world.obstacles
+    assert (ground.name, ground.geometry) == ("ground_plane/link/collision", Plane((0.0, 0.0, 1.0)))
+    assert ground.pose.position == (0.0, 0.0, 0.0)
+    assert world.ignored == ("include 'sun' (line 3)",)
+
+
+def test_spawn_is_the_pose_of_the_frame_robot_spawn(tmp_path):
+    frames = '<frame name="other"/><frame name="robot_spawn"><pose>1 -2 0 0 0 4</pose></frame>'
+    spawn = load_world(world_file(tmp_path, frames)).spawn
+    assert (spawn.x, spawn.y, spawn.yaw) == (1.0, -2.0, pytest.approx(4.0 - 2.0 * math.pi))
+
+
+def test_spawn_defaults_to_the_origin(tmp_path):
+    assert load_world(world_file(tmp_path, "")).spawn == Pose2D(0.0, 0.0, 0.0)
+
+
+def test_ignored_elements_are_listed_once_with_those_of_the_world_first(tmp_path):
+    mover = '<model name="m"><static>1</static>\n<plugin name="mover"/><plugin name="mover"/></model>'
+    silent = '<gravity>0 0 -9.8</gravity><gui><plugin name="p"/></gui>'
+    world = load_world(world_file(tmp_path, f'<light name="lamp"/>\n{mover}\n{silent}\n<sensor name="eye"/>'))
+    assert world.ignored == ("light 'lamp' (line 3)", "sensor 'eye' (line 7)", "plugin 'mover' (line 5)")
+
+
+def test_frames_of_links_are_told_but_not_those_that_poses_can_be_relative_to(tmp_path):
+    in_model = '<frame name="handle"/>\n<link name="l"><frame name="tip"/></link>'
+    in_world = '<frame name="robot_spawn"/><frame name="door"/>'
+    world = load_world(world_file(tmp_path, f'{in_world}\n<model name="m"><static>1</static>{in_model}</model>'))
+    assert world.ignored == ("frame 'tip' (line 5)",)
+
+
+def test_visuals_comments_foreign_elements_and_empty_frames_are_accepted(tmp_path):
+    visual = '<visual name="v"><geometry><mesh><uri>model://a.dae</uri></mesh></geometry></visual>'
+    shape = f'<x:colour xmlns:x="urn:x"/>{SPHERE}'
+    pose = "<pose frame=''>1 2 <!-- three --> 3 0 0 -0</pose>"
+    (obstacle,) = load_world(world_file(tmp_path, model(visual + collision(shape), pose=pose))).obstacles
+    assert (obstacle.pose.position, obstacle.geometry) == ((1.0, 2.0, 3.0), Sphere(0.5))
+
+
+def test_last_of_several_static_counts(tmp_path):
+    body = model(collision(SPHERE)).replace("</static>", "</static><static>0</static>")
+    assert "motion of model 'm'" in load_world(world_file(tmp_path, body)).ignored[0]
+    body = model(collision(SPHERE)).replace("<static>", "<static>0</static><static>")
+    assert load_world(world_file(tmp_path, body)).ignored == ()
+
+
+BROKEN = {  # case: (body from line 3 on, line of the error, what the message must name)
+    "static neither true nor false": ('<model name="m"><static>yes</static></model>', 3, ["yes", "true or false"]),
+    "second static neither true nor false": (
+        '<model name="m"><static>1</static>\n<static>no</static></model>',
+        4,
+        ["no", "true or false"],
+    ),
+    "model without a name": ("<model><static>true</static></model>", 3, ["<model> has no name"]),
+    "collision named twice": (model(collision(SPHERE) + "\n" + collision(SPHERE)), 5, ["m/l/c", "'c'", "taken"]),
+    "misspelt element": (model('<colision name="wall"/>'), 4, ["<colision>", "wall", "collision"]),
+    "state that adds a model": (
+        '<state world_name="w">\n<insertions><model/></insertions></state>',
+        4,
+        ["<insertions>", "<model>"],
+    ),
+    "include of nothing known": (
+        "\n<include><uri>model://cafe</uri></include>",
+        4,
+        ["model://cafe", "beside w.world", ".gazebo/models"],
+    ),
+    "include from the web": ("<include><uri>https://fuel.org/cafe</uri></include>", 3, ["https://fuel", "model://"]),
+    "include without uri": ("<include><name>i</name></include>", 3, ["<uri>"]),
+    "mesh that isn't there": (
+        model(collision("<mesh>\n<uri>model://a/b.dae</uri></mesh>")),
+        5,
+        ["model://a/b.dae", "m/l/c", "not found"],
+    ),
+    "mesh without uri": (model(collision("<mesh/>")), 4, ["<mesh>", "<uri>", "m/l/c"]),
+    "part of a mesh": (model(collision("<mesh><uri>a</uri><submesh/></mesh>")), 4, ["<submesh>", "m/l/c", "scale"]),
+    "image": (model(collision("<image/>")), 4, ["<image>", "m/l/c", "box"]),
+    "two shapes": (model(collision(SPHERE + "<plane/>")), 4, ["2 shapes"]),
+    "no shape": (model(collision("")), 4, ["0 shapes"]),
+    "no geometry": (model('<collision name="c"/>'), 4, ["<geometry>"]),
+    "pose relative to a frame": (
+        model('<pose relative_to="door">0 0 0 0 0 0</pose>'),
+        4,
+        ["relative_to='door'", "m/l", "parent"],
+    ),
+    "poses relative to each other": (
+        "\n".join(
+            f'<model name="{a}"><static>1</static><pose relative_to="{b}">1 0 0 0 0 0</pose></model>'
+            for a, b in ("ab", "ba")
+        ),
+        3,
+        ["'a'", "relative to itself"],
+    ),
+    "pose relative to an include that says no pose": (
+        "<include><name>i</name><uri>model://ground_plane</uri></include>\n"
+        + model("", pose="<pose relative_to='i'>0 0 0 0 0 0</pose>"),
+        4,
+        ["'i'", "without <pose>"],
+    ),
+    "frame attached to nothing known": (
+        '<frame name="f" attached_to="a::b"/>\n' + model("", pose="<pose relative_to='f'>0 0 0 0 0 0</pose>"),
+        3,
+        ["attached_to='a::b'"],
+    ),
+    "model placed by a frame of its own": ('<model name="m" placement_frame="l"/>', 3, ["placement_frame", "'m'"]),
+    "include that is merged": ("<include merge='1'><uri>model://sun</uri></include>", 3, ["merge"]),
+    "model from Gazebo Fuel": (
+        "<include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/Office%20Desk/3</uri></include>",
+        3,
+        ["Desk/3' is on Gazebo Fuel, and nothing is downloaded; it was not found", "/office_desk (", "/Office Desk ("],
+    ),
+    "web page of a model on Gazebo Fuel": (
+        "<include><uri>HTTPS://app.gazebosim.org/OpenRobotics/fuel/models/Desk</uri></include>",
+        3,
+        ["models/Desk'", "Gazebo Fuel", "nothing is downloaded"],
+    ),
+    "model whose name only sounds like Gazebo Fuel": (
+        "<include><uri>model://fuel.can</uri></include>",
+        3,
+        ["model://fuel.can", "not found"],
+    ),
+    "pose relative to a joint of an unknown link": (
+        '<model name="m"><joint name="j"><child>b</child></joint><link name="l"><pose relative_to="j"/></link></model>',
+        3,
+        ["<child>b</child>", "<joint>", "beside it"],
+    ),
+    "too long a chain of frames": (
+        "".join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(3000))
+        + '<frame name="f3000"/><model name="m"><pose relative_to="f0"/></model>',
+        3,
+        ["more than 100 poses"],
+    ),
+    "saved state that deletes a model": (
+        '<state world_name="w">\n<deletions>m</deletions></state>',
+        4,
+        ["<deletions>"],
+    ),
+    "link at its own joint": (
+        '<model name="m"><joint name="j"><child>l</child></joint><link name="l"><pose relative_to="j"/></link></model>',
+        3,
+        ["m/l", "relative to itself"],
+    ),
+    "pose in a frame of SDF 1.4": (model('\n<pose frame="hall">0 0 0 0 0 0</pose>'), 5, ["frame='hall'"]),
+    "pose of a link in the world of SDF 1.4": (
+        model("\n<pose frame='world'>0 0 0 0 0 0</pose>"),
+        5,
+        ["frame='world'", "m/l"],
+    ),
+    "pose of a model in itself": (
+        model("", pose="<pose frame='__model__'>0 0 0 0 0 0</pose>"),
+        3,
+        ["frame='__model__'", "'m'", "parent"],
+    ),
+    "pose in degrees": (model('<pose degrees="true">0 0 0 0 0 90</pose>'), 4, ["degrees='true'"]),
+    "pose of five numbers": (model("<pose>0 0 0\n0 0</pose>"), 4, ["<pose>", "'0 0 0 0 0'", "6 finite numbers"]),
+    "pose that isn't a number": (model("<pose>nan 0 0 0 0 0</pose>"), 4, ["'nan 0 0 0 0 0'"]),
+    "number beyond all bounds": (model("<pose>1e999 0 0 0 0 0</pose>"), 4, ["1e999", "finite"]),
+    "number in Python's spelling": (model("<pose>1_0 0 0 0 0 0</pose>"), 4, ["1_0"]),
+    "element among numbers": (model("<pose>0 0 0 <x/> 0 0 0</pose>"), 4, ["<x>", "<pose>"]),
+    "negative radius": (
+        model(collision("<sphere>\n<radius>-1</radius></sphere>")),
+        5,
+        ["m/l/c", "<radius>", "'-1'", "greater than 0"],
+    ),
+    "box without height": (model(collision("<box><size>1 1 0</size></box>")), 4, ["<size>", "'1 1 0'"]),
+    "box without size": (model(collision("<box/>")), 4, ["<box>", "<size>"]),
+    "cylinder without length": (model(collision("<cylinder><radius>1</radius></cylinder>")), 4, ["<length>"]),
+    "plane that faces nowhere": (model(collision("<plane><normal>0 0 0</normal></plane>")), 4, ["<normal>"]),
+    "spawn in the air": (
+        '<frame name="robot_spawn"><pose>0 0 1 0 0 0</pose></frame>',
+        3,
+        ["robot_spawn", "z up to 0.2"],
+    ),
+    "spawn on a model": ('<frame name="robot_spawn" attached_to="m"/>', 3, ["robot_spawn", "attached"]),
+    "two spawns": ('<frame name="robot_spawn"/>\n<frame name="robot_spawn"/>', 4, ["robot_spawn", "taken"]),
+    "not XML": ("\n<model></modle>", 4, ["modle", "XML"]),
+}
+
+
+@pytest.mark.parametrize(("body", "line", "named"), BROKEN.values(), ids=BROKEN.keys())
+def test_broken_world_is_refused_with_file_line_and_name(tmp_path, body, line, named):
+    path = world_file(tmp_path, body)
+    message = raised_by(path)
+    assert message.startswith(f"{path}:{line}: ")
+    assert [name for name in named if name not in message] == []
+
+
+def test_include_overrides_the_models_pose_and_name(tmp_path, chair):
+    seat = "<include><uri>model://chair</uri><name>{}</name><pose>{} 0 0 0 0 0</pose></include>"
+    world = load_world(world_file(tmp_path / "worlds", seat.format("a", 1) + seat.format("b", 2)))
+    assert [(o.name, o.pose.position) for o in world.obstacles] == [("a/l/c", (1, 0, 0)), ("b/l/c", (2, 0, 0))]
+    assert {name: pose.position for name, pose in world.models.items()} == {"a": (1, 0, 0), "b": (2, 0, 0)}
+
+
+def test_included_model_keeps_its_pose_and_name_unless_overridden(tmp_path, chair):
+    obstacle = only_obstacle(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
+    assert (obstacle.name, obstacle.pose.position) == ("chair/l/c", (5, 5, 5))
+
+
+def test_error_in_an_included_file_names_that_file_and_the_including_one(tmp_path, chair):
+    sdf_file(chair / "new.sdf", '<model name="chair"><lnik name="l"/></model>')
+    message = raised_by(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
+    assert message.startswith(f"{chair}/new.sdf:2: in 'chair': <lnik> 'l' in <model> is not supported")
+    assert message.endswith(f"; included by {tmp_path}/worlds/w.world:3")
+
+
+def test_model_that_includes_itself_is_refused_with_a_single_message(tmp_path, chair):
+    include = "<include><uri>model://chair</uri></include>"
+    sdf_file(chair / "new.sdf", f'<model name="chair">\n{include}</model>')
+    world = world_file(tmp_path / "worlds", include)
+    file = f"{chair}/new.sdf"
+    message = f"{file}:3: in 'chair': 'model://chair' is {file} again, within itself; expected another model"
+    assert raised_by(world) == f"{message}; included by {world}:3"
+    assert raised_by(str(chair / "new.sdf")) == message
+
+
+def test_models_that_include_each_other_are_refused_with_the_chain_of_includes(tmp_path, chair):
+    desk = tmp_path / "models" / "desk"
+    sdf_file(chair / "new.sdf", '<model name="chair"><include><uri>model://desk</uri></include></model>')
+    sdf_file(desk / "model.sdf", '<model name="desk">\n\n<include><uri>model://chair</uri></include></model>')
+    world = world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>")
+    message = raised_by(world)
+    assert message.startswith(f"{desk}/model.sdf:4: in 'desk': 'model://chair' is {chair}/new.sdf again, within")
+    assert message.endswith(f"; included by {chair}/new.sdf:2; included by {world}:3")
+
+
+def test_same_model_can_be_included_repeatedly_and_nested(tmp_path, chair):
+    seat = "<include><uri>model://chair</uri><name>{}</name></include>"
+    body = f'{seat.format("a")}{seat.format("b")}<model name="m">{seat.format("c")}</model>'
+    world = load_world(world_file(tmp_path / "worlds", body))
+    assert [o.name for o in world.obstacles] == ["a/l/c", "b/l/c", "m/c/l/c"]
+
+
+def test_models_nested_too_deeply_are_refused(tmp_path):
+    body = '<model name="m">' * 30 + "</model>" * 30
+    assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
+
+
+def test_models_of_the_same_name_are_numbered(tmp_path, chair):
+    seat = "<include><uri>model://chair</uri><pose>{} 0 0 0 0 0</pose></include>\n"
+    room = f'<model name="room"><static>1</static>{seat.format(7)}{seat.format(8)}</model>'
+    body = seat.format(1) + seat.format(2) + '<model name="chair"><static>1</static>' + BOX + "</model>\n" + room
+    world = load_world(world_file(tmp_path / "worlds", body))
+    assert [o.name for o in world.obstacles] == ["chair/l/c", "chair_1/l/c", "chair_2/l/c", "room/chair/l/c"] + [
+        "room/chair_1/l/c"
+    ]
+    assert list(world.models) == ["chair", "chair_1", "chair_2", "room"]
+    assert world.approximated == (
+        "the name 'chair' is already taken, so this model is called 'chair_1' (line 4)",
+        "the name 'chair' is already taken, so this model is called 'chair_2' (line 5)",
+        "the name 'chair' is already taken, so this model is called 'chair_1' (line 7)",
+    )
+
+
+def test_heightmap_is_left_out_with_a_note(tmp_path):
+    ground = collision("<heightmap><uri>file://hills.png</uri><size>9 9 1</size></heightmap>", "hill")
+    world = load_world(world_file(tmp_path, model(ground + collision(SPHERE))))
+    assert [obstacle.name for obstacle in world.obstacles] == ["m/l/c"]
+    assert world.approximated == ("heightmap of 'm/l/hill' is left out (line 4)",)
+
+
+def test_model_file_can_be_loaded_as_a_world(chair):
+    world = load_world(str(chair / "new.sdf"))
+    assert (world.name, [o.name for o in world.obstacles], world.spawn) == ("chair", ["chair/l/c"], Pose2D())
+
+
+def test_non_static_model_is_treated_as_static_and_listed_once(tmp_path):
+    body = f'<model name="cart">\n{BOX}<model name="load"/></model><model name="wall"><static>1</static></model>'
+    world = load_world(world_file(tmp_path, body))
+    assert [o.name for o in world.obstacles] == ["cart/l/c"]
+    assert world.ignored == ("motion of model 'cart', which is not static (line 3)",)
+
+
+def test_ignored_elements_of_an_included_file_are_listed_with_that_file(tmp_path, chair):
+    sdf_file(chair / "new.sdf", '<model name="chair"><static>1</static><plugin name="p"/></model>')
+    world = load_world(world_file(tmp_path / "worlds", "<include><uri>model://chair</uri></include>"))
+    assert world.ignored == (f"plugin 'p' ({chair}/new.sdf:2)",)
+
+
+def test_ground_plane_needs_no_model_file_and_can_be_renamed(tmp_path):
+    include = "<include><uri>model://ground_plane</uri><name>floor</name><pose>0 0 -1 0 0 0</pose></include>"
+    obstacle = only_obstacle(world_file(tmp_path, include))
+    assert (obstacle.name, obstacle.pose.position) == ("floor/link/collision", (0, 0, -1))
+    assert obstacle.geometry == Plane((0.0, 0.0, 1.0))

@@ -1,0 +1,100 @@
+"""Models are found where Gazebo looks for them."""
+
+import pytest
+from sdf_files import BOX, mesh_world, only_obstacle, raised_by, sdf_file, world_file
+
+from aro_robocop_goto_as.world.load import load_world
+
+
+@pytest.mark.parametrize(
+    "uri", ["model://chair/new.sdf", "model:///chair/", "file://{}", "file://{}/new.sdf", "../models/chair"]
+)
+def test_model_may_be_included_by_any_kind_of_uri(tmp_path, chair, uri):
+    include = f"<include><uri>{uri.format(chair)}</uri></include>"
+    assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "chair/l/c"
+
+
+def test_models_beside_a_world_are_found_without_environment_variables(tmp_path, chair, monkeypatch):
+    monkeypatch.delenv("GAZEBO_MODEL_PATH")
+    include = "<include><uri>model://chair</uri></include>"
+    for directory in (tmp_path, tmp_path / "worlds", tmp_path / "models"):
+        assert only_obstacle(world_file(directory, include)).name == "chair/l/c"
+
+
+def test_models_of_ros_packages_are_found_by_package_name_and_exported_path(tmp_path, chair, monkeypatch):
+    package = tmp_path / "checkout"
+    sdf_file(package / "sdf" / "desk" / "model.sdf", f'<model name="desk">{BOX}</model>')
+    (package / "package.xml").write_text(
+        '<package format="2"><name>office</name><version>1.0.0</version><description>d</description>'
+        '<maintainer email="a@b.c">m</maintainer><license>BSD</license>'
+        '<export><gazebo_ros gazebo_model_path="${prefix}/sdf"/></export></package>'
+    )
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(package))
+    for uri in ("package://office/sdf/desk", "model://office/sdf/desk", "model://desk"):
+        assert only_obstacle(world_file(tmp_path / "far", f"<include><uri>{uri}</uri></include>")).name == "desk/l/c"
+
+
+FUEL = (
+    "https://fuel.gazebosim.org/1.0/OpenRobotics/models/{}",
+    "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/{}/2",
+    "HTTPS://app.gazebosim.org/OpenRobotics/fuel/models/{}/",
+    "fuel://fuel.gazebosim.org/1.0/OpenRobotics/models/{}/tip",
+)
+
+
+@pytest.mark.parametrize("address", FUEL)
+def test_gazebo_fuels_addresses_of_what_is_built_in_are_accepted(tmp_path, address):
+    names = ("Sun", "Ground Plane", "ground%20plane")
+    includes = (f"<include><name>{i}</name><uri>{address.format(name)}</uri></include>" for i, name in enumerate(names))
+    world = load_world(world_file(tmp_path, "".join(includes)))
+    assert [obstacle.name for obstacle in world.obstacles] == ["1/link/collision", "2/link/collision"]
+    assert world.ignored == ("include 'sun' (line 3)",)
+
+
+@pytest.mark.parametrize("address", FUEL)
+@pytest.mark.parametrize("folder", ["office_desk", "Office Desk"])
+def test_models_on_gazebo_fuel_are_looked_up_under_their_names_before_they_are_refused(tmp_path, address, folder):
+    sdf_file(tmp_path / "models" / folder / "model.sdf", f'<model name="desk">{BOX}</model>')
+    include = f"<include><uri>{address.format('Office Desk')}</uri></include>"
+    assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "desk/l/c"
+
+
+def test_file_of_a_model_on_gazebo_fuel_is_looked_up_in_the_local_model(tmp_path, chair):
+    (chair / "seat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    uri = FUEL[0].format("Chair/2/files/seat.obj")
+    assert only_obstacle(mesh_world(tmp_path / "far", uri)).geometry.file == str(chair / "seat.obj")
+
+
+@pytest.mark.parametrize("broken", ["<description>Tea & cake</description>", "<author></name>", "<name>a</name"])
+def test_only_the_sdf_entry_of_a_model_config_has_to_be_readable(tmp_path, chair, broken):
+    config = chair / "model.config"
+    config.write_text(config.read_text().replace("<model>", f"<model>{broken}"))
+    include = "<include><uri>model://chair</uri></include>"
+    assert only_obstacle(world_file(tmp_path, include)).name == "chair/l/c"
+
+
+def test_file_uris_are_also_looked_up_in_the_resource_path(tmp_path, chair, monkeypatch):
+    monkeypatch.setenv("GAZEBO_RESOURCE_PATH", str(tmp_path))
+    include = "<include><uri>file://models/chair</uri></include>"
+    assert only_obstacle(world_file(tmp_path / "far" / "away", include)).name == "chair/l/c"
+
+
+def test_file_uris_are_looked_up_beside_the_worlds_folder_and_in_exported_media_paths(tmp_path, chair, monkeypatch):
+    include = "<include><uri>file://models/chair</uri></include>"
+    assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "chair/l/c"
+    (tmp_path / "package.xml").write_text(
+        '<package format="2"><name>shop</name><version>1.0.0</version><description>d</description>'
+        '<maintainer email="a@b.c">m</maintainer><license>BSD</license>'
+        '<export><gazebo_ros gazebo_media_path="/none:${prefix}"/></export></package>'
+    )
+    far = world_file(tmp_path / "far" / "away" / "from", include)
+    assert "models/chair' was not found" in raised_by(far)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    assert only_obstacle(far).name == "chair/l/c"
+
+
+def test_missing_model_is_reported_with_the_searched_places(tmp_path, chair):
+    message = raised_by(world_file(tmp_path / "worlds", "\n<include><uri>model://stool</uri></include>"))
+    assert message.startswith(f"{tmp_path}/worlds/w.world:4: 'model://stool' was not found; looked for: ")
+    for place in (f"{tmp_path}/models/stool (GAZEBO_MODEL_PATH)", ".gazebo/models/stool", "stool (no such package"):
+        assert place in message

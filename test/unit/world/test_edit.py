@@ -1,0 +1,193 @@
+"""Models are spawned, moved and deleted while the simulator runs; scans and both engines follow."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from support import ORIGIN, ROOT, world_named
+
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, compose3, inverse3
+from aro_robocop_goto_as.reading import parse_xml
+from aro_robocop_goto_as.world.edit import requested_model, with_model, with_model_at, without_model
+from aro_robocop_goto_as.world.load import load_world
+from aro_robocop_goto_as.world.sdf.reader import read_model
+
+CRATE = b"""<sdf version="1.6"><model name="crate"><static>1</static><link name="l"><pose>0 0 0.25 0 0 0</pose>
+<collision name="c"><geometry><box><size>0.4 0.4 0.5</size></box></geometry></collision></link></model></sdf>"""
+AHEAD = Pose3D((1.0, 0.0, 0.0))
+WORLD = "hall.world"  # in the directory that the process runs in
+
+
+def crate(name="", pose=AHEAD):
+    return read_model(parse_xml(CRATE, "crate.sdf", WorldError), name, pose)
+
+
+def requested(file, name="", xml=""):
+    return requested_model(name, xml, file, AHEAD, WORLD)
+
+
+def names(world):
+    return [obstacle.name for obstacle in world.obstacles]
+
+
+def test_model_is_spawned_under_its_own_or_a_given_name():
+    world = world_named("empty")
+    assert names(with_model(world, crate()))[-1] == "crate/l/c"
+    assert names(with_model(world, crate("box")))[-1] == "box/l/c"
+    assert with_model(world, crate()).models["crate"] == AHEAD
+
+
+def test_duplicate_or_unknown_name_is_refused_with_the_existing_ones():
+    world = with_model(world_named("empty"), crate())
+    with pytest.raises(WorldError, match="there is already a model 'crate'; expected another name"):
+        with_model(world, crate())
+    for edit in (lambda: without_model(world, "crat"), lambda: with_model_at(world, "crat", AHEAD)):
+        with pytest.raises(WorldError, match="no model 'crat'; there are: ground_plane, crate"):
+            edit()
+
+
+@pytest.fixture
+def crate_folder(tmp_path, monkeypatch):
+    """A model's folder in GAZEBO_MODEL_PATH, below the current directory."""
+    home = tmp_path / "models" / "crate"
+    home.mkdir(parents=True)
+    (home / "crate_1.sdf").write_bytes(CRATE)
+    (home / "model.config").write_text("<model><sdf version='1.6'>crate_1.sdf</sdf></model>")
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "models"))
+    monkeypatch.chdir(tmp_path)
+    return home
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "model://crate",
+        "model://crate/",
+        "model://crate/crate_1.sdf",
+        "models/crate",
+        "models/crate/crate_1.sdf",
+        "{}",
+        "{}/crate_1.sdf",
+        "file://{}",
+    ],
+)
+def test_file_of_a_spawned_model_is_found_as_in_an_include(crate_folder, file):
+    model = requested(file.format(crate_folder))
+    assert names(model) == ["crate/l/c"] and model.models == {"crate": AHEAD}
+
+
+def test_model_that_the_documentation_puts_in_exists_and_is_found_from_any_world(tmp_path):
+    shipped = requested_model("", "", "model://crate", AHEAD, world_named("empty").path)
+    foreign = requested_model("", "", "model://crate", AHEAD, str(tmp_path / "foreign.world"))
+    assert names(shipped) == names(foreign) == ["crate/link/collision"]
+    assert len(load_world(os.path.join(ROOT, "worlds", "models", "crate", "model.sdf")).obstacles) == 1
+
+
+def test_missing_model_file_is_reported_with_the_searched_places(crate_folder):
+    with pytest.raises(WorldError) as caught:
+        requested("model://stool")
+    assert str(caught.value).startswith("file of the request: 'model://stool' was not found; looked for: ")
+    assert f"{crate_folder.parent}/stool (GAZEBO_MODEL_PATH)" in str(caught.value)
+    with pytest.raises(WorldError, match=r"'stool.sdf' was not found; looked for: /.*stool.sdf \(beside hall.world\)"):
+        requested("stool.sdf")
+    with pytest.raises(WorldError, match="'https://a.b/stool' is a web address, and nothing is downloaded"):
+        requested("https://a.b/stool")
+    with pytest.raises(WorldError, match="'shop://stool' is not supported; supported: model://, package://"):
+        requested("shop://stool")
+    (crate_folder / "model.config").unlink()
+    with pytest.raises(WorldError, match=f"but there is no file {crate_folder}/model.sdf"):
+        requested("model://crate")
+
+
+def test_spawned_model_is_given_either_as_xml_or_as_a_file(crate_folder):
+    assert names(requested("", xml=CRATE.decode())) == ["crate/l/c"]
+    for file, given in (("", ""), ("model://crate", CRATE.decode())):
+        with pytest.raises(WorldError, match="expected either xml or file"):
+            requested(file, xml=given)
+
+
+@pytest.mark.parametrize("name", ["a/b", "/", "a::b", " ", "\t", " crate", "crate\n", "a\0b"])
+def test_name_with_separators_or_outer_spaces_is_refused(name):
+    with pytest.raises(WorldError) as caught:
+        requested("", name, CRATE.decode())
+    assert str(caught.value) == (
+        f"the name {name!r} of the request: expected printable characters without '/' or '::', "
+        "and without spaces at the ends"
+    )
+
+
+@pytest.mark.parametrize("name", ["Crate 2", "crate.2-b_c", "krabička", "a:b"])
+def test_name_with_other_printable_characters_is_accepted(name):
+    assert names(requested("", name, CRATE.decode())) == [f"{name}/l/c"]
+
+
+def test_invalid_name_of_the_model_itself_is_refused_unless_the_request_overrides_it():
+    text = CRATE.decode().replace('name="crate"', 'name="a/b"')
+    with pytest.raises(WorldError, match=r"the name 'a/b' of the model in xml of the request: expected .* without '/'"):
+        requested("", xml=text)
+    assert names(requested("", "crate", text)) == ["crate/l/c"]
+
+
+def test_only_the_named_model_is_deleted():
+    world = with_model(with_model(world_named("empty"), crate("box")), crate("box_2"))
+    assert names(without_model(world, "box"))[-1] == "box_2/l/c"
+    assert set(without_model(world, "box").models) == {"ground_plane", "box_2"}
+
+
+def test_moving_a_model_moves_its_collisions():
+    pose = Pose3D.from_xyz_rpy((2.0, 1.0, 0.1), (0.1, 0.2, 0.3))
+    world = with_model_at(with_model(world_named("empty"), crate()), "crate", pose)
+    expected = compose3(pose, Pose3D((0.0, 0.0, 0.25)))
+    assert world.obstacles[-1].pose.position == pytest.approx(expected.position)
+    assert world.obstacles[-1].pose.orientation == pytest.approx(expected.orientation)
+    assert world.models["crate"] == pose
+
+
+def test_scripted_motion_continues_from_the_pose_a_model_is_moved_to():
+    world = with_model_at(world_named("stage_4"), "pillar_1", Pose3D.from_xyz_rpy((1.0, 0.0, 0.25), (0, 0, math.pi)))
+    assert [o.at(5.0).position[:2] for o in world.moving()][0] == pytest.approx((1.0, 1.0))
+    with pytest.raises(WorldError, match="level"):
+        with_model_at(world, "pillar_1", Pose3D.from_xyz_rpy((0, 0, 0), (0.5, 0, 0)))
+
+
+def test_spatial_pose_composed_with_its_inverse_is_the_identity():
+    pose = Pose3D.from_xyz_rpy((1.0, 2.0, 3.0), (0.3, -0.7, 2.0))
+    both = compose3(inverse3(pose), pose)
+    assert both.position == pytest.approx((0, 0, 0)) and np.abs(both.orientation) == pytest.approx([0, 0, 0, 1])
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_scans_and_contacts_follow_a_model_that_is_spawned_moved_and_deleted(simulator, drive):
+    sim = simulator("empty", ORIGIN, drive=drive, cmd_vel_timeout=0.0)
+    before = sim.world
+    assert np.isinf(sim.exact_distances()[0])
+    sim.change_world(with_model(sim.world, crate()))
+    assert sim.exact_distances()[0] == pytest.approx(0.832)
+    sim.command(Twist2D(0.2))
+    for _ in range(240 * 6):
+        sim.step({})
+    assert 0.6 < sim.world_from_footprint().x < 0.8 and sim.touching()
+    sim.change_world(with_model_at(sim.world, "crate", Pose3D((1.5, 0.0, 0.0))))
+    for _ in range(240):
+        sim.step({})
+    assert sim.world_from_footprint().x > 0.85
+    assert sim.exact_distances()[0] == pytest.approx(1.332 - sim.world_from_footprint().x, abs=1e-3)
+    sim.change_world(without_model(sim.world, "crate"))
+    assert np.isinf(sim.exact_distances()[0]) and names(sim.world) == names(before)
+    for _ in range(240 * 5):
+        sim.step({})
+    assert sim.world_from_footprint().x > 1.5
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_reset_keeps_the_edited_world(simulator, drive):
+    sim = simulator("empty", ORIGIN, drive=drive)
+    sim.change_world(with_model(sim.world, crate()))
+    sim.reset()
+    sim.command(Twist2D(0.2))
+    assert sim.exact_distances()[0] == pytest.approx(0.832)
+    sim.change_world(without_model(sim.world, "crate"))
+    assert np.isinf(sim.exact_distances()[0])
+    assert sim.world_from_footprint() == Pose2D()

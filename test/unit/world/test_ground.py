@@ -1,0 +1,142 @@
+"""Robots stand on what is flat, large and low, at its height, with either drive."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+from sdf_files import collision, model, sdf_file, world_file
+from support import drive, model_named
+
+from aro_robocop_goto_as.errors import PlaceError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.raycast.free_places import free_place
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.observations import SCAN
+from aro_robocop_goto_as.world.edit import requested_model, with_model, without_model
+from aro_robocop_goto_as.world.ground import is_in_ground, top
+from aro_robocop_goto_as.world.load import load_world
+
+PLANE = "<include><uri>model://ground_plane</uri></include>"
+
+
+def box(x, y, z):
+    return f"<box><size>{x} {y} {z}</size></box>"
+
+
+def slab(shape=None, z=0.0, name="asphalt", at=(0.0, 0.0), turn="0 0 0.3"):
+    pose = f"<pose>{at[0]} {at[1]} {z} {turn}</pose>"
+    return model(collision(shape or box(20, 20, 0.1)), name, pose)
+
+
+@pytest.fixture
+def simulator():
+    made = []
+
+    def make(world, drive_by, spawn=None):
+        model_of_robot = model_named("burger")
+        p = SimParams.of(drive=drive_by, scan_profile="ideal")
+        made.append(make_simulator(p, world, [RobotSpec("", model_of_robot, spawn or world.spawn)]))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+GROUNDS = {  # case: (body of the world, height of the ground [m])
+    "slab on a ground plane": (PLANE + slab(), 0.05),
+    "slab alone, beside the origin": (slab(at=(30.0, 0.0)), 0.05),
+    "slab beside the origin of a ground plane": (PLANE + slab(at=(30.0, 0.0)), 0.0),
+    "higher of two slabs": (slab() + slab(box(6, 5, 0.3), name="pad"), 0.15),
+    "round slab": (slab("<cylinder><radius>4</radius><length>0.1</length></cylinder>"), 0.05),
+    "block sunk into the ground": (slab(box(9, 9, 2), z=-0.9), 0.1),
+    "raised ground plane": (PLANE.replace("</uri>", "</uri><pose>0 0 0.1 0 0 0</pose>"), 0.1),
+    "sunken ground plane": (PLANE.replace("</uri>", "</uri><pose>0 0 -0.1 0 0 0</pose>"), 0.0),
+    "too high": (PLANE + slab(box(20, 20, 0.5)), 0.0),
+    "too small": (PLANE + slab(box(20, 2, 0.1)), 0.0),
+    "not level": (PLANE + slab(turn="0 0.02 0"), 0.0),
+    "under the spawn, not the origin": (
+        f'{PLANE}<frame name="robot_spawn"><pose>30 1 0.05 0 0 0</pose></frame>{slab(at=(30.0, 0.0))}',
+        0.05,
+    ),
+}
+
+
+@pytest.mark.parametrize(("body", "height"), GROUNDS.values(), ids=GROUNDS)
+def test_ground_is_what_is_flat_large_and_low_under_the_spawn(tmp_path, body, height):
+    assert load_world(world_file(tmp_path, body)).ground == pytest.approx(height)
+
+
+def test_poses_are_relative_to_the_ground(tmp_path):
+    world = load_world(world_file(tmp_path, PLANE + slab() + slab(box(1, 1, 1), z=0.55, name="crate")))
+    assert {name: pose.position[2] for name, pose in world.models.items()} == pytest.approx(
+        {"ground_plane": -0.05, "asphalt": -0.05, "crate": 0.5}
+    )
+    assert [is_in_ground(obstacle) for obstacle in world.obstacles] == [True, True, False]
+
+
+@pytest.mark.parametrize("drive_by", ["wheels", "kinematic"])
+def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, simulator, drive_by):
+    seen = {}
+    for name, body, height in (("floor", PLANE, 0.175), ("slab", PLANE + slab(), 0.225)):
+        # A shelf from 0.15 to 0.20 m above the ground: a scanner at 0.182 m sees it, 5 cm lower it would not.
+        shelf = slab(box(1, 20, 0.05), height, "shelf", (2.0, 0.0), "0 0 0")
+        sim = simulator(load_world(world_file(tmp_path / name, body + shelf)), drive_by)
+        scans = [found.scans[0] for found in drive(sim, Twist2D(0.2, 0.3), 1.0, [SCAN]) if found.of(SCAN)]
+        assert not sim.touching() and not sim.newly_placed_in_contact()
+        seen[name] = (*sim.world_from_footprint(), *scans[-1])
+    assert seen["slab"] == pytest.approx(seen["floor"], abs=1e-9)
+    assert math.hypot(*seen["slab"][:2]) > 0.1 and min(seen["slab"][3:]) < 1.5
+
+
+def test_robot_starts_and_may_be_placed_on_a_slab(tmp_path, simulator):
+    world = load_world(world_file(tmp_path, PLANE + slab() + slab(box(1, 1, 1), z=0.5, name="crate", at=(3.0, 0.0))))
+    assert free_place(world, world.spawn, model_named("burger")) == world.spawn
+    sim = simulator(world, "kinematic")
+    sim.place_with_room(Pose2D(1.0, 1.0))
+    with pytest.raises(PlaceError, match="crate"):
+        sim.place_with_room(Pose2D(3.0, 0.0))
+
+
+def test_mesh_is_ground_if_its_top_fills_its_rectangle(tmp_path):
+    floor, walls = trimesh.creation.box((10, 10, 0.1)), trimesh.creation.annulus(4.9, 5.0, 0.1)
+    for name, mesh in (("floor", floor), ("walls", walls)):
+        mesh.export(str(tmp_path / f"{name}.stl"))
+    heights = {}
+    for name in ("floor", "walls"):
+        for turn in ("0 0 0.4", "3.14159265358979 0 0"):
+            body = PLANE + slab(f"<mesh><uri>{name}.stl</uri></mesh>", turn=turn)
+            heights[name, turn[0]] = load_world(world_file(tmp_path, body)).ground
+    assert heights == pytest.approx({("floor", "0"): 0.05, ("floor", "3"): 0.05, ("walls", "0"): 0, ("walls", "3"): 0})
+
+
+def test_ground_follows_slabs_that_are_spawned_and_deleted(tmp_path):
+    world = load_world(world_file(tmp_path, PLANE + slab(box(1, 1, 1), z=0.5, name="crate", at=(3.0, 0.0))))
+    xml = sdf_file(tmp_path / "slab.sdf", slab())
+    with open(xml) as text:
+        added = with_model(world, requested_model("grass", text.read(), "", Pose3D(), world.path))
+    assert added.ground == pytest.approx(0.05)
+    assert added.models["crate"].position[2] == pytest.approx(0.45)
+    removed = without_model(added, "grass")
+    assert removed.ground == 0.0
+    assert removed.models["crate"].position[2] == pytest.approx(0.5)
+    assert without_model(world, "crate").obstacles[0] is world.obstacles[0]
+
+
+@pytest.mark.parametrize(
+    ("shape", "turn", "height"),
+    [
+        (box(1, 2, 3), "0 0 1", 1.5),
+        (box(1, 2, 3), "0 1.5707963267949 0", 0.5),
+        ("<cylinder><radius>0.3</radius><length>2</length></cylinder>", "1.5707963267949 0 0", 0.3),
+        ("<sphere><radius>0.3</radius></sphere>", "1 1 0", 0.3),
+        ("<plane/>", "0 0 2", 0.0),
+        ("<plane/>", "3.1415926 0 0", np.inf),
+    ],
+)
+def test_top_is_the_highest_point_in_any_orientation(tmp_path, shape, turn, height):
+    (obstacle,) = load_world(world_file(tmp_path, slab(shape, turn=turn))).obstacles
+    assert top(obstacle) == pytest.approx(height)

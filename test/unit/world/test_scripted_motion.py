@@ -1,0 +1,130 @@
+"""Moving obstacles: their pose is a function of simulated time, scans see them there, and they push robots."""
+
+import math
+
+import numpy as np
+import pytest
+import support
+from hypothesis import given
+from hypothesis import strategies as st
+from rasters import clearance
+from support import analytic_distances, world_named
+
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Twist2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.observations import SCAN
+from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.scripted_motion import Motion
+
+PATROL = Motion(Pose2D(1.0, 2.0, math.pi / 2), waypoints=((4.0, 2.0, 0.0), (6.0, 2.0, 1.0), (10.0, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize(
+    ("time", "x", "y"),
+    [(0, 1, 2), (2, 1, 3), (4, 1, 4), (5, 0.5, 4), (6, 0, 4), (8, 0.5, 3), (10, 1, 2), (12, 1, 3), (1005, 0.5, 4)],
+)
+def test_waypoints_are_passed_at_their_times_in_every_cycle(time, x, y):
+    pose = PATROL.carry(Pose2D(1.0, 2.0), time)
+    assert (pose.x, pose.y) == (pytest.approx(x), pytest.approx(y))
+
+
+@given(st.floats(0, 1e4), st.floats(-2, 2), st.floats(-3, 3), st.floats(-3, 3))
+def test_turning_keeps_the_distance_to_the_models_origin(time, turn, x, y):
+    moved = Motion(Pose2D(1.0, 2.0, 0.5), turn=turn).carry(Pose2D(x, y), time)
+    assert math.hypot(moved.x - 1.0, moved.y - 2.0) == pytest.approx(math.hypot(x - 1.0, y - 2.0), abs=1e-9)
+
+
+def test_pillars_of_stage_3_circle_and_those_of_stage_4_patrol():
+    circling = [o.at(math.pi / 2 / 0.2).position[:2] for o in world_named("stage_3").moving()]
+    assert circling == [pytest.approx(place) for place in ((-0.6, 0.6), (-0.6, -0.6), (0.6, -0.6), (0.6, 0.6))]
+    patrol = world_named("stage_4").moving()
+    assert [o.at(5.0).position[:2] for o in patrol] == [pytest.approx((0.4, -0.5)), pytest.approx((0.8, -1.4))]
+
+
+@pytest.mark.parametrize("name", ["stage_3", "stage_4"])
+def test_moving_pillars_keep_clear_of_walls_and_spawn(name):
+    world = world_named(name)
+    walls = World("walls", tuple(o for o in world.obstacles if isinstance(o.geometry, Box)), Pose2D(), (), "")
+    for time in np.linspace(0.0, 40.0, 401):
+        places = np.array([o.at(float(time)).position[:2] for o in world.moving()])
+        assert clearance(walls, places).min() > 0.2
+        assert np.hypot(*(places - [world.spawn.x, world.spawn.y]).T).min() > 0.5
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_scans_see_moving_obstacles_at_their_current_position(simulator, drive):
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive=drive, moving=True, physics_rate=60, imu_rate=60, clock_rate=60)
+    for _ in range(60 * 4):
+        sim.step({})
+    truth = analytic_distances(
+        moved(sim.world, 4.0),
+        sim.world_from_footprint().x - 0.032,
+        sim.world_from_footprint().y,
+        6.28319 / 359 * np.arange(360),
+        10.0,
+    )
+    near = np.abs(sim.exact_distances() - truth) < 1e-3
+    assert near.sum() >= 354  # all but grazing beams
+    standing = analytic_distances(sim.world, -0.732, 0.0, 6.28319 / 359 * np.arange(360), 10.0)
+    assert np.abs(sim.exact_distances() - standing).max() > 0.3
+
+
+def moved(world, time):
+    obstacles = tuple(Obstacle(o.name, o.at(time), o.geometry) for o in world.obstacles)
+    return World(world.name, obstacles, world.spawn, (), "")
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_standing_robot_is_pushed_by_a_moving_obstacle(simulator, drive):
+    sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
+    touched = False
+    for _ in range(240 * 5):
+        sim.step({})
+        touched = touched or sim.touching()
+    pose, pillar = sim.world_from_footprint(), sim.world.moving()[0].at(5.0).position
+    assert touched
+    assert math.hypot(pose.x - pillar[0], pose.y - pillar[1]) > 0.17
+    assert math.hypot(pose.x - 0.4, pose.y) > 0.2
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_robot_is_stopped_by_an_oncoming_obstacle(simulator, drive):
+    sim = simulator("stage_4", Pose2D(0.4, -0.45, math.pi / 2), drive=drive, moving=True, cmd_vel_timeout=0.0)
+    sim.command(Twist2D(0.2))
+    farthest = -1.0
+    for _ in range(240 * 3):
+        sim.step({})
+        farthest = max(farthest, sim.world_from_footprint().y)
+    assert -0.2 < farthest < 0.0  # they meet half way, the pillar from 0.5 m
+    assert sim.touching() and sim.world_from_footprint().y < sim.world.moving()[0].at(3.0).position[1] - 0.14
+
+
+@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
+def test_reset_restarts_moving_obstacles_and_repeats_the_run(simulator, drive):
+    sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
+    runs = []
+    for _ in range(2):
+        sim.reset()
+        runs.append([seen.scans[0].tobytes() for seen in support.drive(sim, STANDSTILL, 3.0, [SCAN]) if seen.of(SCAN)])
+    assert len(runs[0]) == 30 and runs[0] == runs[1]
+
+
+def test_obstacles_stand_still_by_default(simulator):
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive="kinematic")
+    before = sim.exact_distances()
+    for _ in range(240):
+        sim.step({})
+    assert (sim.exact_distances() == before).all() and sim.world.moving() == ()
+
+
+def test_robot_is_not_pushed_through_a_wall(burger):
+    wall = Obstacle("wall", Pose3D((0.2, 0.0, 0.25)), Box((0.1, 4.0, 0.5)))
+    motion = Motion(Pose2D(-1.0, 0.0), waypoints=((10.0, 2.0, 0.0), (20.0, 0.0, 0.0)))
+    post = Obstacle("post", Pose3D((-1.0, 0.02, 0.25)), Cylinder(0.2, 0.5), motion)
+    p = SimParams.of(drive="kinematic", moving=True, footprint_radius=0.105)
+    sim = make_simulator(p, World("w", (wall, post), Pose2D(), (), ""), [RobotSpec("", burger, Pose2D())])
+    for _ in range(2400):
+        sim.step({})
+        assert sim.world_from_footprint().x <= 0.15 - 0.105

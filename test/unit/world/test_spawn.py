@@ -1,0 +1,57 @@
+"""The texts of the parameters that say which robots there are and where they start."""
+
+import pytest
+from support import model_named, world_named
+
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.robot.model import RobotModel
+from aro_robocop_goto_as.simulation.robots import robots_from
+from aro_robocop_goto_as.world.spawn import parse_spawn
+
+
+def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:
+    (robot,) = robots_from(SimParams().robots, world_named("stage_4"), lambda _: burger)
+    assert (robot.name, robot.spawn) == ("", Pose2D(-0.7, 0.0, 0.0))
+
+
+def test_a_list_names_and_places_each_robot(burger: RobotModel) -> None:
+    robots = robots_from(SimParams.of(robots="red 0 0; blue 1 -1 3.14").robots, world_named("empty"), lambda _: burger)
+    assert [(robot.name, robot.spawn) for robot in robots] == [("red", Pose2D()), ("blue", Pose2D(1.0, -1.0, 3.14))]
+
+
+def test_a_list_may_name_a_model_for_a_robot() -> None:
+    p = SimParams.of(robots="red 0 0; blue:waffle 1 -1", model="turtlebot2").robots
+    robots = robots_from(p, world_named("empty"), model_named)
+    assert [robot.model.name for robot in robots] == ["turtlebot2", "turtlebot3_waffle"]
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("0", "expected at least 1"),
+        ("red", "expected 'NAME X Y"),
+        ("red 1", "expected 'x y' or 'x y yaw'"),
+        ("red: 0 0", "got 'red: 0 0'"),
+        (":waffle 0 0", "or 'NAME:MODEL X Y [YAW]; ...'"),
+        ("red 0 0; red 1 1", "'red' is given twice"),
+        ("r/d 0 0", "got 'r/d 0 0'"),
+        ("red 0 0;", "expected 'NAME X Y"),
+        ("red nan 0", "robots: red: expected 'x y'"),
+        ("red 1e7 0", "numbers within +-1e+06, got '1e7 0'"),
+    ],
+)
+def test_malformed_list_is_refused_by_name(burger: RobotModel, text: str, expected: str) -> None:
+    with pytest.raises(ParameterError) as refusal:
+        robots_from(SimParams.of(robots=text).robots, world_named("empty"), lambda _: burger)
+    assert expected in str(refusal.value)
+
+
+def test_a_spawn_is_two_or_three_numbers() -> None:
+    assert parse_spawn(" ", Pose2D(1, 2, 3)) == Pose2D(1, 2, 3)
+    assert parse_spawn("1 -2", Pose2D()) == Pose2D(1.0, -2.0, 0.0)
+    assert parse_spawn("1, 2, 0.5", Pose2D()) == Pose2D(1.0, 2.0, 0.5)
+    for bad in ("1", "a b", "1 2 3 4", "nan 0", "-1e300 0", "0 0 inf"):
+        with pytest.raises(ParameterError, match="spawn: expected 'x y' or 'x y yaw'"):
+            parse_spawn(bad, Pose2D())
