@@ -100,7 +100,7 @@ def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far
 
 
 def _slabs(ox: float, oy: float, dx: np.ndarray, dy: np.ndarray, half_x: float, half_y: float) -> np.ndarray:
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         tx = np.sort(np.stack([(-half_x - ox) / dx, (half_x - ox) / dx]), axis=0)
         ty = np.sort(np.stack([(-half_y - oy) / dy, (half_y - oy) / dy]), axis=0)
     enter, leave = np.maximum(tx[0], ty[0]), np.minimum(tx[1], ty[1])

@@ -30,7 +30,7 @@ class Movers:
         self._stops: List[np.ndarray] = []
         movers = []
         for row, motion in moving:
-            x, y, _ = circles[row].tolist()
+            x, y = map(float, circles[row, :2])
             place = compose(inverse(motion.world_from_model), Pose2D(x, y))
             stops = np.array(motion.stops(), dtype=float).reshape(-1, 3)
             self._stops.append(stops)

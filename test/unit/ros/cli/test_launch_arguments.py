@@ -42,7 +42,7 @@ def test_the_last_value_counts(file):
         ("needed:=1", "there is no argument needed; there are: world web"),
         ("map:=x", "there is no argument map; there are: world web; did you mean world?"),
         ("speed:=3", "there is no argument speed; there are: world web"),
-        ("wordl:=x", "there is no argument wordl; there are: world web; did you mean world?"),
+        ("wrold:=x", "there is no argument wrold; there are: world web; did you mean world?"),
     ],
 )
 def test_other_words_are_refused(file, word, message):
