@@ -1,16 +1,10 @@
-"""robocop doctor: reports the system, the versions, what answers, and what is missing and how to install it.
-
-Usage: doctor CHECKOUT STATE ROSLAUNCH UNSUPPORTED LIST=MISSING...
-ROSLAUNCH is its path in /opt/ros or empty, UNSUPPORTED a reason or empty, and MISSING the packages of
-deb-packages/LIST.txt (or the Python modules, for LIST `modules`) that are not installed.
-"""
+"""robocop doctor: reports the system, the versions, what answers, and what is missing and how to install it."""
 
 import json
 import os
 import platform
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
@@ -22,7 +16,13 @@ PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
 STAMPS = ("venv/made-as", "venv/requirements", "ws/built-from")  # what a complete set-up leaves
 SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
-REQUIRED_LISTS = ("run", "modules")
+OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in deb-packages/
+# What neither ROS in /opt/ros, which is not installed by ./robocop, nor the system may lack.
+MODULES = (
+    "rospy actionlib tf2_ros tf2_geometry_msgs nav_msgs sensor_msgs diagnostic_msgs visualization_msgs std_srvs"
+    " catkin_pkg numpy lxml collada PIL yaml ensurepip"
+).split()
+FIND = "import sys, importlib.util as u\nprint(*[m for m in sys.argv[1:] if not u.find_spec(m)])"
 PROBE_TIMEOUT = 60.0  # [s, wall] imports may be slow on a busy machine
 PROBE = """
 import importlib, json, sys
@@ -87,10 +87,24 @@ def apt_line(packages: str) -> str:
     return f"{sudo}apt-get update && {sudo}apt-get install --no-install-recommends {packages}"
 
 
+def ros_in_opt() -> str:
+    """The folder of a ROS in /opt/ros that is in use; empty if there is none, and ROS is that of Debian packages."""
+    return os.path.dirname(os.environ.get("ROBOCOP_BASE_SETUP", ""))
+
+
+def missing_modules() -> str:
+    """The Python modules that ROS in /opt/ros and the system lack."""
+    return subprocess.run([PYTHON, "-c", FIND, *MODULES], stdout=subprocess.PIPE, text=True).stdout.strip()
+
+
 def examine(
-    checkout: str, state: str, roslaunch: str, unsupported: str, missing: Dict[str, str]
+    checkout: str, state: str, ros: str, unsupported: str, missing: Dict[str, str]
 ) -> Tuple[List[Row], List[Row]]:
-    """The rows of the report, and what is missing with what to do about it."""
+    """The rows of the report, and what is missing with what to do about it.
+
+    ros: its folder in /opt/ros, or empty; unsupported: why this system is not supported, or empty; missing: the
+    packages (Python modules for `modules`) that are not installed, for each list in deb-packages/.
+    """
     python = str(Path(state, "venv", "bin", "python"))
     complete = all(Path(state, stamp).exists() for stamp in STAMPS)
     installed = versions(python if os.access(python, os.X_OK) else PYTHON)
@@ -98,13 +112,11 @@ def examine(
     master_state, master_problem = master_row()
     name = os.environ.get("DISPLAY")
     display = f"{name} {'answers' if x_display.answers() else 'does not answer'}" if name else "DISPLAY is not set"
-    optional = [
-        f"{part} {'not yet' if lacks else 'yes'}" for part, lacks in missing.items() if part not in REQUIRED_LISTS
-    ]
+    optional = [f"{part} {'not yet' if missing.get(part) else 'yes'}" for part in OPTIONAL_LISTS]
     rows = [
         ("system", system()),
         ("python", f"{platform.python_version()} ({PYTHON})"),
-        ("ROS", roslaunch[: -len("/bin/roslaunch")] if roslaunch else debian_ros),
+        ("ROS", ros or debian_ros),
         *((package, version or "not installed") for package, version in installed.items()),
         ("checkout", checkout),
         ("set-up", f"{'complete' if complete else 'not complete'}, in {state}"),
@@ -127,18 +139,19 @@ def examine(
     return rows, problems
 
 
-def main() -> None:
-    """Print the report; exit status 0 if nothing is missing, else 1."""
-    checkout, state, roslaunch, unsupported, *lists = sys.argv[1:]
-    missing = dict(entry.partition("=")[::2] for entry in lists)
-    rows, problems = examine(checkout, state, roslaunch, unsupported, missing)
+def report(script: str, checkout: str, state: str) -> int:
+    """Print the report, for which the script `robocop` is called back; the exit status, 0 if nothing is missing."""
+
+    def ask(*words: str) -> str:
+        return " ".join(subprocess.run([script, *words], stdout=subprocess.PIPE, text=True).stdout.split())
+
+    ros = ros_in_opt()
+    missing = {name: ask("_missing", name) for name in OPTIONAL_LISTS}
+    required = {"modules": missing_modules()} if ros else {"run": ask("_missing", "run")}
+    rows, problems = examine(checkout, state, ros, ask("_unsupported"), {**required, **missing})
     for name, value in rows:
         print(f"{name:11} {value}")
     print("\nnothing is missing" if not problems else "\nmissing or wrong:")
     for what, remedy in problems:
         print(f"  {what}\n      {remedy}")
-    sys.exit(1 if problems else 0)
-
-
-if __name__ == "__main__":
-    main()
+    return 1 if problems else 0

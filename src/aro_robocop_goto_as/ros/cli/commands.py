@@ -4,13 +4,12 @@ The shell script `robocop` starts it when nothing may be installed yet, so it us
 """
 
 import os
-import signal
 import subprocess
 import sys
 import time
 from typing import Callable, Dict, List, NoReturn, Sequence, Tuple
 
-from ...bootstrap import master
+from ...bootstrap import doctor, master
 from ...errors import MasterError
 from ...process import x_display
 from ...suggestions import did_you_mean
@@ -248,13 +247,15 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "setup": setup,
     "docs": docs,
     "image": container_image.build,
+    "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
+    "version": lambda _: print(program.version()),
+    "--version": lambda _: print(program.version()),
     "completion": lambda _: print(completion.completion(ROOT), end=""),
 }
 
 
 def main(words: Sequence[str]) -> None:
     """Do what a command and its arguments say."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback
     command, *arguments = words
     if command not in COMMANDS:
         hint = did_you_mean(command, completion.options())
@@ -264,7 +265,3 @@ def main(words: Sequence[str]) -> None:
         COMMANDS[command](arguments)
     except MasterError as error:
         refuse(str(error))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

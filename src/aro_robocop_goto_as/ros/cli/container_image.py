@@ -4,7 +4,7 @@ import shutil
 import subprocess
 from typing import List, NoReturn
 
-from .program import ROOT, SCRIPT, become, refuse
+from .program import ROOT, become, refuse, version
 
 
 def build(arguments: List[str]) -> NoReturn:
@@ -12,8 +12,7 @@ def build(arguments: List[str]) -> NoReturn:
     named = bool(arguments) and not arguments[0].startswith("-")
     name, options = (arguments[0], arguments[1:]) if named else ("robocop", arguments)
     engine = _engine()
-    version = subprocess.check_output([SCRIPT, "version"], text=True).strip()
-    label = f"org.opencontainers.image.version={version}"
+    label = f"org.opencontainers.image.version={version()}"
     become(engine, "build", "--tag", name, "--label", label, *options, str(ROOT))
 
 

@@ -10,6 +10,9 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import List, NoReturn
+from xml.etree import ElementTree
+
+from ...bootstrap import doctor
 
 ROOT = Path(__file__).resolve().parents[4]
 SCRIPT = str(ROOT / "robocop")
@@ -36,6 +39,17 @@ def state() -> Path:
     return Path(os.environ["ROBOCOP_STATE"])
 
 
+def version() -> str:
+    """Name and version of the package, and the commit of a checkout."""
+    describe = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--exclude", "*"]
+    try:
+        commit = subprocess.run(describe, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout.strip()
+    except OSError:
+        commit = ""
+    number = ElementTree.parse(ROOT / "package.xml").findtext("version")
+    return f"{PACKAGE} {number}" + (f" (commit {commit})" if commit else "")
+
+
 def module(name: str, *arguments: str) -> List[str]:
     """The command line of a Python module in the virtual environment."""
     return [str(state() / "venv" / "bin" / "python"), "-m", name, *arguments]
@@ -43,6 +57,11 @@ def module(name: str, *arguments: str) -> List[str]:
 
 def set_up(*parts: str) -> bool:
     """Install and build what is missing, also for these parts (lists in deb-packages/); whether that succeeded."""
+    ros = "" if is_dry_run() else doctor.ros_in_opt()
+    missing = doctor.missing_modules() if ros else ""
+    if missing:
+        say(f"ROS is at {ros}, but these Python modules are missing: {missing} (in ros-noetic-* or python3-* packages)")
+        return False
     interrupted: List[int] = []  # Ctrl-C also ends the set-up, which is waited for
     handler = signal.signal(signal.SIGINT, lambda number, _: interrupted.append(number))
     status = subprocess.call([SCRIPT, "_set_up", *parts])
