@@ -14,7 +14,7 @@ from rosgraph_msgs.msg import Clock
 from support import model_named
 
 from aro_robocop_goto_as import compiled
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.params import ImuParams, OdometryParams
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.beams import Fan
@@ -109,7 +109,8 @@ def drives(random: np.random.Generator, engine: KinematicEngine) -> None:
     odometers = Odometers(errors, fleet, 30)
     for step in range(0, 60, 10):
         for robot in range(len(fleet)):
-            fleet.command(robot, Twist2D(*random.choice(SPEEDS if step % 20 else SPEEDS[:3], 2)), step / 30)
+            fleet.commands[robot] = random.choice(SPEEDS if step % 20 else SPEEDS[:3], 2)
+            fleet.commanded_at[robot] = step / 30
         engine.advance(step, 10)
         engine.move_obstacles(step / 3.0)
         odometers.update(random.standard_normal((len(fleet), 2)))

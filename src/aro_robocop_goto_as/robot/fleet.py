@@ -9,7 +9,7 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .base_controller import Limits
+from .base_controller import Limits, accepted
 from .model import Pair, RobotModel
 
 VERSION = 1  # of the structures that the library's functions take, as in fleet.h
@@ -85,8 +85,11 @@ class Fleet:
         return len(self.models)
 
     def command(self, robot: int, command: Twist2D, now: float) -> None:
-        """Set a robot's command, which is within its limits, at a simulated time [s]."""
-        self.commands[robot] = command
+        """Set a robot's command at a simulated time [s], clamped to its limits.
+
+        CommandError on NaN or infinity leaves the previous command in force.
+        """
+        self.commands[robot] = accepted(command, Limits(*self.limits[robot].tolist()))
         self.commanded_at[robot] = now
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:

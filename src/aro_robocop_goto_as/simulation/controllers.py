@@ -120,7 +120,7 @@ class Controllers:
 
     def _apply(self, robot: int, twist: Twist2D) -> None:
         try:
-            self._simulator.command(twist, robot)
+            self._simulator.fleet.command(robot, twist, self._simulator.time)
         except CommandError as error:
             self._refused.append(error)
 

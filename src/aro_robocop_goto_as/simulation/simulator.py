@@ -10,7 +10,6 @@ from ..params import SimParams
 from ..physics.engine import Engine
 from ..raycast.occupancy import occupancy_of
 from ..raycast.scanners import Scanners
-from ..robot.base_controller import Limits, accepted
 from ..robot.model import BodyState, RobotSpec
 from ..sensors import imu, magnetometer
 from ..sensors.lidar import Lidar
@@ -57,7 +56,6 @@ class Simulator:
         self.lidar = Lidar(p.scan.lidar())
         self.engine = engine
         self.fleet = engine.fleet  # as of the latest read()
-        self._limits = [Limits(*row) for row in engine.fleet.limits.tolist()]
         self._noise = NoiseStreams()
         models = [robot.model for robot in self.robots]
         self._scanners = Scanners(models, world, self.fleet.poses)
@@ -102,8 +100,8 @@ class Simulator:
     # -- steps --
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
-        """Set a robot's velocity command; CommandError on NaN or infinity leaves the previous command in force."""
-        self.fleet.command(robot, accepted(twist, self._limits[robot]), self.time)
+        """Set a robot's velocity command now, as Fleet.command."""
+        self.fleet.command(robot, twist, self.time)
 
     def step(self, subscriptions: Subscriptions) -> Optional[Observations]:
         """Advance by one step, then measure what is due and subscribed to; None when nothing is due."""
