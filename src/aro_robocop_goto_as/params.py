@@ -11,9 +11,7 @@ from typing import Any, Dict, List, Mapping, Optional
 from .goto_params import GotoParams as GotoParams
 from .param_loading import frame_problems, from_dict, group, parameter, positive
 from .robot.model_names import DEFAULT_MODEL
-from .sensors.camera import CameraSpec
-from .sensors.camera_profiles import PROFILES as CAMERA_PROFILES
-from .sensors.camera_profiles import camera_of
+from .sensors import camera
 from .sensors.scan_profiles import PROFILES, LidarSpec
 
 MODELS_OWN = "the model's value"
@@ -155,17 +153,17 @@ class ImuParams:
 class CameraParams:
     """The cameras: a profile, and figures that replace its own."""
 
-    camera_profile: str = parameter("small", choices=tuple(CAMERA_PROFILES))
+    camera_profile: str = parameter("small", choices=tuple(camera.PROFILES))
     camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
     camera_height: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
     camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)  # [rad]
     camera_range_min: float = positive(0.05)  # [m]
     camera_range_max: float = positive(10.0)  # [m]
 
-    def spec(self, model: str) -> CameraSpec:
+    def spec(self, model: str) -> camera.CameraSpec:
         """The camera of a model, by its name."""
-        width, height, angle = camera_of(self.camera_profile, model)
-        return CameraSpec(
+        width, height, angle = camera.PROFILES[self.camera_profile].get(model, camera.SMALL)
+        return camera.CameraSpec(
             width if self.camera_width is None else self.camera_width,
             height if self.camera_height is None else self.camera_height,
             angle if self.camera_angle is None else self.camera_angle,

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional
 from ..errors import CommandError
 from ..geometry import Twist2D
 from ..params import LimitParams
-from .model_figures import ModelFigures
+from .model import ModelFigures
 
 
 class Limits(NamedTuple):

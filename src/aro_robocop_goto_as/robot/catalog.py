@@ -7,8 +7,7 @@ import yaml
 from ..errors import RobotModelError
 from ..param_loading import from_dict
 from ..reading import reading
-from .model import RobotModel
-from .model_figures import ModelFigures
+from .model import ModelFigures, RobotModel
 from .model_names import urdf_of
 from .urdf import load_robot
 

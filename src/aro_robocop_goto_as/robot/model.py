@@ -4,14 +4,28 @@ from dataclasses import dataclass
 from typing import Optional, Tuple
 
 from ..geometry import Pose2D, Pose3D, Vector3
+from ..param_loading import positive
 from ..world.model import Obstacle
-from .model_figures import ModelFigures
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"
 CAMERA_FRAME = "camera_rgb_optical_frame"  # as the TurtleBot3's camera in Gazebo names it
 
 Pair = Tuple[float, float]  # left and right wheel
+
+
+@dataclass(frozen=True)
+class ModelFigures:
+    """Figures that a URDF does not hold, from config/models/NAME.yaml with the source of each; all are required."""
+
+    footprint_radius: float = positive(high=100.0)
+    max_linear_velocity: float = positive()
+    max_angular_velocity: float = positive()
+    firmware_linear_velocity: float = positive()
+    firmware_angular_velocity: float = positive()
+    max_linear_acceleration: float = positive()
+    max_angular_acceleration: float = positive()
+    cmd_vel_timeout: float = positive()
 
 
 @dataclass(frozen=True)

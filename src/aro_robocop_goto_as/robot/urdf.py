@@ -10,8 +10,7 @@ from ..errors import RobotModelError
 from ..geometry import Pose2D, Pose3D, Vector3, compose3
 from ..reading import Element, finite_numbers, parse_xml, reading
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Sphere
-from .model import CAMERA_FRAME, WHEEL_JOINTS, RobotModel
-from .model_figures import ModelFigures
+from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
 # What holds numbers in links and joints: each tag's attributes, and how many numbers each attribute has.
 _SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}

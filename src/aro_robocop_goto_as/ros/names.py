@@ -1,11 +1,12 @@
-"""Names in the ROS graph: the lab's nodes and action, and what belongs to a robot. It imports nothing of ROS."""
+"""Names in ROS: the lab's package, nodes and action, and what belongs to a robot. It imports nothing of ROS."""
 
+PACKAGE = "aro_robocop_goto_as"
 SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
 SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"  # nodes, fixed by the handout
 COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
 RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
 ACTION = "robocop_goto_as"  # fixed by the handout
-ACTION_TYPE = "aro_robocop_goto_as/GoToPositionAction"
+ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
 
 
 def prefixed(robot: str, name: str) -> str:

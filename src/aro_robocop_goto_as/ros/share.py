@@ -4,8 +4,9 @@ from pathlib import Path
 
 import rospkg
 
+from .names import PACKAGE
+
 CHECKOUT = Path(__file__).parents[3]
-PACKAGE = "aro_robocop_goto_as"
 
 
 def share() -> str:

@@ -5,12 +5,20 @@ Images have shape (height, width), row 0 at the top; the optical frame has z for
 
 import math
 from dataclasses import dataclass
-from typing import List, Protocol, Sequence
+from typing import Dict, List, Protocol, Sequence, Tuple
 
 import numpy as np
 
 from ..geometry import Pose3D
 
+Figures = Tuple[int, int, float]  # width, height [pixels], horizontal field of view [rad]
+
+SMALL: Figures = (160, 120, 1.02974)  # the field of view in turtlebot3_description's URDF; small images cost less
+# By the models' names in their URDF. Figures of the camera plug-ins in turtlebot3_gazebo (noetic).
+PROFILES: Dict[str, Dict[str, Figures]] = {
+    "small": {},
+    "gazebo": {"turtlebot3_waffle": (1920, 1080, 1.3439), "turtlebot3_waffle_pi": (640, 480, 1.0856)},
+}
 ROUNDING = 1e-3  # relative error of a single-precision depth buffer near the farthest depth
 
 

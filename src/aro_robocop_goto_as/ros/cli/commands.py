@@ -13,6 +13,7 @@ from ...bootstrap import doctor, master
 from ...errors import MasterError
 from ...process import x_display
 from ...suggestions import did_you_mean
+from ..names import PACKAGE
 from . import completion, container_image, program
 from .launch_arguments import TRUE, LaunchArguments
 from .program import ROOT, refuse, say
@@ -38,7 +39,7 @@ PS1="(robocop) $PS1"
 def launch(given: LaunchArguments, *words: str) -> NoReturn:
     """Become roslaunch, but with exit status 1 if the simulator fails."""
     quiet = [] if given.verbose else ["--quiet"]
-    program.start_script("robocop_launch.py", *quiet, program.PACKAGE, given.file.name, *words, *given.words)
+    program.start_script("robocop_launch.py", *quiet, PACKAGE, given.file.name, *words, *given.words)
 
 
 def refuse_second_simulator() -> None:

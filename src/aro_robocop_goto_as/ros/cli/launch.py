@@ -26,11 +26,11 @@ from ...errors import RobocopError, RobotModelError
 from ...process import signals
 from ...robot.model_names import urdf_of
 from .. import log_handlers
-from ..names import RVIZ_LOG, SIMULATOR, absolute
+from ..names import PACKAGE, RVIZ_LOG, SIMULATOR, absolute
 from . import roslaunch_internals
 from .inner_master import inner_master
 
-PACKAGES = ("aro_robocop_goto_as", "aro_sim")  # the simulator's, and the one that starts it for other packages
+PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
 FAILED = 1  # exit status
 READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
 READY_PATIENCE = 30.0  # [s, wall] for a simulator with a large world on a slow machine

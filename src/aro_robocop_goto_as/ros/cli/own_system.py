@@ -12,8 +12,8 @@ from ...errors import MasterError
 from ...process import child, signals, subreaper
 from ...process.parent_death import end_with_parent
 from ...process.ports import free_port
+from ..names import PACKAGE
 
-PACKAGE = "aro_robocop_goto_as"
 LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs
 START_PATIENCE = 60.0  # [s, wall] for its master to answer, also on a slow machine
 END_PATIENCE = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s

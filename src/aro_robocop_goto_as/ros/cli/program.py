@@ -13,10 +13,10 @@ from typing import List, NoReturn
 from xml.etree import ElementTree
 
 from ...bootstrap import doctor
+from ..names import PACKAGE
 
 ROOT = Path(__file__).resolve().parents[4]
 SCRIPT = str(ROOT / "robocop")
-PACKAGE = "aro_robocop_goto_as"
 
 
 def say(text: str) -> None:

@@ -15,7 +15,8 @@ from ...simulation.room import require_room
 from ...simulation.simulator import Simulator
 from ...world.load import RANDOM, find_world, load_world
 from ...world.model import World
-from ..share import PACKAGE, share
+from ..names import PACKAGE
+from ..share import share
 
 
 def make_random(seed: int) -> str:

@@ -6,35 +6,11 @@ A client that waits for one of them therefore gets an answer instead of waiting 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import rospy
+from gazebo_msgs import srv
 from gazebo_msgs.msg import LinkState
-from gazebo_msgs.srv import (
-    ApplyBodyWrench,
-    ApplyJointEffort,
-    BodyRequest,
-    GetJointProperties,
-    GetJointPropertiesRequest,
-    GetJointPropertiesResponse,
-    GetLinkProperties,
-    GetLinkState,
-    GetLinkStateRequest,
-    GetLinkStateResponse,
-    GetModelProperties,
-    GetModelPropertiesRequest,
-    GetModelPropertiesResponse,
-    GetPhysicsProperties,
-    GetPhysicsPropertiesResponse,
-    JointRequest,
-    SetJointProperties,
-    SetLinkProperties,
-    SetLinkState,
-    SetModelConfiguration,
-    SetPhysicsProperties,
-    SetPhysicsPropertiesRequest,
-    SetPhysicsPropertiesResponse,
-)
 from geometry_msgs.msg import Vector3
 
-from ...errors import FrameError
+from ...errors import FrameError, PlaceError, WorldError
 from ...geometry import STANDARD_GRAVITY, STANDSTILL, Pose3D, compose3, inverse3
 from ...robot.model import WHEEL_JOINTS
 from ...simulation.simulation import Simulation
@@ -46,46 +22,55 @@ GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
 
 PUSHED = "only /cmd_vel, the wheels' motors and contacts move a robot, and the world's models stand still"
 REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
-    "apply_body_wrench": (ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
-    "apply_joint_effort": (ApplyJointEffort, f"efforts are not simulated: {PUSHED}"),
-    "get_link_properties": (GetLinkProperties, "masses of links are not kept; a robot's are in /robot_description"),
-    "set_joint_properties": (SetJointProperties, "joints are as in the robot's URDF"),
-    "set_link_properties": (SetLinkProperties, "links are as in the robot's URDF and the world's file"),
-    "set_link_state": (SetLinkState, "links do not move by themselves; /gazebo/set_model_state moves a whole model"),
+    "apply_body_wrench": (srv.ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
+    "apply_joint_effort": (srv.ApplyJointEffort, f"efforts are not simulated: {PUSHED}"),
+    "get_link_properties": (srv.GetLinkProperties, "masses of links are not kept; a robot's are in /robot_description"),
+    "set_joint_properties": (srv.SetJointProperties, "joints are as in the robot's URDF"),
+    "set_link_properties": (srv.SetLinkProperties, "links are as in the robot's URDF and the world's file"),
+    "set_link_state": (
+        srv.SetLinkState,
+        "links do not move by themselves; /gazebo/set_model_state moves a whole model",
+    ),
     "set_model_configuration": (
-        SetModelConfiguration,
+        srv.SetModelConfiguration,
         "joints cannot be set: wheels turn as the robot drives, and the world's models have no joints that move",
     ),
 }
 
 
+def serve(simulation: Simulation, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
+    """Offer a service whose requests the simulation's owner answers between two steps, or refuses with success false.
+
+    answer: request -> the response's fields, as rospy takes them from a service's function
+    """
+
+    def respond(request: Any) -> Any:
+        try:
+            return simulation.jobs.call(lambda: answer(request))
+        except (FrameError, PlaceError, WorldError) as error:
+            return {"success": False, "status_message": str(error)}
+
+    rospy.Service(f"/gazebo/{name}", kind, respond)
+
+
 class GazeboProperties:
-    """Every request is answered by the simulation's owner, between two steps."""
+    """What is known of links, joints and physics."""
 
     def __init__(self, simulation: Simulation, set_factor: Optional[Callable[[float], None]], refusal: str) -> None:
         """set_factor: changes the real-time factor; without it, that is refused with this reason."""
         self._simulation = simulation
         self._simulator = simulation.simulator
         self._set_factor, self._refusal = set_factor, refusal
-        self._serve("get_joint_properties", GetJointProperties, self._get_joint_properties)
-        self._serve("get_link_state", GetLinkState, self._get_link_state)
-        self._serve("get_model_properties", GetModelProperties, self._get_model_properties)
-        self._serve("get_physics_properties", GetPhysicsProperties, self._get_physics_properties)
-        rospy.Service("/gazebo/set_physics_properties", SetPhysicsProperties, self._on_set_physics_properties)
+        serve(simulation, "get_joint_properties", srv.GetJointProperties, self._get_joint_properties)
+        serve(simulation, "get_link_state", srv.GetLinkState, self._get_link_state)
+        serve(simulation, "get_model_properties", srv.GetModelProperties, self._get_model_properties)
+        serve(simulation, "get_physics_properties", srv.GetPhysicsProperties, self._get_physics_properties)
+        rospy.Service("/gazebo/set_physics_properties", srv.SetPhysicsProperties, self._on_set_physics_properties)
         for name, (kind, reason) in REFUSED.items():
             rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
         # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
-        rospy.Service("/gazebo/clear_body_wrenches", BodyRequest, lambda _: [])
-        rospy.Service("/gazebo/clear_joint_forces", JointRequest, lambda _: [])
-
-    def _serve(self, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
-        def serve(request: Any) -> Any:
-            try:
-                return self._simulation.jobs.call(lambda: answer(request))
-            except FrameError as error:
-                return {"success": False, "status_message": str(error)}
-
-        rospy.Service(f"/gazebo/{name}", kind, serve)
+        rospy.Service("/gazebo/clear_body_wrenches", srv.BodyRequest, lambda _: [])
+        rospy.Service("/gazebo/clear_joint_forces", srv.JointRequest, lambda _: [])
 
     # -- in the owner's thread --
 
@@ -105,7 +90,7 @@ class GazeboProperties:
             raise FrameError(f"link [{name}] does not exist; there are: {', '.join(known)}")
         return known[name]
 
-    def _get_link_state(self, request: GetLinkStateRequest) -> GetLinkStateResponse:
+    def _get_link_state(self, request: Any) -> Tuple[LinkState, bool, str]:
         _, world_from_link, twist = self._link(request.link_name)
         _, world_from_reference, of_reference = self._link(request.reference_frame)
         pose = compose3(inverse3(world_from_reference), world_from_link)
@@ -116,43 +101,49 @@ class GazeboProperties:
             relative_twist(twist, of_reference, yaw),
             request.reference_frame or "world",
         )
-        return GetLinkStateResponse(state, True, "GetLinkState: got state")
+        return state, True, "GetLinkState: got state"
 
-    def _get_model_properties(self, request: GetModelPropertiesRequest) -> GetModelPropertiesResponse:
-        name = request.model_name
-        response = GetModelPropertiesResponse(success=True, status_message="GetModelProperties: got properties")
-        if name in self._simulator.world.models:
+    def _get_model_properties(self, request: Any) -> Dict[str, Any]:
+        name, joints = request.model_name, []
+        nested: List[str] = []
+        is_static = name in self._simulator.world.models
+        if is_static:
             # MODEL/LINK/COLLISION, or MODEL/NESTED/LINK/COLLISION
             parts = [o.name.split("/") for o in self._simulator.world.obstacles if o.name.startswith(name + "/")]
-            response.body_names = _each([part[1] for part in parts if len(part) == 3])
-            response.geom_names = [part[2] for part in parts if len(part) == 3]
-            response.child_model_names = _each([part[1] for part in parts if len(part) > 3])
-            response.is_static = True
+            bodies = _each([part[1] for part in parts if len(part) == 3])
+            geoms = [part[2] for part in parts if len(part) == 3]
+            nested = _each([part[1] for part in parts if len(part) > 3])
         else:
-            model = self._robot(name)
-            response.body_names = [
-                link.rpartition("::")[2] for link, _, _ in links(self._simulator) if link.startswith(name + "::")
-            ]
-            response.geom_names = [obstacle.name for obstacle in self._simulator.robots[model].model.collisions]
-            response.joint_names = list(WHEEL_JOINTS)
-        response.canonical_body_name = response.body_names[0] if response.body_names else ""
-        return response
+            collisions = self._simulator.robots[self._robot(name)].model.collisions
+            bodies = [link.rpartition("::")[2] for link, _, _ in links(self._simulator) if link.startswith(name + "::")]
+            geoms = [obstacle.name for obstacle in collisions]
+            joints = list(WHEEL_JOINTS)
+        return {
+            "canonical_body_name": bodies[0] if bodies else "",
+            "body_names": bodies,
+            "geom_names": geoms,
+            "joint_names": joints,
+            "child_model_names": nested,
+            "is_static": is_static,
+            "success": True,
+            "status_message": "GetModelProperties: got properties",
+        }
 
-    def _get_joint_properties(self, request: GetJointPropertiesRequest) -> GetJointPropertiesResponse:
+    def _get_joint_properties(self, request: Any) -> Dict[str, Any]:
         robot, _, joint = request.joint_name.rpartition("::")
         if joint not in WHEEL_JOINTS:
             raise FrameError(f"joint [{request.joint_name}] does not exist; there are: {', '.join(WHEEL_JOINTS)}")
         self._simulator.engine.read()
         state = self._simulator.fleet.state(self._robot(robot) if robot else 0)
         side = WHEEL_JOINTS.index(joint)
-        return GetJointPropertiesResponse(
-            GetJointPropertiesResponse.REVOLUTE,  # as gazebo_ros says of every joint
-            [0.0],
-            [state.wheel_angles[side]],
-            [state.wheel_velocities[side]],
-            True,
-            "GetJointProperties: got properties",
-        )
+        return {
+            "type": srv.GetJointPropertiesResponse.REVOLUTE,  # as gazebo_ros says of every joint
+            "damping": [0.0],
+            "position": [state.wheel_angles[side]],
+            "rate": [state.wheel_velocities[side]],
+            "success": True,
+            "status_message": "GetJointProperties: got properties",
+        }
 
     def _robot(self, name: str) -> int:
         """A robot's index; FrameError if there is none of that name."""
@@ -162,37 +153,37 @@ class GazeboProperties:
             raise FrameError(f"model [{name}] does not exist; there are: {known}")
         return names.index(name)
 
-    def _get_physics_properties(self, _request: Any) -> GetPhysicsPropertiesResponse:
+    def _get_physics_properties(self, _request: Any) -> Dict[str, Any]:
         rate, time = self._simulator.rate, self._simulation.time
-        return GetPhysicsPropertiesResponse(
-            time_step=1.0 / rate,
-            pause=time.paused,
-            max_update_rate=rate * time.pacer.factor,  # in Gazebo, too, 0 is as fast as possible
-            gravity=Vector3(0.0, 0.0, -STANDARD_GRAVITY),
-            success=True,
-            status_message="GetPhysicsProperties: got properties",
-        )
+        return {
+            "time_step": 1.0 / rate,
+            "pause": time.paused,
+            "max_update_rate": rate * time.pacer.factor,  # in Gazebo, too, 0 is as fast as possible
+            "gravity": Vector3(0.0, 0.0, -STANDARD_GRAVITY),
+            "success": True,
+            "status_message": "GetPhysicsProperties: got properties",
+        }
 
     # -- in the service's thread --
 
-    def _on_set_physics_properties(self, request: SetPhysicsPropertiesRequest) -> SetPhysicsPropertiesResponse:
+    def _on_set_physics_properties(self, request: Any) -> Tuple[bool, str]:
         """Only how fast simulated time passes can be changed."""
+        refusal = self._refusal if self._set_factor is None else self._refused(request)
+        if self._set_factor is None or refusal:
+            return False, f"SetPhysicsProperties: {refusal}"
+        self._set_factor(request.max_update_rate / self._simulator.rate)
+        return True, "SetPhysicsProperties: max_update_rate set; the rest is as it was"
 
-        def refused(reason: str) -> SetPhysicsPropertiesResponse:
-            return SetPhysicsPropertiesResponse(False, f"SetPhysicsProperties: {reason}")
-
-        now = self._simulation.jobs.call(lambda: self._get_physics_properties(None))
-        if self._set_factor is None:
-            return refused(self._refusal)
-        if abs(request.time_step - now.time_step) > SLOP:
-            return refused(f"time_step is {now.time_step:g} s, by the parameter physics_rate; it cannot be changed")
-        gravity = (request.gravity.x, request.gravity.y, request.gravity.z)
-        if max(abs(gravity[0]), abs(gravity[1]), abs(gravity[2] + STANDARD_GRAVITY)) > GRAVITY_SLOP:
-            return refused(f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed")
+    def _refused(self, request: Any) -> str:
+        """Why these physics are impossible; empty if they are not."""
+        time_step, gravity = 1.0 / self._simulator.rate, request.gravity
+        if abs(request.time_step - time_step) > SLOP:
+            return f"time_step is {time_step:g} s, by the parameter physics_rate; it cannot be changed"
+        if max(abs(gravity.x), abs(gravity.y), abs(gravity.z + STANDARD_GRAVITY)) > GRAVITY_SLOP:
+            return f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed"
         if not 0.0 <= request.max_update_rate < 1e9:
-            return refused(f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more")
-        self._set_factor(request.max_update_rate * now.time_step)
-        return SetPhysicsPropertiesResponse(True, "SetPhysicsProperties: max_update_rate set; the rest is as it was")
+            return f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more"
+        return ""
 
 
 def _refuser(name: str, reason: str) -> Callable[[Any], Dict[str, Any]]:

@@ -3,29 +3,13 @@
 A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
-from typing import Any, Callable, List, Optional, TypeVar
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import rospy
+from gazebo_msgs import srv
 from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import (
-    DeleteLight,
-    DeleteLightResponse,
-    DeleteModel,
-    DeleteModelRequest,
-    DeleteModelResponse,
-    GetModelState,
-    GetModelStateRequest,
-    GetModelStateResponse,
-    GetWorldProperties,
-    GetWorldPropertiesResponse,
-    SetModelState,
-    SetModelStateRequest,
-    SetModelStateResponse,
-    SpawnModel,
-    SpawnModelRequest,
-    SpawnModelResponse,
-)
 from geometry_msgs.msg import Twist
+from std_msgs.msg import Header
 from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError, PlaceError, WorldError
@@ -33,11 +17,9 @@ from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted
 from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
-from .gazebo_properties import GazeboProperties
+from .gazebo_properties import GazeboProperties, serve
 from .gazebo_topics import WORLD_FRAMES, in_gazebo, relative_twist, world_twist
 from .world_services import WorldServices
-
-Response = TypeVar("Response")
 
 
 class GazeboServices:
@@ -64,20 +46,13 @@ class GazeboServices:
         # Gazebo's reset_simulation also sets time back to zero: here the parameter ~reset_time decides about that.
         self._serve_empty("reset_simulation", simulation.reset)
         self._serve_empty("reset_world", simulation.reset)
-        rospy.Service("/gazebo/get_model_state", GetModelState, self._on_get_model_state)
-        rospy.Service("/gazebo/set_model_state", SetModelState, self._on_set_model_state)
-        rospy.Service("/gazebo/get_world_properties", GetWorldProperties, self._on_get_world_properties)
-        rospy.Service("/gazebo/spawn_sdf_model", SpawnModel, self._on_spawn)
-        rospy.Service("/gazebo/spawn_urdf_model", SpawnModel, self._on_spawn)
-        rospy.Service("/gazebo/delete_model", DeleteModel, self._on_delete)
-        rospy.Service(
-            "/gazebo/delete_light",
-            DeleteLight,
-            lambda request: DeleteLightResponse(
-                True, f"there is no light {request.light_name!r} to delete: this simulator has none"
-            ),
-        )
-
+        serve(simulation, "get_model_state", srv.GetModelState, self._get_model_state)
+        serve(simulation, "set_model_state", srv.SetModelState, lambda asked: self._set_model_state(asked.model_state))
+        serve(simulation, "get_world_properties", srv.GetWorldProperties, self._get_world_properties)
+        rospy.Service("/gazebo/spawn_sdf_model", srv.SpawnModel, self._on_spawn)
+        rospy.Service("/gazebo/spawn_urdf_model", srv.SpawnModel, self._on_spawn)
+        rospy.Service("/gazebo/delete_model", srv.DeleteModel, self._on_delete)
+        rospy.Service("/gazebo/delete_light", srv.DeleteLight, _delete_light)
         GazeboProperties(simulation, set_factor, refusal)
         if world_services is not None:
             rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
@@ -95,7 +70,7 @@ class GazeboServices:
             raise WorldError(self._refusal)
         return self._world_services
 
-    # -- poses, in the owner's thread --
+    # -- in the owner's thread --
 
     def _world_from(self, name: str) -> Pose3D:
         """Pose of a model or robot; FrameError if it does not exist. 'model::link' means its model here.
@@ -114,18 +89,16 @@ class GazeboServices:
     def _model_names(self) -> List[str]:
         return [*self._simulator.world.models, *self._names]
 
-    def _on_get_model_state(self, request: GetModelStateRequest) -> GetModelStateResponse:
-        def read() -> GetModelStateResponse:
-            name = request.model_name
-            reference_from = inverse3(self._world_from(request.relative_entity_name))
-            response = GetModelStateResponse(success=True, status_message="GetModelState: got properties")
-            response.header.stamp = convert.to_time(self._simulator.stamp_ns)
-            response.header.frame_id = request.relative_entity_name or "world"
-            response.pose = convert.to_pose_msg(compose3(reference_from, self._world_from(name)))
-            response.twist = self._twist(name, request.relative_entity_name)
-            return response
-
-        return self._answer(read, GetModelStateResponse)
+    def _get_model_state(self, request: Any) -> Dict[str, Any]:
+        name, reference = request.model_name, request.relative_entity_name
+        reference_from = inverse3(self._world_from(reference))
+        return {
+            "header": Header(0, convert.to_time(self._simulator.stamp_ns), reference or "world"),
+            "pose": convert.to_pose_msg(compose3(reference_from, self._world_from(name))),
+            "twist": self._twist(name, reference),
+            "success": True,
+            "status_message": "GetModelState: got properties",
+        }
 
     def _twist(self, name: str, reference: str) -> Twist:
         """Velocity of a model relative to that of a reference, in the reference's axes."""
@@ -138,65 +111,48 @@ class GazeboServices:
         self._simulator.engine.read()
         return world_twist(self._simulator.fleet.state(self._names.index(name)))
 
+    def _set_model_state(self, requested: ModelState) -> Tuple[bool, str]:
+        target = compose3(self._world_from(requested.reference_frame), convert.from_pose_msg_3d(requested.pose, True))
+        self._changes()
+        name, done = requested.model_name, "SetModelState: set model state done"
+        if name not in self._names:
+            self._simulation.change_world(lambda world: with_model_at(world, name, target))
+            return True, done
+        self._simulation.place(target.on_plane(), self._names.index(name))
+        moving = convert.from_twist_msg(requested.twist) != STANDSTILL
+        return True, done + ("; its twist is ignored, only /cmd_vel moves a robot" if moving else "")
+
+    def _get_world_properties(self, _request: Any) -> Tuple[float, List[str], bool, bool, str]:
+        return self._simulator.time, self._model_names(), False, True, "GetWorldProperties: got properties"
+
+    # -- in rospy's threads, where models are read --
+
     def _on_model_state(self, message: ModelState) -> None:
-        response = self._set_model_state(message)
-        if not response.success:
-            rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", response.status_message)
-
-    def _on_set_model_state(self, request: SetModelStateRequest) -> SetModelStateResponse:
-        return self._set_model_state(request.model_state)
-
-    def _set_model_state(self, requested: ModelState) -> SetModelStateResponse:
-
-        def write() -> SetModelStateResponse:
-            target = compose3(
-                self._world_from(requested.reference_frame), convert.from_pose_msg_3d(requested.pose, True)
-            )
-            self._changes()
-            name = requested.model_name
-            if name not in self._names:
-                self._simulation.change_world(lambda world: with_model_at(world, name, target))
-                return SetModelStateResponse(True, "SetModelState: set model state done")
-            self._simulation.place(target.on_plane(), self._names.index(name))
-            moving = convert.from_twist_msg(requested.twist) != STANDSTILL
-            note = "; its twist is ignored, only /cmd_vel moves a robot" if moving else ""
-            return SetModelStateResponse(True, "SetModelState: set model state done" + note)
-
-        return self._answer(write, SetModelStateResponse)
-
-    def _on_get_world_properties(self, _request: Any) -> GetWorldPropertiesResponse:
-        def read() -> GetWorldPropertiesResponse:
-            return GetWorldPropertiesResponse(
-                self._simulator.time, self._model_names(), False, True, "GetWorldProperties: got properties"
-            )
-
-        return self._answer(read, GetWorldPropertiesResponse)
-
-    def _answer(self, action: Callable[[], Response], kind: Callable[..., Response]) -> Response:
         try:
-            return self._simulation.jobs.call(action)
+            self._simulation.jobs.call(lambda: self._set_model_state(message))
         except (FrameError, PlaceError, WorldError) as error:
-            return kind(success=False, status_message=str(error))
+            rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", error)
 
-    # -- models, read in the service's thread --
-
-    def _on_spawn(self, request: SpawnModelRequest) -> SpawnModelResponse:
+    def _on_spawn(self, request: Any) -> Tuple[bool, str]:
         try:
             reference = self._simulation.jobs.call(lambda: self._world_from(request.reference_frame))
             changes = self._changes()
             if request.model_name in self._names:
                 raise WorldError(f"model name [{request.model_name}] is already used by a robot")
             pose = compose3(reference, convert.from_pose_msg_3d(request.initial_pose, True))
-            done = changes.spawn(request.model_name, request.model_xml, "", pose)
+            return True, f"SpawnModel: {changes.spawn(request.model_name, request.model_xml, '', pose)}"
         except (FrameError, WorldError) as error:
-            return SpawnModelResponse(False, f"SpawnModel: {error}")
-        return SpawnModelResponse(True, f"SpawnModel: {done}")
+            return False, f"SpawnModel: {error}"
 
-    def _on_delete(self, request: DeleteModelRequest) -> DeleteModelResponse:
-        if request.model_name in self._names:
-            refusal = f"[{request.model_name}] is a robot; robots cannot be deleted"
-            return DeleteModelResponse(False, f"DeleteModel: {refusal}")
+    def _on_delete(self, request: Any) -> Tuple[bool, str]:
+        name = request.model_name
         try:
-            return DeleteModelResponse(True, f"DeleteModel: {self._changes().delete(request.model_name)}")
+            if name in self._names:
+                raise WorldError(f"[{name}] is a robot; robots cannot be deleted")
+            return True, f"DeleteModel: {self._changes().delete(name)}"
         except WorldError as error:
-            return DeleteModelResponse(False, f"DeleteModel: {error}")
+            return False, f"DeleteModel: {error}"
+
+
+def _delete_light(request: Any) -> Tuple[bool, str]:
+    return True, f"there is no light {request.light_name!r} to delete: this simulator has none"

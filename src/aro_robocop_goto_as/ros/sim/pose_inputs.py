@@ -1,11 +1,11 @@
 """Poses at which robots are to be placed: the ~set_pose service, and RViz's 2D Pose Estimate on initialpose."""
 
-from typing import Any, List
+from typing import Any, List, Tuple
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
-from aro_robocop_goto_as.srv import SetPose, SetPoseRequest, SetPoseResponse
+from aro_robocop_goto_as.srv import SetPose
 
 from ...errors import FrameError, PlaceError
 from ...geometry import Pose2D, compose
@@ -40,18 +40,18 @@ class PoseInputs:
             lambda message: self._simulation.jobs.post(lambda: place(message)),
         )
 
-    def _on_set_pose(self, request: SetPoseRequest) -> SetPoseResponse:
+    def _on_set_pose(self, request: Any) -> Tuple[bool, str]:
         if request.robot not in self._names:
             known = ", ".join(map(repr, self._names))
-            return SetPoseResponse(False, f"robot {request.robot!r} is not one of: {known}")
+            return False, f"robot {request.robot!r} is not one of: {known}"
         robot = self._names.index(request.robot)
         try:
             placed = self._simulation.jobs.call(
                 lambda: self._place(robot, request.pose.header.frame_id, request.pose.pose)
             )
         except (FrameError, PlaceError) as error:
-            return SetPoseResponse(False, f"pose refused: {error}")
-        return SetPoseResponse(True, f"at x {placed.x:.3f} y {placed.y:.3f} yaw {placed.yaw:.3f} in the world")
+            return False, f"pose refused: {error}"
+        return True, f"at x {placed.x:.3f} y {placed.y:.3f} yaw {placed.yaw:.3f} in the world"
 
     def _place(self, robot: int, frame: str, pose: Any) -> Pose2D:
         """Place a robot at a geometry_msgs/Pose in world, map or its odom.

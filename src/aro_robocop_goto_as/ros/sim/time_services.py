@@ -1,12 +1,13 @@
 """Services that control simulated time: pause, unpause, step, reset; and the real-time factor."""
 
 import math
-from typing import Any
+from typing import Any, Tuple
 
 import rospy
-from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
+from genpy import Time
+from std_srvs.srv import Trigger
 
-from aro_robocop_goto_as.srv import Reset, ResetRequest, ResetResponse, Step, StepRequest, StepResponse
+from aro_robocop_goto_as.srv import Reset, Step
 
 from ...simulation.schedule import stamp_ns
 from ...simulation.simulation import Simulation
@@ -21,8 +22,9 @@ class TimeServices:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        rospy.Service("~pause", Trigger, self._on_pause)
-        rospy.Service("~unpause", Trigger, self._on_unpause)
+        call = simulation.jobs.call
+        rospy.Service("~pause", Trigger, lambda _: (True, call(lambda: self._set_paused(True))))
+        rospy.Service("~unpause", Trigger, lambda _: (True, call(lambda: self._set_paused(False))))
         rospy.Service("~step", Step, self._on_step)
         rospy.Service("~reset", Reset, self._on_reset)
         rospy.set_param("~real_time_factor", simulation.time.pacer.factor)  # where dynamic_reconfigure's server starts
@@ -32,17 +34,11 @@ class TimeServices:
         """Change the real-time factor, as dynamic_reconfigure does, and tell its clients."""
         self._reconfigure.update_configuration({"real_time_factor": factor})
 
-    def _on_pause(self, _request: TriggerRequest) -> TriggerResponse:
-        return TriggerResponse(True, self._simulation.jobs.call(lambda: self._set_paused(True)))
-
-    def _on_unpause(self, _request: TriggerRequest) -> TriggerResponse:
-        return TriggerResponse(True, self._simulation.jobs.call(lambda: self._set_paused(False)))
-
     def _set_paused(self, paused: bool) -> str:
         self._simulation.set_paused(paused)
         return "{} at {:.3f} s".format("paused" if paused else "running", self._simulation.simulator.time)
 
-    def _on_step(self, request: StepRequest) -> StepResponse:
+    def _on_step(self, request: Any) -> Tuple[bool, str, Time]:
         """Blocks this service's thread until the span is over; the owner's loop goes on meanwhile."""
         if not (math.isfinite(request.duration) and 0.0 <= request.duration <= LONGEST_STEP):
             return self._step_refused(f"duration {request.duration}: expected 0 to {LONGEST_STEP:g} s")
@@ -51,16 +47,16 @@ class TimeServices:
         if ended is None:
             return self._step_refused("another step request is in progress")
         stamp = convert.to_time(stamp_ns(jobs.wait_for(ended), simulator.rate))
-        return StepResponse(True, f"{'paused' if time.paused else 'running'} at {stamp.to_sec():.6f} s", stamp)
+        return True, f"{'paused' if time.paused else 'running'} at {stamp.to_sec():.6f} s", stamp
 
-    def _step_refused(self, reason: str) -> StepResponse:
+    def _step_refused(self, reason: str) -> Tuple[bool, str, Time]:
         stamp = self._simulation.jobs.call(lambda: self._simulation.simulator.stamp_ns)
-        return StepResponse(False, reason, convert.to_time(stamp))
+        return False, reason, convert.to_time(stamp)
 
-    def _on_reset(self, request: ResetRequest) -> ResetResponse:
+    def _on_reset(self, request: Any) -> Tuple[bool, str]:
         if request.seed < 0:
-            return ResetResponse(False, f"seed {request.seed}: expected a positive number, or 0 to keep the seed")
-        return ResetResponse(True, self._simulation.jobs.call(lambda: self._reset(request.seed)))
+            return False, f"seed {request.seed}: expected a positive number, or 0 to keep the seed"
+        return True, self._simulation.jobs.call(lambda: self._reset(request.seed))
 
     def _reset(self, seed: int) -> str:
         self._simulation.reset(seed or None)

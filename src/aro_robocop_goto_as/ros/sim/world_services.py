@@ -1,20 +1,10 @@
 """Services that change the world while it runs: spawn_model, delete_model, move_model."""
 
-from typing import Callable, Tuple
+from typing import Any, Callable, Tuple
 
 import rospy
 
-from aro_robocop_goto_as.srv import (
-    DeleteModel,
-    DeleteModelRequest,
-    DeleteModelResponse,
-    MoveModel,
-    MoveModelRequest,
-    MoveModelResponse,
-    SpawnModel,
-    SpawnModelRequest,
-    SpawnModelResponse,
-)
+from aro_robocop_goto_as.srv import DeleteModel, MoveModel, SpawnModel
 
 from ...errors import FrameError, WorldError
 from ...geometry import Pose3D
@@ -29,26 +19,9 @@ class WorldServices:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        rospy.Service("~spawn_model", SpawnModel, self._on_spawn)
-        rospy.Service("~delete_model", DeleteModel, self._on_delete)
-        rospy.Service("~move_model", MoveModel, self._on_move)
-
-    def _on_spawn(self, request: SpawnModelRequest) -> SpawnModelResponse:
-        return SpawnModelResponse(
-            *_answer(
-                lambda: self.spawn(
-                    request.name, request.xml, request.file, convert.from_pose_msg_3d(request.pose, True)
-                )
-            )
-        )
-
-    def _on_delete(self, request: DeleteModelRequest) -> DeleteModelResponse:
-        return DeleteModelResponse(*_answer(lambda: self.delete(request.name)))
-
-    def _on_move(self, request: MoveModelRequest) -> MoveModelResponse:
-        return MoveModelResponse(
-            *_answer(lambda: self.move(request.name, convert.from_pose_msg_3d(request.pose, True)))
-        )
+        rospy.Service("~spawn_model", SpawnModel, _answering(lambda r: self.spawn(r.name, r.xml, r.file, _pose_of(r))))
+        rospy.Service("~delete_model", DeleteModel, _answering(lambda r: self.delete(r.name)))
+        rospy.Service("~move_model", MoveModel, _answering(lambda r: self.move(r.name, _pose_of(r))))
 
     def _change(self, edit: Callable[[World], World]) -> None:
         self._simulation.jobs.call(lambda: self._simulation.change_world(edit))
@@ -72,8 +45,17 @@ class WorldServices:
         return "model '{}' at x {:.3f} y {:.3f} z {:.3f}".format(name, *pose.position)
 
 
-def _answer(action: Callable[[], str]) -> Tuple[bool, str]:
-    try:
-        return True, action()
-    except (FrameError, WorldError) as error:
-        return False, str(error)
+def _pose_of(request: Any) -> Pose3D:
+    return convert.from_pose_msg_3d(request.pose, unset_is_level=True)
+
+
+def _answering(action: Callable[[Any], str]) -> Callable[[Any], Tuple[bool, str]]:
+    """A service's function: request -> success, and what was done or why it was not."""
+
+    def answer(request: Any) -> Tuple[bool, str]:
+        try:
+            return True, action(request)
+        except (FrameError, WorldError) as error:
+            return False, str(error)
+
+    return answer

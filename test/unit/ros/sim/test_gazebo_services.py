@@ -24,6 +24,7 @@ class _AnyType(ModuleType):
 def _services(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     for name in ("gazebo_msgs", "gazebo_msgs.msg", "gazebo_msgs.srv"):
         monkeypatch.setitem(sys.modules, name, _AnyType(name))
+    vars(sys.modules["gazebo_msgs"])["srv"] = sys.modules["gazebo_msgs.srv"]
     yield importlib.import_module("aro_robocop_goto_as.ros.sim.gazebo_services")
     for name in ("gazebo_services", "gazebo_properties"):
         sys.modules.pop(f"aro_robocop_goto_as.ros.sim.{name}")
