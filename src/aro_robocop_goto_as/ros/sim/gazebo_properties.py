@@ -11,11 +11,11 @@ from gazebo_msgs.msg import LinkState
 from geometry_msgs.msg import Vector3
 
 from ...errors import FrameError, PlaceError, WorldError
-from ...geometry import STANDARD_GRAVITY, STANDSTILL, Pose3D, compose3, inverse3
+from ...geometry import STANDARD_GRAVITY, STANDSTILL
 from ...robot.model import WHEEL_JOINTS
 from ...simulation.simulation import Simulation
 from .. import convert
-from .gazebo_topics import WORLD_FRAMES, State, in_gazebo, links, relative_twist
+from .gazebo_topics import State, links, relative, state_of
 
 SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
 GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
@@ -75,32 +75,19 @@ class GazeboProperties:
     # -- in the owner's thread --
 
     def _link(self, name: str) -> State:
-        """Name, pose and twist of a link or of the world; FrameError if there is no such link.
+        """The state of a link or of the world; FrameError if there is no such link.
 
         The links of the world's models are not kept apart: each is where its model is, as on /gazebo/link_states.
         """
-        standing = convert.to_twist_msg(STANDSTILL)
-        if name in WORLD_FRAMES:
-            return name, in_gazebo(Pose3D(), -self._simulator.world.ground), standing
-        known = {state[0]: state for state in links(self._simulator)}
+        known = links(self._simulator)
         model = name.partition("::")[0]
-        if name not in known and model != name and model in self._simulator.world.models:
-            return name, self._simulator.world.models[model], standing
-        if name not in known:
-            raise FrameError(f"link [{name}] does not exist; there are: {', '.join(known)}")
-        return known[name]
+        if model != name and model in self._simulator.world.models:
+            known.append((name, self._simulator.world.models[model], convert.to_twist_msg(STANDSTILL)))
+        return state_of("link", name, known, self._simulator.world.ground)
 
     def _get_link_state(self, request: Any) -> Tuple[LinkState, bool, str]:
-        _, world_from_link, twist = self._link(request.link_name)
-        _, world_from_reference, of_reference = self._link(request.reference_frame)
-        pose = compose3(inverse3(world_from_reference), world_from_link)
-        yaw = world_from_reference.on_plane().yaw
-        state = LinkState(
-            request.link_name,
-            convert.to_pose_msg(pose),
-            relative_twist(twist, of_reference, yaw),
-            request.reference_frame or "world",
-        )
+        pose, twist = relative(self._link(request.link_name), self._link(request.reference_frame))
+        state = LinkState(request.link_name, pose, twist, request.reference_frame or "world")
         return state, True, "GetLinkState: got state"
 
     def _get_model_properties(self, request: Any) -> Dict[str, Any]:

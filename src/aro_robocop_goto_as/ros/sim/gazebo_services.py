@@ -8,17 +8,16 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 import rospy
 from gazebo_msgs import srv
 from gazebo_msgs.msg import ModelState
-from geometry_msgs.msg import Twist
 from std_msgs.msg import Header
 from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError, PlaceError, WorldError
-from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted
+from ...geometry import STANDSTILL, compose3
 from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
 from .gazebo_properties import GazeboProperties, serve
-from .gazebo_topics import WORLD_FRAMES, in_gazebo, relative_twist, world_twist
+from .gazebo_topics import State, models, relative, state_of
 from .world_services import WorldServices
 
 
@@ -72,47 +71,24 @@ class GazeboServices:
 
     # -- in the owner's thread --
 
-    def _world_from(self, name: str) -> Pose3D:
-        """Pose of a model or robot; FrameError if it does not exist. 'model::link' means its model here.
-
-        Poses are those of the simulator, in which the ground is at z = 0. Gazebo's world has its z = 0 below that.
-        """
-        model = name.partition("::")[0]
-        if model in WORLD_FRAMES:
-            return in_gazebo(Pose3D(), -self._simulator.world.ground)
-        if model in self._names:
-            return lifted(self._simulator.world_from_footprint(self._names.index(model)))
-        if model in self._simulator.world.models:
-            return self._simulator.world.models[model]
-        raise FrameError(f"model [{name}] does not exist; there are: {', '.join(self._model_names())}")
-
-    def _model_names(self) -> List[str]:
-        return [*self._simulator.world.models, *self._names]
+    def _state(self, name: str) -> State:
+        """The state of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
+        return state_of("model", name.partition("::")[0], models(self._simulator), self._simulator.world.ground)
 
     def _get_model_state(self, request: Any) -> Dict[str, Any]:
-        name, reference = request.model_name, request.relative_entity_name
-        reference_from = inverse3(self._world_from(reference))
+        reference = request.relative_entity_name
+        pose, twist = relative(self._state(request.model_name), self._state(reference))
         return {
             "header": Header(0, convert.to_time(self._simulator.stamp_ns), reference or "world"),
-            "pose": convert.to_pose_msg(compose3(reference_from, self._world_from(name))),
-            "twist": self._twist(name, reference),
+            "pose": pose,
+            "twist": twist,
             "success": True,
             "status_message": "GetModelState: got properties",
         }
 
-    def _twist(self, name: str, reference: str) -> Twist:
-        """Velocity of a model relative to that of a reference, in the reference's axes."""
-        yaw = self._world_from(reference).on_plane().yaw
-        return relative_twist(self._world_twist(name), self._world_twist(reference), yaw)
-
-    def _world_twist(self, name: str) -> Twist:
-        if name not in self._names:
-            return Twist()  # Models of the world stand still, also those whose obstacles move.
-        self._simulator.engine.read()
-        return world_twist(self._simulator.fleet.state(self._names.index(name)))
-
     def _set_model_state(self, requested: ModelState) -> Tuple[bool, str]:
-        target = compose3(self._world_from(requested.reference_frame), convert.from_pose_msg_3d(requested.pose, True))
+        _, reference, _ = self._state(requested.reference_frame)
+        target = compose3(reference, convert.from_pose_msg_3d(requested.pose, True))
         self._changes()
         name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
@@ -123,7 +99,8 @@ class GazeboServices:
         return True, done + ("; its twist is ignored, only /cmd_vel moves a robot" if moving else "")
 
     def _get_world_properties(self, _request: Any) -> Tuple[float, List[str], bool, bool, str]:
-        return self._simulator.time, self._model_names(), False, True, "GetWorldProperties: got properties"
+        names = [name for name, _, _ in models(self._simulator)]
+        return self._simulator.time, names, False, True, "GetWorldProperties: got properties"
 
     # -- in rospy's threads, where models are read --
 
@@ -135,7 +112,7 @@ class GazeboServices:
 
     def _on_spawn(self, request: Any) -> Tuple[bool, str]:
         try:
-            reference = self._simulation.jobs.call(lambda: self._world_from(request.reference_frame))
+            _, reference, _ = self._simulation.jobs.call(lambda: self._state(request.reference_frame))
             changes = self._changes()
             if request.model_name in self._names:
                 raise WorldError(f"model name [{request.model_name}] is already used by a robot")

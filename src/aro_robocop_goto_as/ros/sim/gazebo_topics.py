@@ -5,14 +5,15 @@ types of the same name and md5sum are the same.
 """
 
 import math
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Sequence, Tuple
 
 import genpy.dynamic
 import rospy
 from geometry_msgs.msg import Pose, Twist, Vector3
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from ...geometry import STANDSTILL, Pose3D, compose3, lifted, quaternion_from_rpy
+from ...errors import FrameError
+from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted, quaternion_from_rpy
 from ...robot.fleet import RobotState
 from ...robot.model import WHEEL_JOINTS, RobotModel
 from ...simulation.simulator import Simulator
@@ -52,7 +53,7 @@ class GazeboTopics:
     def publish(self, simulator: Simulator) -> None:
         """All models and robots as they are now."""
         if self._models.get_num_connections():
-            self._models.publish(to_message(self._types["ModelStates"], _models(simulator), simulator.world.ground))
+            self._models.publish(to_message(self._types["ModelStates"], models(simulator), simulator.world.ground))
         if self._links.get_num_connections():
             self._links.publish(to_message(self._types["LinkStates"], links(simulator), simulator.world.ground))
 
@@ -79,7 +80,7 @@ def _robots(simulator: Simulator) -> List[Tuple[str, RobotModel, RobotState]]:
     ]
 
 
-def world_twist(state: RobotState) -> Twist:
+def _world_twist(state: RobotState) -> Twist:
     """A robot's twist in the world's axes, as Gazebo gives it."""
     v, yaw = state.twist.v, state.world_from_footprint.yaw
     return Twist(Vector3(v * math.cos(yaw), v * math.sin(yaw), 0.0), Vector3(0.0, 0.0, state.twist.w))
@@ -91,21 +92,35 @@ def in_gazebo(pose: Pose3D, ground: float) -> Pose3D:
     return Pose3D((x, y, z + ground), pose.orientation)
 
 
-def relative_twist(moving: Twist, frame: Twist, yaw: float) -> Twist:
-    """The velocity of something relative to that of a frame, in the frame's axes; both in the world, as in gazebo_ros.
+def state_of(kind: str, name: str, states: Sequence[State], ground: float) -> State:
+    """The state of a model or link, whichever the states are, or of Gazebo's world itself.
 
-    yaw: of the frame in the world [rad]
+    Poses are those of the simulator, in which the ground is at z = 0; Gazebo's world has its z = 0 `ground` [m] below.
+    FrameError if there is none of that name.
     """
-    vx, vy = moving.linear.x - frame.linear.x, moving.linear.y - frame.linear.y
+    if name in WORLD_FRAMES:
+        return name, in_gazebo(Pose3D(), -ground), convert.to_twist_msg(STANDSTILL)
+    known = {state[0]: state for state in states}
+    if name not in known:
+        raise FrameError(f"{kind} [{name}] does not exist; there are: {', '.join(known)}")
+    return known[name]
+
+
+def relative(moving: State, frame: State) -> Tuple[Pose, Twist]:
+    """Pose and velocity of something relative to a frame, in the frame's axes, as in gazebo_ros."""
+    (_, pose, twist), (_, origin, of_origin) = moving, frame
+    vx, vy = twist.linear.x - of_origin.linear.x, twist.linear.y - of_origin.linear.y
+    yaw, w = origin.on_plane().yaw, twist.angular.z - of_origin.angular.z
     c, s = math.cos(yaw), math.sin(yaw)
-    return Twist(Vector3(c * vx + s * vy, c * vy - s * vx, 0.0), Vector3(0.0, 0.0, moving.angular.z - frame.angular.z))
+    turned = Twist(Vector3(c * vx + s * vy, c * vy - s * vx, 0.0), Vector3(0.0, 0.0, w))
+    return convert.to_pose_msg(compose3(inverse3(origin), pose)), turned
 
 
-def _models(simulator: Simulator) -> List[State]:
+def models(simulator: Simulator) -> List[State]:
     """Models of the world stand still, also those whose obstacles move."""
     standing = convert.to_twist_msg(STANDSTILL)
     found = [(name, pose, standing) for name, pose in simulator.world.models.items()]
-    found += [(name, lifted(state.world_from_footprint), world_twist(state)) for name, _, state in _robots(simulator)]
+    found += [(name, lifted(state.world_from_footprint), _world_twist(state)) for name, _, state in _robots(simulator)]
     return found
 
 
@@ -115,10 +130,10 @@ def links(simulator: Simulator) -> List[State]:
     found = [(f"{name}::link", pose, standing) for name, pose in simulator.world.models.items()]
     for name, model, state in _robots(simulator):
         base = lifted(state.world_from_footprint)
-        found.append((f"{name}::base_footprint", base, world_twist(state)))
+        found.append((f"{name}::base_footprint", base, _world_twist(state)))
         for joint, side, angle in zip(WHEEL_JOINTS, (0.5, -0.5), state.wheel_angles):
             spun = Pose3D(
                 (0.0, side * model.wheel_separation, model.wheel_radius), quaternion_from_rpy(0.0, angle, 0.0)
             )
-            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), world_twist(state)))
+            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), _world_twist(state)))
     return found

@@ -5,6 +5,7 @@ from io import BytesIO
 from typing import Callable
 
 import pytest
+from support import drive
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.ros.sim import gazebo_topics
@@ -25,7 +26,7 @@ def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make
     sim.command(Twist2D(0.2, 0.0))
     for _ in range(24):
         sim.step({})
-    models = {name: (pose, twist) for name, pose, twist in gazebo_topics._models(sim)}
+    models = {name: (pose, twist) for name, pose, twist in gazebo_topics.models(sim)}
     assert set(models) == {*sim.world.models, "robot_1"}
     pose, twist = models["robot_1"]
     assert pose.position == pytest.approx((1.0, -0.98, 0.0), abs=1e-9)
@@ -35,5 +36,23 @@ def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make
     assert links["robot_1::wheel_right_link"].position == pytest.approx((1.08, -0.98, 0.033), abs=1e-9)
     content = BytesIO()
     kind = gazebo_topics.message_type("ModelStates")
-    gazebo_topics.to_message(kind, gazebo_topics._models(sim)).serialize(content)
+    gazebo_topics.to_message(kind, gazebo_topics.models(sim)).serialize(content)
     assert b"robot_1" in content.getvalue()
+
+
+@pytest.mark.parametrize(
+    "reference, expected",
+    [("", (0.0, 0.2)), ("world", (0.0, 0.2)), ("robot_1", (0.0, 0.0)), ("robot_2", (0.3, 0.0))],
+)
+def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
+    simulator: Make, reference: str, expected: "tuple[float, float]"
+) -> None:
+    # Both face along y; the second one backs up.
+    ahead, aside = Pose2D(0.0, 0.0, math.pi / 2.0), Pose2D(2.0, 0.0, math.pi / 2.0)
+    sim = simulator("empty", ahead, aside, drive="kinematic", max_linear_acceleration=1e3)
+    sim.command(Twist2D(-0.1, 0.0), 1)
+    drive(sim, Twist2D(0.2, 0.0), 0.1)
+    states = gazebo_topics.models(sim)
+    moving, frame = (gazebo_topics.state_of("model", name, states, 0.0) for name in ("robot_1", reference))
+    _, twist = gazebo_topics.relative(moving, frame)
+    assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((*expected, 0.0), abs=1e-6)
