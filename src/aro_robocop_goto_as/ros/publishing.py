@@ -23,21 +23,6 @@ class Outlet(NamedTuple):
     descriptor: int
 
 
-class _ConnectionListener(rospy.SubscribeListener):
-    """rospy calls it for each subscriber that has connected or disconnected."""
-
-    def __init__(self, on_change: Callable[[], None]) -> None:
-        self.on_change = on_change
-
-    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """A subscriber has connected."""
-        self.on_change()
-
-    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """A subscriber has disconnected."""
-        self.on_change()
-
-
 class DirectPublisher(rospy.Publisher):
     """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss."""
 
@@ -49,7 +34,8 @@ class DirectPublisher(rospy.Publisher):
             self._update_outlets()
             on_change()
 
-        listener = _ConnectionListener(changed)
+        listener = rospy.SubscribeListener()
+        listener.peer_subscribe = listener.peer_unsubscribe = lambda *_: changed()
         super().__init__(topic, kind, subscriber_listener=listener, latch=latch, queue_size=None)
         changed()  # for a subscriber that connected before the listener was there
 

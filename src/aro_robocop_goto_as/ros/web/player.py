@@ -33,20 +33,6 @@ class _Clock(NamedTuple):
         return self.at + (time.monotonic() - self.since) * self.speed if self.playing else self.at
 
 
-class _Newcomers(rospy.SubscribeListener):
-    """Collects subscribers that have just connected, with what publishes to each of them alone."""
-
-    def __init__(self, found: Callable[[str, Callable[[Any], None]], None]) -> None:
-        self._found = found
-
-    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
-        """A subscriber has connected."""
-        self._found(topic_name, peer_publish)
-
-    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
-        """A subscriber has disconnected."""
-
-
 class Player:
     """Publishes from a thread of its own, once it is to begin; late subscribers get the present state."""
 
@@ -120,11 +106,13 @@ class Player:
         """Publish the topics, and play. The node has to be initialized."""
         for name in self._topics:
             _, message, _ = next(self._bag.read_messages(topics=[name]))
-            listener = _Newcomers(self._greet)
+            listener = rospy.SubscribeListener()
+            listener.peer_subscribe = self._greet
             self._publishers[name] = rospy.Publisher(name, type(message), listener, queue_size=QUEUE)
         threading.Thread(target=self._work, daemon=True, name="player").start()
 
-    def _greet(self, topic: str, publish: Callable[[Any], None]) -> None:
+    def _greet(self, topic: str, _to_all: Any, publish: Callable[[Any], None]) -> None:
+        """A subscriber has connected, to which alone this publishes."""
         with self._changed:
             self._newcomers.append((topic, publish))
             self._changed.notify()
