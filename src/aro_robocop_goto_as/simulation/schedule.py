@@ -1,6 +1,6 @@
 """The steps on which sensors and ticks are due, in integer arithmetic, so that nothing drifts."""
 
-from typing import List, Mapping, NamedTuple, Tuple
+from typing import List, Mapping, Tuple
 
 NANOSECONDS = 1000000000
 
@@ -19,13 +19,6 @@ def due(step: int, rate: int, physics_rate: int) -> bool:
     return (step * rate) // physics_rate != ((step - 1) * rate) // physics_rate
 
 
-class Due(NamedTuple):
-    """The next step on which something is due: how many steps it is ahead, and what is due."""
-
-    steps: int
-    names: Tuple[str, ...]  # in the order of the schedule
-
-
 class Schedule:
     """What is due when; every second is alike, as all rates are whole numbers."""
 
@@ -36,13 +29,13 @@ class Schedule:
             tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
             for step in range(1, physics_rate + 1)
         ]
-        self._after: List[Due] = []  # by the number of the step within its second
-        first = next(filter(None, names))
-        following = Due(names.index(first) + 1, first)
+        self._after: List[Tuple[int, Tuple[str, ...]]] = []  # by the number of the step within its second
+        following = next(filter(None, names))
+        steps = names.index(following) + 1
         for step in reversed(range(physics_rate)):
-            following = Due(1, names[step]) if names[step] else Due(following.steps + 1, following.names)
-            self._after.insert(0, following)
+            steps, following = (1, names[step]) if names[step] else (steps + 1, following)
+            self._after.insert(0, (steps, following))
 
-    def after(self, step: int) -> Due:
-        """What is due first after a step."""
+    def after(self, step: int) -> Tuple[int, Tuple[str, ...]]:
+        """How many steps after this one something is due, and what it is, in the order of the rates."""
         return self._after[step % self._physics_rate]

@@ -73,7 +73,7 @@ def _raw_keys(terminal: int) -> Iterator[None]:
             termios.tcsetattr(terminal, termios.TCSANOW, before)
 
 
-class Teleop:
+class KeyboardTeleop:
     """Publishes the held key's velocity, and zero once when it is released, so that goals are not disturbed."""
 
     def __init__(self, topic: str, linear: float, angular: float) -> None:
@@ -156,7 +156,7 @@ def main() -> None:
         # Wall time: a paused simulator must not keep keys from being read.
         log_handlers.use()
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
-        teleop = Teleop(absolute(args.robot, "cmd_vel"), args.linear, args.angular)
+        teleop = KeyboardTeleop(absolute(args.robot, "cmd_vel"), args.linear, args.angular)
         with _raw_keys(terminal):
             print(HELP, flush=True)
             teleop.run(terminal)

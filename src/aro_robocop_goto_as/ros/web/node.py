@@ -31,11 +31,11 @@ from .plots import Plots, RecordedPlots
 from .replay import Replay
 from .requests import Requests
 from .robots import Robots
+from .scenery import Scenery
 from .server import start_server
-from .simulation import Simulation
 from .status import Status
-from .surroundings import Surroundings
 from .teleop import Teleop
+from .time_controls import TimeControls
 from .topics import Topics
 from .view import View
 
@@ -73,7 +73,7 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
-        parts += [Simulation(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
+        parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
     with tabs.add_tab("Plots"):
         parts.append(Plots(context) if player is None else RecordedPlots(context, player, failed))
         if not p.view_only:
@@ -103,7 +103,7 @@ class WebNode:
         context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
         status = Status(context)
-        self._parts = [Robots(context), status, *add_parts(context, p, player), Surroundings(context)]
+        self._parts = [Robots(context), status, *add_parts(context, p, player), Scenery(context)]
         self._system, self._detail = Inbox(), Inbox()  # topics of the system, of the selected robot
         self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are
         self._asked = 0.0  # [s, wall] when the parts asked the master last

@@ -21,7 +21,7 @@ SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
 
 
-class Surroundings(Part):
+class Scenery(Part):
     """Scan and map wait until their frames are known, and are drawn once."""
 
     def __init__(self, context: Context) -> None:

@@ -16,7 +16,7 @@ from .part import Context, Part
 STEP = 0.1  # [s] of simulated time: one control tick
 
 
-class Simulation(Part):
+class TimeControls(Part):
     """Pause, run, step, reset (with the same seed) and the real-time factor; hidden where there is no simulator."""
 
     def __init__(self, context: Context) -> None:
