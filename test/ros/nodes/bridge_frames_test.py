@@ -97,6 +97,28 @@ class BridgeFrames(SystemTest):
         self.assertAlmostEqual(self.sent()[0].x, 0.1, delta=0.001)
         self.goals.of_others()[0].result("REACHED")
 
+    def test_transforms_of_an_intruder_change_no_goal(self):
+        self.goals.send(0.2, -0.2).result("REACHED")
+        start = self.robot.wait_until_it_stands()
+        self.goals.clear()
+        tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        wait_for_subscriber(tf, BRIDGE)
+        ahead = Header(0, rospy.Time.now() + rospy.Duration(3600.0), "odom")
+        tf.publish([TransformStamped(ahead, "base_footprint", Transform(rotation=Quaternion(w=1.0)))])
+        now = Header(0, rospy.Time.now(), "base_footprint")
+        tf.publish([TransformStamped(now, "odom", Transform(rotation=Quaternion(w=1.0)))])  # that of map -> odom is static
+        for text in ("ahead of", "says on /tf_static where 'odom' is"):
+            self.goals.log.wait_for(lambda m, text=text: "ignoring transform" in m.msg and text in m.msg, text)
+        expected = compose(compose(Pose2D(-SPAWN.x, -SPAWN.y), start), Pose2D(0.2, 0.1))
+        self.clicks.click(0.2, 0.1, "base_footprint")
+        goal = self.sent()[0]
+        self.assertLess(distance(goal, expected), 0.02)
+        self.goals.of_others()[0].result("REACHED")
+        self.goals.clear()
+        self.clicks.click(-0.4, 0.2, "map")
+        self.assertAlmostEqual(self.sent()[0].x, 0.3, places=6)
+        self.goals.of_others()[0].result("REACHED")
+
     def test_goal_in_an_unknown_frame_is_refused_with_the_names_of_both_frames(self):
         self.clicks.click(0.5, 0.0, "kitchen")
         self.assert_refused("'kitchen'", "'odom'")

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Without an odom -> base_footprint transform on TF, the bridge uses the pose of the odometry messages."""
 
+import rospy
 from clicks import Clicks
-from harness import Recorder, SystemTest, distance, run, wait_for
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from harness import BRIDGE, Recorder, SystemTest, distance, run, wait_for, wait_for_subscriber
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
@@ -31,6 +34,21 @@ class BridgeWithoutOdomTf(SystemTest):
         frames = {t.child_frame_id for m in self.tf.messages for t in m.transforms}
         self.assertNotIn("base_footprint", frames)
         self.assertIn("wheel_left_link", frames)
+
+    def test_odometry_is_used_when_the_publisher_of_a_transform_has_left(self):
+        tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        wait_for_subscriber(tf, BRIDGE)
+        left = rospy.Time.now()
+        wrong = Transform(Vector3(x=3.0), Quaternion(w=1.0))
+        tf.publish([TransformStamped(Header(0, left, "odom"), "base_footprint", wrong)])
+        self.tf.wait_for(lambda m: any(t.child_frame_id == "base_footprint" for t in m.transforms), "the transform")
+        tf.unregister()
+        self.robot.odom.wait_for(lambda m: (m.header.stamp - left).to_sec() > 1.0, "odometry of one second later")
+        self.tf.clear()
+        self.clicks.click(0.2, 0.0, "base_footprint", rospy.Time.now())
+        goal = self.goal_of_the_bridge()
+        self.assertLess(distance(self.goals.sent.messages[-1].goal.position, Pose2D(0.2, 0.0)), NEAR)
+        goal.result("REACHED")
 
     def test_goal_in_map_is_reached(self):
         self.clicks.click(-0.5, -0.2, "map")

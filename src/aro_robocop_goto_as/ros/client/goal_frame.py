@@ -34,9 +34,10 @@ class GoalTransformer:
     def resolve(self, pose: PoseStamped) -> Point:
         """The pose's position in goal_frame at the pose's stamp.
 
-        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, then uses the latest one. Where TF does
-        not connect the frames but the latest odometry does, uses that without waiting. FrameError if the frames are not
-        connected, and for a position that is not finite or beyond FARTHEST, before or after the transform.
+        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, then uses the latest one: TF's, or that
+        of the odometry if it connects the frames and is newer. Where TF does not connect them but the odometry does,
+        uses that without waiting. FrameError if the frames are not connected, and for a position that is not finite or
+        beyond FARTHEST, before or after the transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)
@@ -53,13 +54,16 @@ class GoalTransformer:
 
     def _transform(self, point: Point, frame: str, stamp: rospy.Time) -> Point:
         def at_stamp() -> Optional[Point]:
-            return self._by_tf(point, frame, stamp) if self._connects(frame, stamp) else self._by_odometry(point, frame)
+            if self._connects(frame, stamp):
+                return self._by_tf(point, frame, stamp)
+            odom = self._odometry_of(frame)
+            return None if odom is None or self._connects(frame, rospy.Time(0)) else _by_odometry(point, odom)
 
         try:
             position = wait_until(at_stamp, self.timeout, POLL)
             if position is not None:
                 return position
-            position = self._by_tf(point, frame, rospy.Time(0))
+            position = self._by_latest(point, frame)
         except tf2_ros.TransformException as error:
             within = f"within {self.timeout:g} s: {error}"
             raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} {within}") from error
@@ -73,20 +77,30 @@ class GoalTransformer:
         transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp)
         return tf2_geometry_msgs.do_transform_point(PointStamped(point=point), transform).point
 
+    def _by_latest(self, point: Point, frame: str) -> Point:
+        """The transformed point by TF, or by the odometry if that is newer: TF's publisher may have left."""
+        odom = self._odometry_of(frame)
+        newest = self.buffer.lookup_transform(self.goal_frame, frame, rospy.Time(0)).header.stamp
+        if odom is not None and odom.header.stamp > newest:
+            return _by_odometry(point, odom)
+        return self._by_tf(point, frame, rospy.Time(0))
+
     def _connects(self, frame: str, stamp: rospy.Time) -> bool:
         """Whether TF connects a frame with goal_frame at a stamp; does not wait."""
         return is_possible(stamp) and bool(self.buffer.can_transform(self.goal_frame, frame, stamp))
 
-    def _by_odometry(self, point: Point, frame: str) -> Optional[Point]:
-        """The transformed point if the latest odometry connects exactly these two frames, and TF does not."""
+    def _odometry_of(self, frame: str) -> Optional[Odometry]:
+        """The latest odometry if it connects exactly these two frames."""
         odom = self.latest_odom()
-        if odom is None or (odom.header.frame_id, odom.child_frame_id) != (self.goal_frame, frame):
-            return None
-        if self._connects(frame, rospy.Time(0)):
-            return None
-        try:
-            goal_from_frame = convert.from_pose_msg(odom.pose.pose)
-        except FrameError as error:
-            raise FrameError(f"odometry holds an impossible pose of {frame!r}: {error}") from error
-        goal = compose(goal_from_frame, Pose2D(point.x, point.y))
-        return Point(goal.x, goal.y, point.z)
+        connects = odom is not None and (odom.header.frame_id, odom.child_frame_id) == (self.goal_frame, frame)
+        return odom if connects else None
+
+
+def _by_odometry(point: Point, odom: Odometry) -> Point:
+    """A point in the odometry's child frame, transformed into its frame."""
+    try:
+        goal_from_frame = convert.from_pose_msg(odom.pose.pose)
+    except FrameError as error:
+        raise FrameError(f"odometry holds an impossible pose of {odom.child_frame_id!r}: {error}") from error
+    goal = compose(goal_from_frame, Pose2D(point.x, point.y))
+    return Point(goal.x, goal.y, point.z)
