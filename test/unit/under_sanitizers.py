@@ -24,6 +24,7 @@ from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.covariances import imu_covariances
 from aro_robocop_goto_as.ros.outbox import Batch
+from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import (
     DOUBLES,
     Field,
@@ -36,7 +37,6 @@ from aro_robocop_goto_as.ros.packed import (
     packed_scan,
     packed_transforms,
 )
-from aro_robocop_goto_as.ros.publishing import Outlet
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
@@ -120,7 +120,7 @@ def drives(random: np.random.Generator, engine: KinematicEngine) -> None:
 def messages(random: np.random.Generator) -> None:
     """Fill and send messages of all kinds."""
     near, far = socket.socketpair()
-    topic: Any = SimpleNamespace(outlets=(Outlet(SimpleNamespace(), near, near.fileno()),), impl=None)
+    topic: Any = SimpleNamespace(outlets=(Outlet(SimpleNamespace(), near),), impl=None)
     rows = random.choice(PLACES, (4, 10))
     covariances = imu_covariances(ImuParams(), real=True)
     made = [

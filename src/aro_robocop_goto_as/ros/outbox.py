@@ -5,20 +5,17 @@ a system call that releases and takes the interpreter's lock, for each message a
 """
 
 import ctypes
-import errno
 import functools
-import socket
 import threading
 from typing import Any, Sequence, Set, Tuple
 
 from .. import compiled
 from ..compiled import members
 from .packed import PackedMessage
-from .publishing import DirectPublisher, Outlet
+from .publishing import DirectPublisher
 from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
 
-VERSION = 3  # of sender.c
-LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
+VERSION = 4  # of sender.c
 
 Posted = Tuple[DirectPublisher, PackedMessage]
 
@@ -32,7 +29,7 @@ class _FieldStruct(ctypes.Structure):
 class _ParcelStruct(ctypes.Structure):
     """`struct parcel` of sender.c."""
 
-    _fields_ = [("data", ctypes.c_void_p), *members(ctypes.c_int64, "size socket taken")]
+    _fields_ = [*members(ctypes.c_void_p, "data stands"), *members(ctypes.c_int64, "size socket taken")]
 
 
 class _BatchStruct(ctypes.Structure):
@@ -70,7 +67,8 @@ class Batch:
             for field in message.fields
         ]
         parcels = [
-            _ParcelStruct(message.address, message.size, outlet.descriptor) for _, message, outlet in self._parcels
+            _ParcelStruct(message.address, outlet.address, message.size, outlet.descriptor)
+            for _, message, outlet in self._parcels
         ]
         self._struct = _BatchStruct(
             len(fields),
@@ -87,8 +85,8 @@ class Batch:
     def send(self, stamp_ns: int) -> None:
         """Send everything at a simulated time [ns].
 
-        A subscriber that takes nothing for publishing.STALL_LIMIT is disconnected. While one is waited for, that time
-        passes for the others, too: a stopped node can have many topics.
+        A subscriber that takes nothing for publishing.STALL_LIMIT misses messages until it reads again. While one is
+        waited for, that time passes for the others, too: a stopped node can have many topics.
         """
         self._times += 1
         with self._lock:
@@ -96,17 +94,19 @@ class Batch:
                 self._finish()
 
     def _finish(self) -> None:
-        """Send the rest of what was not sent whole; a subscriber for which that fails is disconnected."""
+        """Send the rest of what was not sent whole; a subscriber that is gone is disconnected."""
         lost: Set[int] = set()  # ids of connections
         patient = True
         for (topic, message, outlet), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
             if parcel.taken != message.size and id(outlet.connection) not in lost:
+                stood = outlet.stands_still
                 try:
-                    _finish_one(outlet, message, parcel.taken, patient)
-                except OSError as error:  # as rospy: this subscriber is lost, and only this one
+                    sent = outlet.finish(message.data.data, parcel.taken, patient)
+                except OSError:  # as rospy: this subscriber is lost, and only this one
                     lost.add(id(outlet.connection))
                     disconnect(topic, outlet.connection)
-                    patient = patient and not isinstance(error, BlockingIOError)
+                else:
+                    patient = patient and (sent or stood)
 
     def count(self) -> None:
         """Update rospy's statistics of these topics and connections."""
@@ -115,16 +115,3 @@ class Batch:
             count_messages(topic, times, message.size)
         for _, message, outlet in self._parcels:
             count_sent(outlet.connection, times, message.size)
-
-
-def _finish_one(outlet: Outlet, message: PackedMessage, taken: int, patient: bool) -> None:
-    """Send the rest of a message of which `taken` bytes were sent, or raise the OSError -taken.
-
-    BlockingIOError if the subscriber has stalled: without patience at once, if it takes nothing more.
-    """
-    if taken < 0 and taken not in LATER:
-        raise OSError(-taken, "send")
-    rest = message.data.data[max(0, taken) :]
-    if not patient:
-        rest = rest[outlet.socket.send(rest, socket.MSG_DONTWAIT) :]
-    outlet.socket.sendall(rest)

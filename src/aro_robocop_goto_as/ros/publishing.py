@@ -1,26 +1,22 @@
-"""Publishers that lose nothing: each message is written to its subscribers before the next step is simulated."""
+"""Publishers that wait: each message is written to the subscribers that read before the next step is simulated."""
 
 import errno
 import socket
 import struct
 import threading
 import warnings
+import weakref
 from contextlib import suppress
-from typing import Any, Callable, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 
-from .rospy_internals import connections_of
+from .outlet import Outlet
+from .rospy_internals import connections_of, send_latched, write_with
 
-STALL_LIMIT = 2  # [s, wall] after which a subscriber that accepts no data is disconnected, so that it cannot block us
+STALL_LIMIT = 2  # [s, wall] without taking any data, after which a subscriber is not waited for until it reads again
 
-
-class Outlet(NamedTuple):
-    """A subscriber's connection, with a duplicate of its socket that stays open even if the connection is closed."""
-
-    connection: Any
-    socket: socket.socket
-    descriptor: int
+_publishers: "weakref.WeakSet[DirectPublisher]" = weakref.WeakSet()
 
 
 class DirectPublisher(rospy.Publisher):
@@ -38,6 +34,7 @@ class DirectPublisher(rospy.Publisher):
         listener.peer_subscribe = listener.peer_unsubscribe = lambda *_: changed()
         super().__init__(topic, kind, subscriber_listener=listener, latch=latch, queue_size=None)
         changed()  # for a subscriber that connected before the listener was there
+        _publishers.add(self)
 
     def _update_outlets(self) -> None:
         with self._outlets_lock:
@@ -47,6 +44,22 @@ class DirectPublisher(rospy.Publisher):
                 for connection, connected in connections_of(self)
             ]
             self.outlets = tuple(outlet for outlet in found if outlet is not None)
+
+    def resume(self) -> None:
+        """Send the latched message, which they have missed, to subscribers that stood still and read again."""
+        for outlet in self.outlets:
+            if outlet.stands_still:
+                with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
+                    send_latched(self, outlet.connection, outlet.push_rest)
+
+
+def resume() -> None:
+    """Go on with the subscribers that stood still; for topics that are published seldom, as others do it themselves.
+
+    The thread that publishes calls it now and then.
+    """
+    for topic in list(_publishers):
+        topic.resume()
 
 
 def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
@@ -65,7 +78,9 @@ def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
             with suppress(OSError):
                 connected.shutdown(socket.SHUT_RDWR)  # rospy notices that, and forgets it
         return None
-    return Outlet(connection, duplicate, duplicate.fileno())
+    outlet = Outlet(connection, duplicate)
+    write_with(connection, weakref.WeakMethod(outlet.write))
+    return outlet
 
 
 def publisher(

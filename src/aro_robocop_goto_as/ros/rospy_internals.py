@@ -3,9 +3,11 @@
 import contextlib
 import socket
 import threading
-from typing import Any, List, Optional, Set, Tuple
+import weakref
+from typing import Any, Callable, List, Optional, Set, Tuple
 
 import rospy
+from rospy.exceptions import TransportTerminated
 
 
 def sender(message: Any) -> str:
@@ -79,6 +81,31 @@ def latch_lock(publisher: rospy.Publisher) -> Optional[threading.RLock]:
 def set_latched(publisher: rospy.Publisher, message: Any) -> None:
     """Set the message that a latching topic sends to new subscribers: anything with genpy's serialize()."""
     publisher.impl.latch = message
+
+
+def send_latched(publisher: rospy.Publisher, connection: Any, is_ready: Callable[[], bool]) -> None:
+    """Send the message of a latching topic to one subscriber, as rospy does to a new one, if that is ready for it."""
+    topic = publisher.impl
+    lock = None if topic is None else topic.publock  # None: closed
+    if topic is not None and lock is not None:
+        with lock:
+            if is_ready() and topic.is_latch and topic.latch is not None:
+                topic.publish(topic.latch, connection_override=connection)
+
+
+def write_with(connection: Any, method: "weakref.WeakMethod[Callable[[bytes], None]]") -> None:
+    """Have rospy write a connection's messages with a method, which must outlive the connection's use.
+
+    rospy's own one closes the connection of a subscriber that takes no data for a while, in the middle of a message.
+    """
+
+    def write_data(data: bytes) -> None:
+        write = method()
+        if write is None:
+            raise TransportTerminated("connection closed")
+        write(data)
+
+    connection.write_data = write_data
 
 
 def message_definition(kind: Any) -> Tuple[str, str]:

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-#define ARO_SENDER_VERSION 3
+#define ARO_SENDER_VERSION 4
 #define NANOSECONDS 1000000000
 
 /* What a field of a message is made of */
@@ -33,6 +33,7 @@ struct field {
 /* A message for one subscriber. */
 struct parcel {
     const uint8_t *data;
+    const int64_t *stands; /* whether the subscriber has stopped reading: it gets nothing here */
     int64_t size, socket;
     int64_t taken; /* bytes that the socket took, or -errno */
 };
@@ -97,16 +98,20 @@ static int is_behind_another(const struct batch *batch, int64_t i)
 }
 
 /* Fill and send the messages of a step at simulated time stamp_ns [ns], as far as the sockets take them without waiting.
- * Returns how many parcels are not sent whole. */
+ * Returns how many parcels are not sent whole. Those of subscribers that stand still delay no others. */
 int64_t aro_send(struct batch *batch, int64_t stamp_ns)
 {
     uint32_t stamp[2] = {(uint32_t)(stamp_ns / NANOSECONDS), (uint32_t)(stamp_ns % NANOSECONDS)};
-    int64_t i, incomplete = 0;
+    int64_t i, incomplete = 0, standing = 0;
     for (i = 0; i < batch->n_fields; i++)
         fill(batch->fields + i, stamp);
     for (i = 0; i < batch->n_parcels; i++) {
         struct parcel *parcel = batch->parcels + i;
         parcel->taken = 0;
+        if (*parcel->stands) {
+            standing++;
+            continue;
+        }
         if (!incomplete || (i < batch->n_first && !is_behind_another(batch, i))) {
             ssize_t sent;
             do
@@ -116,5 +121,5 @@ int64_t aro_send(struct batch *batch, int64_t stamp_ns)
         }
         incomplete += parcel->taken != parcel->size;
     }
-    return incomplete;
+    return incomplete + standing;
 }

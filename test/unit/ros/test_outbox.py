@@ -1,5 +1,6 @@
-"""A batch: every message reaches every subscriber, whole and in order; a subscriber that stalls is disconnected."""
+"""A batch: every message reaches every subscriber that reads, whole and in order; one that stands still is kept."""
 
+import contextlib
 import socket
 import struct
 import threading
@@ -11,8 +12,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.ros.outbox import Batch
-from aro_robocop_goto_as.ros.packed import PackedMessage
-from aro_robocop_goto_as.ros.publishing import Outlet
+from aro_robocop_goto_as.ros.outlet import Outlet
+from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
 SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout
@@ -20,6 +21,8 @@ SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout
 
 class Connection:
     """Stands for a connection of rospy."""
+
+    endpoint_id, name = "/subscriber", "/topic"
 
     def __init__(self) -> None:
         self.stat_bytes = self.stat_num_msg = 0
@@ -37,7 +40,7 @@ class Subscriber:
         near, self.socket = socket.socketpair()
         near.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, SHORT)
         self.connection = Connection()
-        self.outlet = Outlet(self.connection, near, near.fileno())
+        self.outlet = Outlet(self.connection, near)
 
     def received(self, size: int) -> bytes:
         """The next bytes."""
@@ -80,6 +83,22 @@ def topic_of(*subscribers: Subscriber) -> Any:
     return SimpleNamespace(outlets=tuple(one.outlet for one in subscribers), impl=impl)
 
 
+def spied(subscriber: Subscriber, before: Callable[[int], Any]) -> Any:
+    """Stands for its outlet's socket; `before` is called with the flags of each send."""
+    near = subscriber.outlet.socket
+
+    def send(data: memoryview, flags: int) -> int:
+        before(flags)
+        return near.send(data, flags)
+
+    return SimpleNamespace(send=send, close=near.close)
+
+
+def counted(beams: int) -> PackedMessage:
+    """A scan whose header's number is counted on with each send."""
+    return PackedMessage(LaserScan(ranges=[1.0] * beams), [Field(HEADER, 4, counter())])
+
+
 def scan(beams: int) -> PackedMessage:
     """A message of about 4 bytes a beam."""
     return PackedMessage(LaserScan(ranges=[1.0] * beams))
@@ -120,10 +139,6 @@ def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callab
     assert not reader.connection.closed
 
 
-def _stalled(reader: Subscriber) -> None:
-    """Nobody reads."""
-
-
 def _gone(reader: Subscriber) -> None:
     reader.socket.close()
 
@@ -132,7 +147,7 @@ def _shut_down(reader: Subscriber) -> None:
     reader.outlet.socket.shutdown(socket.SHUT_RDWR)  # as rospy does before it closes a connection
 
 
-@pytest.mark.parametrize("fault", [_stalled, _gone, _shut_down])
+@pytest.mark.parametrize("fault", [_gone, _shut_down])
 def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
     subscriber: Callable[[], Subscriber], fault: Callable[[Subscriber], None]
 ) -> None:
@@ -148,20 +163,100 @@ def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
     assert not reader.connection.closed
 
 
+def send_until_it_stands_still(batch: Batch, reader: Subscriber) -> int:
+    """How many messages are sent until a subscriber that does not read is not waited for any more."""
+    for sent in range(1, MANY):
+        batch.send(0)
+        if reader.outlet.stands_still:
+            return sent
+    raise AssertionError("still waited for")
+
+
+def drain(reader: Subscriber) -> bytes:
+    """All that its socket holds."""
+    data = b""
+    reader.socket.setblocking(False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            data += reader.socket.recv(1_000_000)
+    return data
+
+
+@pytest.mark.parametrize("beams", [3, 100, 1_000_000])
+def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_when_it_reads_again(
+    subscriber: Callable[[], Subscriber], beams: int
+) -> None:
+    frozen, message = subscriber(), counted(beams)
+    batch, received = Batch([(topic_of(frozen), message)]), bytearray()
+    send_until_it_stands_still(batch, frozen)
+    for _ in range(10):
+        batch.send(0)  # which it misses
+
+    def read() -> None:
+        while message.data.tobytes() != received[-message.size :] or frozen.outlet.stands_still:
+            received.extend(frozen.socket.recv(message.size))
+
+    reading = threading.Thread(target=read)
+    reading.start()
+    while frozen.outlet.stands_still:
+        batch.send(0)
+    batch.send(0)
+    reading.join(10.0)
+    assert not reading.is_alive()
+    assert not frozen.connection.closed
+    numbers = [
+        struct.unpack_from("<I", received, start + 4)[0] for start in range(0, len(received) - 8, message.size)
+    ]
+    whole = len(received) // message.size
+    assert len(received) == whole * message.size
+    assert numbers == sorted(numbers) and len(set(numbers)) == whole
+
+
+def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_there_was(
+    subscriber: Callable[[], Subscriber],
+) -> None:
+    frozen, message = subscriber(), counted(100)
+    batch = Batch([(topic_of(frozen), message)])
+    send_until_it_stands_still(batch, frozen)
+    while len(drain(frozen)):
+        frozen.outlet.push_rest()
+    batch.send(0)
+    assert frozen.received(message.size) == message.data.tobytes()
+    assert not frozen.outlet.stands_still
+
+
+def test_nobody_waits_for_a_subscriber_that_stands_still(
+    subscriber: Callable[[], Subscriber], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frozen, reader, message, clock = subscriber(), subscriber(), scan(100), PackedMessage(Clock())
+    both = topic_of(frozen, reader)
+    batch = Batch([(both, message)], [(topic_of(reader), clock)])
+    for _ in range(MANY):
+        batch.send(0)
+        reader.received(message.size + clock.size)
+        if frozen.outlet.stands_still:
+            break
+    waits = []
+    frozen.outlet.socket = spied(frozen, lambda flags: waits.append(flags))
+    for _ in range(10):
+        batch.send(0)
+        assert reader.received(message.size + clock.size) == message.data.tobytes() + clock.data.tobytes()
+    assert waits == [socket.MSG_DONTWAIT] * 10
+    assert not frozen.connection.closed
+
+
 def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subscriber]) -> None:
     reader, messages = subscriber(), [scan(1_000_000), scan(10)]
     received: List[bytes] = []
     size = sum(message.size for message in messages)
     thread = threading.Thread(target=lambda: received.append(reader.received(size)))
-    near = reader.outlet.socket
+    reader.outlet.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
 
-    def finish(rest: memoryview) -> None:
+    def begin(_flags: int) -> None:
         if not thread.is_alive():
             thread.start()  # there is room in the socket as soon as a part of the first message is read
-        near.sendall(rest)
 
-    reader.outlet = reader.outlet._replace(socket=SimpleNamespace(sendall=finish, close=near.close))
-    near.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
+    reader.outlet.socket = spied(reader, begin)
     Batch([(topic_of(reader), message) for message in messages]).send(0)  # topics remapped to one
     thread.join(10.0)
     assert received == [b"".join(message.data.tobytes() for message in messages)]
@@ -169,20 +264,19 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subsc
 
 def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable[[], Subscriber]) -> None:
     slow, reader, message, clock = subscriber(), subscriber(), scan(100_000), PackedMessage(Clock())
-    near = slow.outlet.socket
+    slow.outlet.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
+    thread = threading.Thread(target=slow.received, args=(message.size,))
 
-    def finish(rest: memoryview) -> None:
+    def look(_flags: int) -> None:
         reader.socket.setblocking(False)
         with pytest.raises(BlockingIOError):
             reader.socket.recv(1)
-        near.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
-        thread = threading.Thread(target=slow.received, args=(message.size,))
-        thread.start()
-        near.sendall(rest)
-        thread.join(10.0)
+        if not thread.is_alive():
+            thread.start()
 
-    slow.outlet = slow.outlet._replace(socket=SimpleNamespace(sendall=finish, close=near.close))
+    slow.outlet.socket = spied(slow, look)
     Batch([(topic_of(slow), message)], [(topic_of(reader), clock)]).send(0)
+    thread.join(10.0)
     assert reader.socket.recv(100) == clock.data.tobytes()
     assert not slow.connection.closed
 
@@ -198,20 +292,13 @@ def test_subscribers_that_stall_together_are_waited_for_only_once(
     subscriber: Callable[[], Subscriber], beams: int
 ) -> None:
     stalled, waited = [subscriber() for _ in range(5)], []
-
-    class Spy(socket.socket):
-        def sendall(self, rest: memoryview) -> None:
-            waited.append(self)
-            super().sendall(rest)
-
-    for one in stalled:
+    for number, one in enumerate(stalled):
         if beams < 1000:
             _full(one)
-        spy = Spy(fileno=one.outlet.socket.detach())
-        one.outlet = Outlet(one.connection, spy, spy.fileno())
+        one.outlet.socket = spied(one, lambda flags, number=number: waited.append(number) if not flags else None)
     Batch([(topic_of(*stalled), scan(beams))]).send(0)
-    assert all(one.connection.closed for one in stalled)
-    assert waited == [stalled[0].outlet.socket]
+    assert all(one.outlet.stands_still and not one.connection.closed for one in stalled)
+    assert set(waited) <= {0}
 
 
 def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
@@ -221,17 +308,15 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
     received: List[bytes] = []
     reading = threading.Thread(target=lambda: received.append(slow.received(message.size - 100_000)))
 
-    class Stalled(Connection):
-        def close(self) -> None:
-            super().close()
+    def read_meanwhile(flags: int) -> None:
+        if not flags and not received:
             received.append(slow.received(100_000))
             reading.start()
 
-    stalled.connection = Stalled()
-    stalled.outlet = stalled.outlet._replace(connection=stalled.connection)
+    stalled.outlet.socket = spied(stalled, read_meanwhile)
     Batch([(topic_of(stalled, slow), message)]).send(0)
     reading.join(10.0)
-    assert stalled.connection.closed and not slow.connection.closed
+    assert stalled.outlet.stands_still and not slow.outlet.stands_still
     assert b"".join(received) == bytes(message.data)
 
 

@@ -67,16 +67,17 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
     number = gone.connection.fileno()
     gone.connection.socket.shutdown(socket.SHUT_RDWR)
 
-    def finish(_rest: memoryview) -> None:
+    def send(rest: memoryview, _flags: int) -> int:
         new.append(connect(scans).connection)
         scans.impl.check()  # as one of rospy's threads does twice a second
+        return len(rest)
 
-    first, second = scans.outlets
-    scans.outlets = (first, second._replace(socket=SimpleNamespace(sendall=finish)))
-    del first
+    second = scans.outlets[1]
+    kept, second.socket = second.socket, SimpleNamespace(send=send)
     _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
     assert [connection.fileno() for connection in new] == [number]
     assert scans.impl.connections == [slow.connection, *new]
+    kept.close()
 
 
 def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(

@@ -14,6 +14,7 @@ from ...simulation.simulator import Simulator
 from .. import param_server
 from ..names import SIMULATOR
 from ..node_main import node
+from ..publishing import resume
 from .factory import build_simulator
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
@@ -113,6 +114,7 @@ class SimNode:
         """Publish and count what is due by the wall clock."""
         if self._status.report():
             self._topics.count()
+            resume()
 
     def _connected(self, robot: int) -> AbstractSet[str]:
         return self._inputs[robot].connected()

@@ -1,0 +1,92 @@
+"""A subscriber's connection, as its publisher sees it: waited for while it reads, kept while it stands still.
+
+A node may stand still for any time: stopped by a debugger, swapped out, waiting for a disk. rospy's subscribers do not
+return to a publisher that has closed the connection, so it stays open, and what is left of a message is sent later.
+"""
+
+import ctypes
+import errno
+import socket
+from typing import Any
+
+import rospy
+
+from .rospy_internals import count_sent
+
+LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
+
+
+class Outlet:
+    """One subscriber of one topic; its publisher's thread calls the methods.
+
+    A subscriber that takes nothing for as long as its socket's send timeout stands still: it misses all messages until
+    it takes data again, and nobody waits for it. What is kept for it is the rest of one message.
+    """
+
+    def __init__(self, connection: Any, duplicate: socket.socket) -> None:
+        """`duplicate`: of the connection's socket; it stays open even if the connection is closed."""
+        self.connection = connection
+        self.socket = duplicate
+        self.descriptor = duplicate.fileno()
+        self._stands = ctypes.c_int64(0)  # read by sender.c
+        self._rest = b""
+        self._missed = 0  # messages, while it stands still
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether it has stopped reading."""
+        return bool(self._stands.value)
+
+    @property
+    def address(self) -> int:
+        """Of an int64 for C: whether it stands still."""
+        return ctypes.addressof(self._stands)
+
+    def write(self, data: bytes) -> None:
+        """Send a message, or miss it; OSError if the connection is lost."""
+        if self.finish(memoryview(data), 0, patient=True):
+            count_sent(self.connection, 1, len(data))
+
+    def finish(self, message: memoryview, taken: int, patient: bool) -> bool:
+        """Send what is left of a message of which `taken` bytes were sent, or -errno; OSError if the connection is lost.
+
+        Returns whether all was sent. Without patience, a subscriber that takes nothing at once stands still.
+        """
+        if taken < 0 and taken not in LATER:
+            raise OSError(-taken, "send")
+        left = message[max(0, taken) :]
+        if self.push_rest():
+            took = self._take(left, socket.MSG_DONTWAIT)
+            left = left[took:]
+            reads = bool(took) or (patient and not self.stands_still)
+            while left and reads:
+                took = self._take(left)
+                left, reads = left[took:], bool(took)
+            self._rest = b"" if len(left) == len(message) else bytes(left)
+        self._note(not left)
+        return not left
+
+    def push_rest(self) -> bool:
+        """Send the rest of an earlier message as far as the socket takes it now; whether none is left."""
+        if self._rest:
+            self._rest = self._rest[self._take(memoryview(self._rest), socket.MSG_DONTWAIT) :]
+        return not self._rest
+
+    def _take(self, data: memoryview, flags: int = 0) -> int:
+        """The number of bytes that the socket takes; 0 if it takes none now or, without flags, within its timeout."""
+        try:
+            return self.socket.send(data, flags)
+        except BlockingIOError:
+            return 0
+
+    def _note(self, sent: bool) -> None:
+        """Note, and log, whether it stands still."""
+        name = f"{self.connection.endpoint_id} ({self.connection.name})"
+        if sent and self.stands_still:
+            rospy.loginfo("%s reads again; it has missed %d messages", name, self._missed)
+            self._missed = 0
+        elif not sent:
+            if not self.stands_still:
+                rospy.logwarn("%s has stopped reading; it misses all messages until it reads again", name)
+            self._missed += 1
+        self._stands.value = not sent
