@@ -309,6 +309,26 @@ def test_controller_that_hangs_causes_one_miss_and_is_awaited_again_when_it_cont
 
 
 @pytest.mark.slow
+def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again(ros):
+    simulator = ros.simulator(drive="kinematic", physics_rate=60, world="empty", lockstep_timeout=0.5)
+    server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
+    remote = Remote(ros, simulator)
+    remote.wait_for_driver(SERVER, server)
+    server.send_signal(signal.SIGSTOP)
+    try:
+        stopped = f"{SERVER} (/scan) has stopped reading"
+        ros.wait(lambda: remote.step(20.0) or stopped in simulator.log.read_text(), stopped, (simulator,))
+    finally:
+        server.send_signal(signal.SIGCONT)
+    again = f"{SERVER} (/scan) reads again"
+    ros.wait(lambda: remote.step(0.1) or again in simulator.log.read_text(), again, (simulator, server))
+    remote.wait_for_driver(SERVER, server)
+    topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
+    goal = ros.start("rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
+    ros.wait(lambda: remote.step(0.5) or "REACHED" in server.log.read_text(), "the goal", (simulator, server, goal))
+
+
+@pytest.mark.slow
 def test_controller_is_awaited_only_when_all_of_its_subscriptions_have_connected(ros):
     simulator = ros.simulator()
     remote = Remote(ros, simulator)

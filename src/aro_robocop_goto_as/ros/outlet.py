@@ -48,9 +48,9 @@ class Outlet:
             count_sent(self.connection, 1, len(data))
 
     def finish(self, message: memoryview, taken: int, patient: bool) -> bool:
-        """Send what is left of a message of which `taken` bytes were sent, or -errno; OSError if the connection is lost.
+        """Send what is left of a message of which `taken` bytes were sent, or -errno; whether all was sent.
 
-        Returns whether all was sent. Without patience, a subscriber that takes nothing at once stands still.
+        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once stands still.
         """
         if taken < 0 and taken not in LATER:
             raise OSError(-taken, "send")

@@ -204,9 +204,7 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
     reading.join(10.0)
     assert not reading.is_alive()
     assert not frozen.connection.closed
-    numbers = [
-        struct.unpack_from("<I", received, start + 4)[0] for start in range(0, len(received) - 8, message.size)
-    ]
+    numbers = [struct.unpack_from("<I", received, start + 4)[0] for start in range(0, len(received) - 8, message.size)]
     whole = len(received) // message.size
     assert len(received) == whole * message.size
     assert numbers == sorted(numbers) and len(set(numbers)) == whole

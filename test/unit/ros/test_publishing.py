@@ -7,6 +7,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import weakref
 from types import SimpleNamespace
 from typing import Callable, Iterator, List
@@ -19,7 +20,7 @@ from subscriber_links import Link
 
 from aro_robocop_goto_as.ros.outbox import Batch
 from aro_robocop_goto_as.ros.packed import PackedMessage
-from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher
+from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher, resume
 from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -78,6 +79,50 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
     assert [connection.fileno() for connection in new] == [number]
     assert scans.impl.connections == [slow.connection, *new]
     kept.close()
+
+
+def _received(link: Link, size: int) -> bytes:
+    """The next bytes that a subscriber gets."""
+    link.socket.settimeout(10.0)
+    data = b""
+    while len(data) < size:
+        part = link.socket.recv(size - len(data))
+        assert part, "closed"
+        data += part
+    return data
+
+
+def _serialized(beams: int, seq: int) -> bytes:
+    message = LaserScan(ranges=[1.0] * beams)
+    message.header.seq = seq
+    return PackedMessage(message).data.tobytes()
+
+
+def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_again(
+    connect: Callable[[DirectPublisher], Link],
+) -> None:
+    latched, many = publisher(next(NAMES), LaserScan, latch=True), 3_000_000  # beams: more than a socket takes at once
+    link = connect(latched)
+    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    try:
+        for beams in (many, 20, 10):
+            latched.impl.publish(LaserScan(ranges=[1.0] * beams))  # as a node does, after its init_node
+        (outlet,) = latched.outlets
+        assert outlet.stands_still
+        first, received = _serialized(many, 1), []
+        reading = threading.Thread(target=lambda: received.append(_received(link, len(first))))
+        reading.start()
+        while reading.is_alive():
+            resume()
+        resume()
+        last = _serialized(10, 4)  # the third message, sent once more
+        assert received == [first] and _received(link, len(last)) == last
+        assert not outlet.stands_still and latched.impl.connections == [link.connection]
+        resume()
+        latched.impl.publish(LaserScan())
+        assert _received(link, len(_serialized(0, 5))) == _serialized(0, 5)
+    finally:
+        latched.unregister()
 
 
 def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(

@@ -12,7 +12,6 @@ import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
 from ...errors import FrameError
-from ...simulation.schedule import NANOSECONDS
 from .. import convert
 
 STAMP_LIMIT = 2**31  # [s] from where the difference of two stamps can exceed a roscpp Duration (32 bits, signed)
@@ -66,7 +65,7 @@ class TfBuffer(tf2_ros.Buffer):
         if is_static:
             return None
         now = self._clock()  # zero before the first message on /clock
-        if now and convert.to_ns(stamp) - convert.to_ns(now) > MEMORY * NANOSECONDS:
+        if now and stamp.to_sec() - now.to_sec() > MEMORY:
             return f"its stamp of {stamp.to_sec():.3f} s is more than {MEMORY:g} s ahead of {now.to_sec():.3f} s"
         placed_by = self._placed_by.get(transform.child_frame_id, authority)
         if placed_by != authority:
