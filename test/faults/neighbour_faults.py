@@ -114,10 +114,12 @@ def tf_contradicting(e):
             e.stage.pass_time(TICK)
     e.stage.wait_for(e.client.all_ended, "the goal's end beside transforms that contradict")
     e.stage.pass_time(1.0)
-    pose = e.client.odom.pose.pose
-    yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
-    ahead = e.rng.uniform(0.2, 0.4)
-    goal = _click(e, "base_footprint", ahead, 0.0, e.client.odom.header.stamp)
+    with e.stage.standing_still():
+        odom = e.client.odom
+        pose = odom.pose.pose
+        yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+        ahead = e.rng.uniform(0.2, 0.4)
+        goal = _click(e, "base_footprint", ahead, 0.0, odom.header.stamp)
     expected = pose.position.x + ahead * math.cos(yaw), pose.position.y + ahead * math.sin(yaw)
     made = e.client.clicked[goal].position
     if math.hypot(made.x - expected[0], made.y - expected[1]) > 0.05:

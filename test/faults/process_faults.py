@@ -10,7 +10,7 @@ from pathlib import Path
 
 from faults import ANY, DONE, STOPPED, drive, fault
 from processes import processes_with
-from system import BRIDGE, SIMULATOR, wait_for
+from system import BRIDGE, SIMULATOR, is_connected, wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -109,6 +109,7 @@ def bridge_ended(e):
     if bridge in e.system.processes:
         e.system.end(bridge, e.rng.choice((signal.SIGKILL, signal.SIGTERM)))
         e.system.restart(bridge)
+        wait_for(lambda: is_connected(e.client.click_topic, bridge), "the bridge listens again")
     return DONE
 
 

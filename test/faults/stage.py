@@ -1,5 +1,6 @@
 """What time and motion come from: a simulator that runs by itself, or a robot that the campaign makes of messages."""
 
+import contextlib
 import math
 import time
 
@@ -54,6 +55,15 @@ class SimulatedStage:
         """Put the robots back where they started, if one of them is far from there."""
         if any(self._distance_from_home(client) > STRAY for client in self.clients):
             self.send_home()
+
+    @contextlib.contextmanager
+    def standing_still(self):
+        """Meanwhile time is paused, so that nodes which are behind receive all that was sent."""
+        self.call("pause")
+        try:
+            yield
+        finally:
+            self.call("unpause")
 
     def send_home(self):
         """Put the robots back where they started."""
@@ -180,6 +190,10 @@ class MessageStage:
         self.client.wait_for_server()
         wanted = {"/tick_answer", "/cmd_vel"}
         wait_for(lambda: wanted <= connections_from(self.system, server), f"{server} sends its commands")
+
+    def standing_still(self):
+        """Here time passes only in `tick`."""
+        return contextlib.nullcontext()
 
     def begin_episode(self):
         """Nothing is in this robot's way, wherever it is."""

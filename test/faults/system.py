@@ -72,7 +72,6 @@ class System:
         for server in self.servers:
             self.start(server)
         if servers == [""]:
-            self.master.setParam(f"/{BRIDGE}/transform_timeout", 0.2)  # [s, wall] a click without one costs less
             self.start("/" + BRIDGE)
 
     # -- processes --

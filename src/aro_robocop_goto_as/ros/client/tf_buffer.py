@@ -15,7 +15,9 @@ from ...errors import FrameError
 from .. import convert
 
 STAMP_LIMIT = 2**31  # [s] from where the difference of two stamps can exceed a roscpp Duration (32 bits, signed)
-MEMORY = 10.0  # [s] tf2's default; a transform dated so far ahead drops those that are valid now
+# [s] A transform dated farther ahead than this drops those that are valid now. tf2's 10 s are not enough: at a hundred
+# times real time, a busy machine delivers one topic many simulated seconds after another one, or after the clock.
+MEMORY = 600.0
 Clock = Callable[[], rospy.Time]
 
 
