@@ -3,9 +3,10 @@
 From a velocity command to odometry, scan, tf and clock:
 
     ros.sim.robot_inputs          cmd_vel -> a job for the thread that owns the simulation
-    simulation.controllers        applies it, in lockstep at the end of the control tick -> robot.fleet
-    physics.engine                runs base controllers and motion up to the next step on which something is due
-        base_controller.c         command -> limits, command timeout -> wheel speeds
+    simulation.controllers        applies it, in lockstep at the end of the control tick -> robot.fleet, clamped
+    simulation.simulator          finds the next step on which something is due
+    physics.engine                runs base controllers and motion up to that step
+        base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, bullet       wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.simulator          measures what is due and subscribed to -> Observations
         sensors                   models of odometry, scanner, IMU, magnetometer and camera
@@ -13,7 +14,7 @@ From a velocity command to odometry, scan, tf and clock:
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
         ros.outbox                the batch: sender.c writes the measurements into packed messages and sends them
 
-    What is published seldom (bumper, battery, magnetic field, camera) is serialized by rospy.
+    rospy serializes the other topics (bumper, battery, magnetic field, camera).
 
 From a goal to its result:
 

@@ -136,7 +136,7 @@ class OdometryParams:
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
     odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
-    odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # standard deviation of an encoder's relative overcount
+    odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
     encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
 
 

@@ -1,4 +1,4 @@
-"""The end of a message about a word that does not exist."""
+"""The end of a message about a mistyped word: "; did you mean ...?"."""
 
 from typing import Iterable
 

@@ -10,26 +10,26 @@ from aro_robocop_goto_as.ros.server import goal_execution, node
 
 def second_result():
     """Publishes the result of each goal twice."""
-    end = node.GotoServer._end
+    end = node.GotoNode._end
 
     def end_twice(server, ending):
-        handle = server.server.current
+        handle = server.goals.current
         end(server, ending)
         state = handle.get_goal_status()
-        server.server.publish_result(state, node.GoToPositionResult(False, ending.message))
+        server.goals.publish_result(state, node.GoToPositionResult(False, ending.message))
 
-    node.GotoServer._end = end_twice
+    node.GotoNode._end = end_twice
 
 
 def no_stop():
     """Does not stop the robot when a goal ends."""
-    publish = node.GotoServer._publish_command
+    publish = node.GotoNode._publish_command
 
     def publish_motion(server, twist):
         if twist != STANDSTILL:
             publish(server, twist)
 
-    node.GotoServer._publish_command = publish_motion
+    node.GotoNode._publish_command = publish_motion
 
 
 def wrong_word():
@@ -44,25 +44,25 @@ def traceback():
 
 def leak():
     """Opens files that it does not close."""
-    advance = node.GotoServer._advance
+    advance = node.GotoNode._advance
     kept = []
 
     def leak_and_advance(server, tick_ns):
         kept.append(open(__file__, encoding="utf-8"))
         advance(server, tick_ns)
 
-    node.GotoServer._advance = leak_and_advance
+    node.GotoNode._advance = leak_and_advance
 
 
 def silence():
     """Gives up after one goal."""
-    accept = node.GotoServer._accept_goal
+    accept = node.GotoNode._accept_goal
 
     def accept_one(server):
         accept(server)
-        node.GotoServer._accept_goal = lambda server: time.sleep(0.1)
+        node.GotoNode._accept_goal = lambda server: time.sleep(0.1)
 
-    node.GotoServer._accept_goal = accept_one
+    node.GotoNode._accept_goal = accept_one
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ class Owner:
         self.clock.at(delay, lambda: self.simulation.jobs.post(job))
 
     def run(self) -> None:
-        simulator, time, controllers = self.simulator, self.simulation.time, self.simulation.controllers
+        simulator, time, controllers = self.simulator, self.simulation.time_control, self.simulation.controllers
         time.restart(simulator.steps)
         self._pace()
         while not self.is_stopped():
@@ -84,13 +84,13 @@ class Owner:
     def _pace(self) -> None:
         self.events += map(str, self.simulation.controllers.take_refused())
         self.simulation.jobs.run_queued()
-        self._hold(lambda: self.simulation.time.hold(self.simulator.steps))
+        self._hold(lambda: self.simulation.time_control.hold(self.simulator.steps))
 
     def _hold(self, hold: Callable[[], float]) -> None:
         wait = hold()
         while wait > 0.0 and not self.is_stopped():
             self.simulation.jobs.run_next(wait)
-            if self.simulation.time.repetition_due():
+            if self.simulation.time_control.repetition_due():
                 self.events.append("clock repeated")
                 self.simulation.controllers.enroll(self._answering)
             wait = hold()

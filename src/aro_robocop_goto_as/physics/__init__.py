@@ -1,1 +1,1 @@
-"""Wheel speeds + World -> robot states. engine.py states the interface; bullet and kinematic implement it."""
+"""Commands + World -> robot states. engine.py states the interface; bullet and kinematic implement it."""

@@ -189,7 +189,7 @@ class BulletEngine:
                     self._park_when_at_rest(robot)
         self._is_read = False
 
-    def read(self) -> None:
+    def update_fleet(self) -> None:
         """Update the fleet's rows to the state after the last step."""
         if self._is_read:
             return
@@ -234,7 +234,7 @@ class BulletEngine:
         """Put a standing robot to sleep.
 
         Otherwise the solver's residual moves a standing Burger by 6.6 mm per minute (with 50 iterations).
-        Bullet wakes it when a moving body touches it, `set_wheel_speeds` wakes it for a command.
+        Bullet wakes it when a moving body touches it, `_set_motors` does for a command.
         """
         linear, angular = pybullet.getBaseVelocity(robot.body, physicsClientId=self.client)
         still = all(abs(v) < REST_LINEAR for v in linear) and all(abs(w) < REST_ANGULAR for w in angular)

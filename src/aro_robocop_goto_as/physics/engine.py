@@ -19,7 +19,7 @@ class Engine(Protocol):
     def advance(self, first: int, steps: int) -> None:
         """Advance the base controllers and all robots by a number of steps, from step number `first` on."""
 
-    def read(self) -> None:
+    def update_fleet(self) -> None:
         """Update the fleet's rows to the state after the last step."""
 
     def move_obstacles(self, time: float) -> None:

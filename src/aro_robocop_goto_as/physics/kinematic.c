@@ -24,7 +24,7 @@ struct kinematic {
     struct fleet *fleet;
     const struct outlines *walls;
     const int64_t *walls_of; /* (n,) index of each robot's walls */
-    double *clearances;      /* (n,) [m] that a robot can travel before walls must be looked at; a lower bound */
+    double *free_travel;      /* (n,) [m] that a robot can travel before walls must be looked at; a lower bound */
     uint8_t *blocked;        /* (n,) whether a robot was blocked or pushed in its last step */
     uint8_t *crowded;        /* (n,) whether a robot may meet another one in this step */
     double separation;       /* [m] that any two robots can travel together before they meet; a lower bound */
@@ -160,7 +160,7 @@ static void keep_margin(struct motion *motion, double before)
     motion->free = fmin(motion->free, before);
 }
 
-/* Stop a robot's motion at walls, and renew its clearance. */
+/* Stop a robot's motion at walls, and renew its free travel. */
 static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *motion)
 {
     const struct outlines *walls = kin->walls + kin->walls_of[robot];
@@ -168,7 +168,7 @@ static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *m
     const double *segment;
     struct nearby near;
     int64_t k;
-    kin->clearances[robot] = room - motion->length;
+    kin->free_travel[robot] = room - motion->length;
     if (room >= motion->length)
         return;
     motion->free = 1.0;
@@ -254,10 +254,10 @@ static void move(struct kinematic *kin, double dt)
         if (v != 0.0) {
             struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
             aro_arc(pose[2], v * dt, w * dt, &motion.dx, &motion.dy);
-            kin->clearances[i] -= fabs(v * dt); /* no chord is longer than its arc */
-            if (kin->clearances[i] < 0.0 || kin->crowded[i]) {
+            kin->free_travel[i] -= fabs(v * dt); /* no chord is longer than its arc */
+            if (kin->free_travel[i] < 0.0 || kin->crowded[i]) {
                 motion.length = hypot(motion.dx, motion.dy);
-                if (kin->clearances[i] < 0.0)
+                if (kin->free_travel[i] < 0.0)
                     stop_at_walls(kin, i, &motion);
                 if (kin->crowded[i])
                     stop_at_robots(kin, i, &motion);
@@ -294,8 +294,8 @@ void aro_kinematic_push(struct kinematic *kin, double travelled)
         const struct outlines *walls = kin->walls + kin->walls_of[i];
         double *pose = fleet->poses + 3 * i, deepest = 0.0, away = 0.0;
         struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
-        kin->clearances[i] -= travelled;
-        if (kin->clearances[i] >= 0.0)
+        kin->free_travel[i] -= travelled;
+        if (kin->free_travel[i] >= 0.0)
             continue;
         for (k = 0; k < walls->n_circles; k++) {
             const double *circle = walls->circles + 3 * k;

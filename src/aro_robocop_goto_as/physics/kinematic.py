@@ -39,7 +39,7 @@ class _KinematicStruct(ctypes.Structure):
     _fields_ = [
         ("fleet", ctypes.POINTER(FleetStruct)),
         ("walls", ctypes.POINTER(_OutlinesStruct)),
-        *members(ctypes.c_void_p, "walls_of clearances blocked crowded"),
+        *members(ctypes.c_void_p, "walls_of free_travel blocked crowded"),
         ("separation", ctypes.c_double),
     ]
 
@@ -81,13 +81,13 @@ class KinematicEngine:
         kinds = sorted(set(self._heights))
         self._kinds = kinds
         self._walls_of = np.array([kinds.index(heights) for heights in self._heights], dtype=np.int64)
-        self._clearances, self._blocked, self._crowded = np.zeros(n), np.zeros(n, np.uint8), np.zeros(n, np.uint8)
+        self._free_travel, self._blocked, self._crowded = np.zeros(n), np.zeros(n, np.uint8), np.zeros(n, np.uint8)
         self._library = library()
         self._struct = _KinematicStruct(
             ctypes.pointer(fleet.struct),
             None,
             address("walls_of", self._walls_of, (n,), np.int64),
-            address("clearances", self._clearances, (n,)),
+            address("free_travel", self._free_travel, (n,)),
             address("blocked", self._blocked, (n,), np.uint8),
             address("crowded", self._crowded, (n,), np.uint8),
         )
@@ -99,13 +99,13 @@ class KinematicEngine:
         self._walls = [_Outlines(world, heights, time) for heights in self._kinds]
         self._structs = (_OutlinesStruct * len(self._walls))(*(walls.struct for walls in self._walls))
         self._struct.walls = self._structs
-        self._clearances[:] = 0.0
+        self._free_travel[:] = 0.0
 
     def advance(self, first: int, steps: int) -> None:
         """Advance the base controllers and all robots, one robot after the other in each step."""
         self._library.aro_kinematic_advance(self._pointer, first, steps, self._rate)
 
-    def read(self) -> None:
+    def update_fleet(self) -> None:
         """Nothing to do: the fleet's rows are the state."""
 
     def move_obstacles(self, time: float) -> None:
@@ -119,7 +119,7 @@ class KinematicEngine:
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Place a robot elsewhere, at rest; its wheels keep their angles."""
         self.fleet.place(robot, world_from_footprint)
-        self._clearances[robot] = self._blocked[robot] = 0
+        self._free_travel[robot] = self._blocked[robot] = 0
         self._struct.separation = 0.0
 
     def reset(self, poses: Sequence[Pose2D]) -> None:

@@ -29,7 +29,7 @@ class RobotState(NamedTuple):
     world_from_footprint: Pose2D
     twist: Twist2D  # true velocity in base_footprint
     wheel_angles: Pair  # left, right [rad], never wrapped
-    wheel_velocities: Pair  # left, right [rad/s]
+    wheel_speeds: Pair  # left, right [rad/s]
 
 
 @functools.lru_cache(maxsize=None)

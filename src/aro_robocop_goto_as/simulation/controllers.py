@@ -7,7 +7,7 @@ from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
 from ..params import LockstepParams
 from .jobs import Clock
-from .lockstep import Controller, Lockstep
+from .lockstep import ControllerId, Lockstep
 from .simulator import Simulator
 
 DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controllers while waiting for their answers
@@ -16,7 +16,7 @@ NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that
 
 
 class _Pending(NamedTuple):
-    controller: Controller
+    controller: ControllerId
     twist: Twist2D
 
 
@@ -24,8 +24,8 @@ class _Pending(NamedTuple):
 class TickReport:
     """How a control tick ended."""
 
-    late: List[Controller] = field(default_factory=list)  # did not answer in time: time goes on without them
-    gone: List[Controller] = field(default_factory=list)  # disconnected: their robots are stopped
+    late: List[ControllerId] = field(default_factory=list)  # did not answer in time: time goes on without them
+    gone: List[ControllerId] = field(default_factory=list)  # disconnected: their robots are stopped
 
 
 class Controllers:
@@ -37,7 +37,7 @@ class Controllers:
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
         self.timeout = params.lockstep_timeout
-        self.lockstep: Lockstep[Controller] = Lockstep()
+        self.lockstep: Lockstep[ControllerId] = Lockstep()
         self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
         self._clock = clock
@@ -47,7 +47,7 @@ class Controllers:
         self._held_since = self._next_look = 0.0  # [s, wall]
         self._is_reset = False  # since the tick began
 
-    def command(self, controller: Controller, twist: Twist2D) -> None:
+    def command(self, controller: ControllerId, twist: Twist2D) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
         if self.lockstep.is_stamped(controller):
             return  # this controller sends the same command with its answer
@@ -58,7 +58,7 @@ class Controllers:
         self.lockstep.commanded(controller)
         self._pending[controller.robot] = _Pending(controller, twist)
 
-    def answer(self, controller: Controller, stamp_ns: int, twist: Optional[Twist2D]) -> None:
+    def answer(self, controller: ControllerId, stamp_ns: int, twist: Optional[Twist2D]) -> None:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
         tick = round(stamp_ns * self._rate / 1e9)
         if tick > self.tick:
@@ -77,7 +77,7 @@ class Controllers:
         if self.in_lockstep:
             for robot in range(len(self._simulator.robots)):
                 for node in answering(robot):
-                    self.lockstep.enroll(Controller(robot, node))
+                    self.lockstep.enroll(ControllerId(robot, node))
 
     def begin_tick(self, answering: NodesOf) -> None:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
@@ -139,6 +139,6 @@ class Controllers:
         """Forget a pending command, because its robot was placed elsewhere, at rest."""
         self._pending.pop(robot, None)
 
-    def awaited(self) -> List[Controller]:
+    def awaited(self) -> List[ControllerId]:
         """The controllers that lockstep waits for; empty without lockstep."""
-        return self.lockstep.drivers() if self.in_lockstep else []
+        return self.lockstep.awaited() if self.in_lockstep else []

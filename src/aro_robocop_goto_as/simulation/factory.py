@@ -1,4 +1,4 @@
-"""Parameters -> the simulator: its fleet, its engine, its camera renderer."""
+"""Parameters and what they name -> the simulator: its fleet, its engine, its camera renderer."""
 
 from typing import Sequence
 

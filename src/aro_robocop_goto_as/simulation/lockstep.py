@@ -22,7 +22,7 @@ LEARNING = 0.05  # that may be due
 
 
 @dataclass
-class _Controller:
+class _AnswerRecord:
     last: int  # tick of the newest answer
     stamped: bool = False
     awaited: bool = True
@@ -55,14 +55,14 @@ class _Controller:
         return LEARNING if self.gaps or self.passed > self.last else FIRST
 
 
-class Controller(NamedTuple):
+class ControllerId(NamedTuple):
     """A node that commands a robot."""
 
     robot: int
     node: str
 
 
-Name = TypeVar("Name", str, Controller)
+Name = TypeVar("Name", str, ControllerId)
 
 
 class Lockstep(Generic[Name]):
@@ -71,28 +71,28 @@ class Lockstep(Generic[Name]):
     def __init__(self, tick: int = 0) -> None:
         self.tick = tick
         self.misses = 0  # answers given up on so far
-        self._controllers: Dict[Name, _Controller] = {}
+        self._controllers: Dict[Name, _AnswerRecord] = {}
 
     def commanded(self, name: Name) -> None:
         """Note a velocity command that does not name its tick."""
         known = self._controllers.get(name)
         if known is None:
-            self._controllers[name] = _Controller(self.tick)
+            self._controllers[name] = _AnswerRecord(self.tick)
         elif not known.stamped and known.last < self.tick:
             gap = self.tick - known.last
             gaps = (known.gaps + [gap])[-2 * LONGEST_PATTERN - 1 :] if gap <= LONGEST_GAP else []
-            self._controllers[name] = _Controller(self.tick, gaps=gaps, mistaken=known.mistaken)
+            self._controllers[name] = _AnswerRecord(self.tick, gaps=gaps, mistaken=known.mistaken)
 
     def answered(self, name: Name, tick: int) -> None:
         """Note an answer, which names its tick; one for an earlier tick only shows that its sender is alive."""
         known = self._controllers.get(name)
         last = tick if known is None or not known.stamped else max(tick, known.last)
-        self._controllers[name] = _Controller(last, stamped=True)
+        self._controllers[name] = _AnswerRecord(last, stamped=True)
 
     def enroll(self, name: Name) -> None:
         """Wait from now on for a controller that stamps its answers and has connected."""
         if not self.is_stamped(name):
-            self._controllers[name] = _Controller(self.tick - 1, stamped=True)
+            self._controllers[name] = _AnswerRecord(self.tick - 1, stamped=True)
 
     def is_stamped(self, name: Name) -> bool:
         """Whether this controller stamps its answers, so that its plain commands have to be ignored."""
@@ -125,7 +125,7 @@ class Lockstep(Generic[Name]):
         self.misses += len(late)
         return late
 
-    def drivers(self) -> List[Name]:
+    def awaited(self) -> List[Name]:
         """The controllers that are waited for, sorted."""
         return sorted(name for name, known in self._controllers.items() if known.awaited)
 
@@ -138,5 +138,5 @@ class Lockstep(Generic[Name]):
             if known.stamped:
                 known.last = tick - 1
             elif tick < self.tick:
-                self._controllers[name] = _Controller(tick - 1, awaited=known.awaited)
+                self._controllers[name] = _AnswerRecord(tick - 1, awaited=known.awaited)
         self.tick = tick

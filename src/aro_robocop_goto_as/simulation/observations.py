@@ -23,7 +23,7 @@ class Due:
 
     clock: bool = False  # a clock tick: /clock is due
     control: bool = False  # a control tick: the controllers' period is over
-    robots: Subscriptions = field(default_factory=dict)  # the sensors that are due, for whom they are subscribed to
+    sensors: Subscriptions = field(default_factory=dict)  # those that are due, for whom they are subscribed to
 
 
 @dataclass(eq=False)
@@ -47,4 +47,4 @@ class Observations:
 
     def of(self, sensor: str) -> Robots:
         """The robots for which a sensor is due and subscribed to."""
-        return self.due.robots.get(sensor, ())
+        return self.due.sensors.get(sensor, ())

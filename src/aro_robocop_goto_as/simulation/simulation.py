@@ -40,7 +40,7 @@ class Simulation:
         clock = clock or WallClock()
         self.simulator = simulator
         self.jobs = Jobs(clock, stopped)
-        self.time = TimeControl(p.time, simulator.rate, clock)
+        self.time_control = TimeControl(p.time, simulator.rate, clock)
         self.controllers = Controllers(simulator, p.lockstep, clock)
         self._reset_time = p.time.reset_time
         self._changes: Set[Change] = set()
@@ -54,15 +54,15 @@ class Simulation:
 
     def set_paused(self, paused: bool) -> None:
         """Pause or resume simulated time; during a span, from its end on."""
-        self.time.set_paused(paused, self.simulator.steps)
+        self.time_control.set_paused(paused, self.simulator.steps)
         self._changes.add(Change.STATUS)
 
     def reset(self, seed: Optional[int] = None) -> None:
         """Robots to their spawn poses, odometry to zero, noise to its start; None keeps the seed."""
         before = self.simulator.steps
         self.simulator.reset(seed, restart_time=self._reset_time)
-        self.time.shift_span(before - self.simulator.steps)
-        self.time.restart(self.simulator.steps)
+        self.time_control.shift_span(before - self.simulator.steps)
+        self.time_control.restart(self.simulator.steps)
         self.controllers.restart()
         self._changes |= {Change.FRAMES, Change.STATUS} | ({Change.TIME} if self._reset_time else set())
 

@@ -13,7 +13,7 @@ from ..raycast.scanners import Scanners
 from ..robot.model import BodyState, RobotSpec
 from ..sensors import imu, magnetometer
 from ..sensors.lidar import Lidar
-from ..sensors.noise import NoiseStreams
+from ..sensors.noise_streams import NoiseStreams
 from ..sensors.odometry import Odometers
 from ..world.model import Occupancy, World
 from . import observations
@@ -23,7 +23,7 @@ from .room import require_room
 from .schedule import Schedule, stamp_ns
 
 CLOCK, CONTROL = "clock", "control"  # scheduled as sensors are
-OFTEN = {observations.IMU, observations.MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
+DUE_OFTEN = {observations.IMU, observations.MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
 
@@ -61,7 +61,7 @@ class Simulator:
         self._scanners = Scanners(models, world, self.fleet.poses)
         self.cameras = Cameras(models, p.camera, make_renderer)
         rates = _rates(p)
-        self._usual = Schedule({name: rate for name, rate in rates.items() if name not in OFTEN}, self.rate)
+        self._usual = Schedule({name: rate for name, rate in rates.items() if name not in DUE_OFTEN}, self.rate)
         self._full = Schedule(rates, self.rate)
         self._schedule = self._usual
         self._plans: Dict[Tuple[str, ...], _Plan] = {}  # by the names of what is due, for these subscriptions:
@@ -111,7 +111,7 @@ class Simulator:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
         if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
             self._subscriptions, self._plans = subscriptions, {}
-            self._schedule = self._full if any(map(subscriptions.get, OFTEN)) else self._usual
+            self._schedule = self._full if any(map(subscriptions.get, DUE_OFTEN)) else self._usual
         steps, names = self._schedule.after(self.steps)
         if steps > most:
             self._run(most)
@@ -147,7 +147,7 @@ class Simulator:
             observations.ODOM in names
             or {observations.SCAN, observations.GROUND_TRUTH, observations.JOINTS} & due.keys()
         ):
-            measures.append(self.engine.read)
+            measures.append(self.engine.update_fleet)
         if observations.ODOM in names:
             measures.append(self._update_odometry)
         for name, measure in (
@@ -183,7 +183,7 @@ class Simulator:
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
-        self.engine.read()
+        self.engine.update_fleet()
         return self._distances(self.lidar, [robot])[0]
 
     def _update_odometry(self) -> None:
@@ -228,12 +228,12 @@ class Simulator:
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
-        self.engine.read()
+        self.engine.update_fleet()
         return self.fleet.pose(robot)
 
     def velocity(self, robot: int = 0) -> Twist2D:
         """The robot's true velocity after the last step."""
-        self.engine.read()
+        self.engine.update_fleet()
         return self.fleet.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
@@ -275,7 +275,7 @@ class Simulator:
 
         What the wheels have travelled since the last odometry update belongs to the time before the jump.
         """
-        self.engine.read()
+        self.engine.update_fleet()
         odom_from_footprint = self.observed.odometry.pose_now(robot)
         self.engine.place(robot, world_from_footprint)
         self._newly_placed.add(robot)
@@ -284,7 +284,7 @@ class Simulator:
 
     def place_with_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
         """Like place(), but raises PlaceError, naming the obstacle, if the robot would overlap something."""
-        self.engine.read()
+        self.engine.update_fleet()
         require_room(self.world, self.world_time, self.robots, self.fleet, world_from_footprint, robot)
         self.place(world_from_footprint, robot)
 
@@ -296,7 +296,7 @@ class Simulator:
         spawns = [robot.spawn for robot in self.robots]
         self._moving = self.world.moving()
         self.engine.reset(spawns)
-        self.engine.read()
+        self.engine.update_fleet()
         self.observed.odometry.reset()
         self.observed.map_from_odom[:] = 0.0 if self.observed.odometry.in_world else spawns
         self.seed = self.seed if seed is None else seed

@@ -42,7 +42,7 @@ def _engine(request: pytest.FixtureRequest) -> Iterator[BulletEngine]:
 
 
 def _state(engine: BulletEngine) -> "list[float]":
-    engine.read()
+    engine.update_fleet()
     return [*engine.fleet.poses[0], *engine.fleet.twists[0]]
 
 

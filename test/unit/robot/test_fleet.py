@@ -30,7 +30,7 @@ def test_placed_robot_stands_without_a_command_and_keeps_its_wheel_angles(burger
     fleet.place(1, Pose2D(1.0, 2.0, 3.0))
     state = fleet.state(1)
     assert state.world_from_footprint == fleet.pose(1) == Pose2D(1.0, 2.0, 3.0)
-    assert (state.twist, state.wheel_velocities, state.wheel_angles) == (Twist2D(), (0.0, 0.0), (1.0, 1.0))
+    assert (state.twist, state.wheel_speeds, state.wheel_angles) == (Twist2D(), (0.0, 0.0), (1.0, 1.0))
     assert not fleet.commands[1].any() and not fleet.velocities[1].any() and not fleet.targets[1].any()
     assert fleet.state(0).twist == Twist2D(1.0, 1.0), "the other robot drives on"
 

@@ -7,9 +7,9 @@ from fakes import Owner
 from support import ORIGIN
 
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.simulation.lockstep import Controller
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 
-NODE, ANSWERING = Controller(0, "/controller"), Controller(0, "/answering")
+NODE, ANSWERING = ControllerId(0, "/controller"), ControllerId(0, "/answering")
 AHEAD, INVALID = Twist2D(0.1, 0.0), Twist2D(math.nan, 0.0)
 
 
@@ -95,7 +95,7 @@ def test_answer_from_before_time_was_set_back_is_ignored() -> None:
 def test_reset_while_controllers_are_waited_for_asks_nobody_twice() -> None:
     owner = lockstep(0.35, "/answering_a", "/answering_b")
     controllers = owner.simulation.controllers
-    first, second = Controller(0, "/answering_a"), Controller(0, "/answering_b")
+    first, second = ControllerId(0, "/answering_a"), ControllerId(0, "/answering_b")
 
     def answer(stamp: int) -> None:
         owner.post(0.1, lambda: controllers.answer(first, stamp, None))

@@ -46,7 +46,7 @@ def test_controller_that_sends_a_single_command_causes_no_miss_and_little_waitin
         spent += lockstep.patience()
         assert lockstep.give_up() == []
     assert spent < 1.5
-    assert lockstep.drivers() == []
+    assert lockstep.awaited() == []
 
 
 class Loop:
@@ -122,7 +122,7 @@ def test_disconnected_controller_is_forgotten() -> None:
     lockstep.answered("/a", 0)
     lockstep.tick += 1
     lockstep.gone("/a")
-    assert lockstep.missing() == [] and lockstep.drivers() == []
+    assert lockstep.missing() == [] and lockstep.awaited() == []
 
 
 @given(st.lists(st.sampled_from(["a", "b", "c", "pass", "stamp a"]), max_size=60))

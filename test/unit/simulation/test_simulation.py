@@ -6,10 +6,10 @@ from support import ORIGIN, world_named
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.simulation.lockstep import Controller
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.simulation import Change
 
-NODE = Controller(0, "/controller")
+NODE = ControllerId(0, "/controller")
 AHEAD = Twist2D(0.1, 0.0)
 
 
@@ -30,7 +30,7 @@ def test_with_factor_zero_the_loop_never_waits() -> None:
 
 def test_factor_may_change_while_time_runs() -> None:
     owner = Owner(3.0)
-    owner.post(1.0, lambda: owner.simulation.time.set_real_time_factor(4.0, owner.simulator.steps))
+    owner.post(1.0, lambda: owner.simulation.time_control.set_real_time_factor(4.0, owner.simulator.steps))
     owner.run()
     assert owner.clock.time == pytest.approx(101.5, abs=0.05)
 
@@ -49,7 +49,7 @@ def test_paused_simulation_repeats_the_clock_and_runs_jobs_until_it_is_resumed()
 
 def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
     owner = Owner(start_paused=True, clock_rate=1)
-    time, begun = owner.simulation.time, []
+    time, begun = owner.simulation.time_control, []
     owner.post(0.1, lambda: begun.extend(time.begin_span(seconds, 0) for seconds in (0.26, 1.0)))
     owner.is_stopped = lambda: owner.clock.time > 103.0
     owner.run()
@@ -61,7 +61,7 @@ def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
 
 def test_shortest_span_is_one_step() -> None:
     owner = Owner(start_paused=True, real_time_factor=0.0)
-    owner.simulation.time.begin_span(0.0, 0)
+    owner.simulation.time_control.begin_span(0.0, 0)
     owner.is_stopped = lambda: owner.clock.time > 101.0
     owner.run()
     assert owner.simulator.steps == 1
@@ -69,7 +69,7 @@ def test_shortest_span_is_one_step() -> None:
 
 def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
     owner, spans = Owner(1.0, start_paused=True), []
-    owner.post(0.1, lambda: spans.append(owner.simulation.time.begin_span(0.25, owner.simulator.steps)))
+    owner.post(0.1, lambda: spans.append(owner.simulation.time_control.begin_span(0.25, owner.simulator.steps)))
     owner.post(0.2, lambda: owner.simulation.set_paused(False))
     owner.run()
     assert spans[0] is not None and spans[0].result(0) == 60
@@ -78,7 +78,7 @@ def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
 
 def test_span_keeps_its_length_when_a_reset_sets_time_back() -> None:
     owner = Owner(real_time_factor=0.0, start_paused=True, reset_time=True)
-    time, simulator = owner.simulation.time, owner.simulator
+    time, simulator = owner.simulation.time_control, owner.simulator
     spans = [time.begin_span(2.0, 0)]
     owner.is_stopped = lambda: owner.clock.time > 101.0
     owner.run()

@@ -1,4 +1,4 @@
-"""Server state -> RViz markers: the newest goal and its tolerance, the obstacle sector, the robot with its state."""
+"""Server state -> RViz markers: the newest goal and its tolerance, the safety cone, the robot with its state."""
 
 import textwrap
 from typing import Optional
@@ -17,10 +17,10 @@ FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
 REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
 TEXT_WIDTH = 26  # characters per line
-NEAR_FACTOR = 2.0  # the sector turns yellow within this multiple of the obstacle distance
+NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the obstacle distance
 
 
-def sector_color(clearance: Optional[float], limit: float) -> ColorRGBA:
+def cone_color(clearance: Optional[float], limit: float) -> ColorRGBA:
     """Red below the limit [m], yellow within twice the limit, green beyond it, grey without a scan."""
     if clearance is None:
         return UNKNOWN
@@ -29,15 +29,15 @@ def sector_color(clearance: Optional[float], limit: float) -> ColorRGBA:
     return NEAR if clearance < NEAR_FACTOR * limit else FREE
 
 
-def _obstacle_sector(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
+def _safety_cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
     """The part of the floor in which an obstacle ends a goal."""
-    color = sector_color(clearance, p.obstacle_distance)
-    sector = markers.marker("safety_cone", Marker.TRIANGLE_LIST, frame, color)
-    sector.scale.x = sector.scale.y = sector.scale.z = 1.0
+    color = cone_color(clearance, p.obstacle_distance)
+    cone = markers.marker("safety_cone", Marker.TRIANGLE_LIST, frame, color)
+    cone.scale.x = cone.scale.y = cone.scale.z = 1.0
     rim = markers.arc(p.obstacle_distance, -p.obstacle_half_angle, p.obstacle_half_angle)
     for start, end in zip(rim, rim[1:]):
-        sector.points += [Point(), start, end]
-    return sector
+        cone.points += [Point(), start, end]
+    return cone
 
 
 def _goal_color(outcome: Optional[Outcome]) -> ColorRGBA:
@@ -51,7 +51,7 @@ def server_markers(p: GotoParams, inputs: Inputs, newest: Optional[GoalExecution
     """All of the server's markers; without a goal until the first one."""
     made, scan, odom = [], inputs.scan, inputs.odom
     if scan is not None and scan.message.header.frame_id:
-        made.append(_obstacle_sector(p, inputs.clearance(), scan.message.header.frame_id))
+        made.append(_safety_cone(p, inputs.clearance(), scan.message.header.frame_id))
     if odom is not None:
         base, frame = odom.message.child_frame_id, odom.message.header.frame_id
         made.append(markers.robot_ring(base))

@@ -36,7 +36,7 @@ SEND_TIME = 0.1  # [s, wall] for rospy's sender threads to write what was just p
 NOT_STARTED = Ending(Outcome.PREEMPTED, "it was cancelled or replaced before it started")
 
 
-class GotoServer:
+class GotoNode:
     """Executes one goal at a time, in one thread, the control loop.
 
     Life of a goal: _accept_goal, _advance in each control period, _end, which gives it its one terminal state.
@@ -54,7 +54,7 @@ class GotoServer:
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
-        self.server = GoalServer(GoToPositionResult(False, NOT_STARTED.message))
+        self.goals = GoalServer(GoToPositionResult(False, NOT_STARTED.message))
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
         # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
         rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
@@ -63,7 +63,7 @@ class GotoServer:
         self.loop.start()
         rospy.on_shutdown(self._shut_down)
         self.marker_timer = start_timer(MARKER_PERIOD, self._publish_markers)
-        self.server.start()
+        self.goals.start()
 
     # -- the control loop --
 
@@ -91,30 +91,30 @@ class GotoServer:
                 self._answer_tick(ticker.tick_ns)
 
     def _has_request(self) -> bool:
-        return self.stopping.is_set() or self.server.has_request()
+        return self.stopping.is_set() or self.goals.has_request()
 
     def _is_finished(self) -> bool:
         """On shutdown, whether every goal received so far has ended."""
-        idle = self.execution is None and not self.server.has_request()
+        idle = self.execution is None and not self.goals.has_request()
         return rospy.is_shutdown() or (self.stopping.is_set() and idle)
 
     def _serve_request(self) -> None:
         """End the current goal if what has arrived replaces or cancels it, or on shutdown; accept the newest."""
-        self.server.receive()
+        self.goals.receive()
         if self.execution is not None:
             if self.stopping.is_set():
                 self._end(self.execution.stopped_early(Outcome.SHUTDOWN, "the server is shutting down"))
-            elif self.server.waiting is not None:
+            elif self.goals.waiting is not None:
                 self._end(self.execution.stopped_early(Outcome.PREEMPTED, "a newer goal replaced it"))
-            elif self.server.is_cancelled:
+            elif self.goals.is_cancelled:
                 self._end(self.execution.stopped_early(Outcome.PREEMPTED, "it was cancelled"))
-        if self.server.waiting is not None:
+        if self.goals.waiting is not None:
             self._accept_goal()
 
     # -- one goal --
 
     def _accept_goal(self) -> None:
-        execution = GoalExecution(self.server.accept(), self.tuning, self.inputs)
+        execution = GoalExecution(self.goals.accept(), self.tuning, self.inputs)
         refusal = execution.refusal()
         if refusal is not None:
             self._end(refusal)
@@ -133,7 +133,7 @@ class GotoServer:
         feedback, ending = self.execution.step(tick_ns)
         if feedback is not None:
             self.state = feedback.message
-            self.server.current.publish_feedback(feedback)
+            self.goals.current.publish_feedback(feedback)
         if ending is not None:
             self._end(ending)
         elif feedback is not None:
@@ -149,7 +149,7 @@ class GotoServer:
         ending = Ending(Outcome.ERROR, str(error) if expected else f"{type(error).__name__}: {error}")
         if not expected and not rospy.is_shutdown():
             rospy.logerr("goal failed: %s\n%s", ending.message, traceback.format_exc())
-        if self.server.current is not None:
+        if self.goals.current is not None:
             self._end(ending)
         else:  # the error is not the goal's; all that the loop itself raises is unexpected, and logged above
             self._publish_command(STANDSTILL)
@@ -163,7 +163,7 @@ class GotoServer:
         self.state = ending.message
         log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
         log("%s", ending.message)
-        self.server.end(ending.outcome, GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message))
+        self.goals.end(ending.outcome, GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message))
 
     # -- lockstep --
 
@@ -183,7 +183,7 @@ class GotoServer:
 
     def _shut_down(self) -> None:
         """Before rospy closes its topics: let the control loop stop the robot and end every goal."""
-        busy = self.execution is not None or self.server.has_request()
+        busy = self.execution is not None or self.goals.has_request()
         self.stopping.set()
         self.loop.join(SHUTDOWN_PATIENCE)
         if busy:
@@ -201,5 +201,5 @@ class GotoServer:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     with node(SERVER):
-        GotoServer(param_server.load(GotoParams))
+        GotoNode(param_server.load(GotoParams))
         rospy.spin()

@@ -1,4 +1,4 @@
-"""Parameters -> the simulator, with world, engine and robots from the files of this package or of the user."""
+"""Loads the files that the parameters name, then makes the simulator; see simulation.factory."""
 
 import logging
 import os

@@ -1,5 +1,6 @@
 """Gazebo's services, for code that calls them: /gazebo/pause_physics, get_model_state, set_model_state, ...
 
+What is not simulated answers with success false, so that a client that waits for it does not wait forever.
 A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
@@ -16,9 +17,26 @@ from ...geometry import STANDSTILL, compose3
 from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
-from .gazebo_properties import GazeboProperties, serve
+from .gazebo_property_services import GazeboProperties, serve
 from .gazebo_topics import State, models, relative, state_of
 from .world_services import WorldServices
+
+PUSHED = "only /cmd_vel, the wheels' motors and contacts move a robot, and the world's models stand still"
+REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
+    "apply_body_wrench": (srv.ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
+    "apply_joint_effort": (srv.ApplyJointEffort, f"efforts are not simulated: {PUSHED}"),
+    "get_link_properties": (srv.GetLinkProperties, "masses of links are not kept; a robot's are in /robot_description"),
+    "set_joint_properties": (srv.SetJointProperties, "joints are as in the robot's URDF"),
+    "set_link_properties": (srv.SetLinkProperties, "links are as in the robot's URDF and the world's file"),
+    "set_link_state": (
+        srv.SetLinkState,
+        "links do not move by themselves; /gazebo/set_model_state moves a whole model",
+    ),
+    "set_model_configuration": (
+        srv.SetModelConfiguration,
+        "joints cannot be set: wheels turn as the robot drives, and the world's models have no joints that move",
+    ),
+}
 
 
 class GazeboServices:
@@ -53,16 +71,21 @@ class GazeboServices:
         rospy.Service("/gazebo/delete_model", srv.DeleteModel, self._on_delete)
         rospy.Service("/gazebo/delete_light", srv.DeleteLight, _delete_light)
         GazeboProperties(simulation, set_factor, refusal)
+        for name, (kind, reason) in REFUSED.items():
+            rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
+        # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
+        rospy.Service("/gazebo/clear_body_wrenches", srv.BodyRequest, lambda _: [])
+        rospy.Service("/gazebo/clear_joint_forces", srv.JointRequest, lambda _: [])
         if world_services is not None:
             rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
 
     def _serve_empty(self, name: str, action: Callable[[], Any]) -> None:
-        def serve(_request: Any) -> EmptyResponse:
+        def respond(_request: Any) -> EmptyResponse:
             if self._world_services is not None:
                 self._simulation.jobs.call(action)
             return EmptyResponse()
 
-        rospy.Service(f"/gazebo/{name}", Empty, serve)
+        rospy.Service(f"/gazebo/{name}", Empty, respond)
 
     def _changes(self) -> WorldServices:
         if self._world_services is None:
@@ -133,3 +156,7 @@ class GazeboServices:
 
 def _delete_light(request: Any) -> Tuple[bool, str]:
     return True, f"there is no light {request.light_name!r} to delete: this simulator has none"
+
+
+def _refuser(name: str, reason: str) -> Callable[[Any], Dict[str, Any]]:
+    return lambda _request: {"success": False, "status_message": f"{name}: {reason}"}

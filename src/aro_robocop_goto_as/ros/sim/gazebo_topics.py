@@ -73,7 +73,7 @@ def _calibrate(_request: EmptyRequest) -> EmptyResponse:
 
 
 def _robots(simulator: Simulator) -> List[Tuple[str, RobotModel, RobotState]]:
-    simulator.engine.read()
+    simulator.engine.update_fleet()
     return [
         (robot.name or robot.model.name, robot.model, simulator.fleet.state(index))
         for index, robot in enumerate(simulator.robots)

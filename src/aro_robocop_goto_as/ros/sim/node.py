@@ -49,7 +49,7 @@ class SimNode:
 
     def run(self) -> None:
         """Simulate until shutdown: clock ticks wait for the wall clock, lockstep control ticks for the controllers."""
-        simulator, time, controllers = self._simulator, self._simulation.time, self._simulation.controllers
+        simulator, time, controllers = self._simulator, self._simulation.time_control, self._simulation.controllers
         time.restart(simulator.steps)
         self._publish(set(Change) - {Change.TIME})
         self._pace()
@@ -68,7 +68,7 @@ class SimNode:
 
     def _pace(self) -> None:
         """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
-        jobs, time, simulator = self._simulation.jobs, self._simulation.time, self._simulator
+        jobs, time, simulator = self._simulation.jobs, self._simulation.time_control, self._simulator
         jobs.run_queued()
         self._publish_changes()
         wait = time.hold(simulator.steps)
@@ -97,7 +97,7 @@ class SimNode:
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
-        jobs, time = self._simulation.jobs, self._simulation.time
+        jobs, time = self._simulation.jobs, self._simulation.time_control
         started = time.pacer.now()
         wait = hold()
         while wait > 0.0 and not rospy.is_shutdown():

@@ -7,7 +7,7 @@ from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ...simulation.lockstep import Controller
+from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert
 from ..names import prefixed
@@ -22,11 +22,11 @@ class RobotInputs:
 
     def __init__(self, simulation: Simulation, robot: int) -> None:
         def on_command(message: Twist) -> None:
-            controller, twist = Controller(robot, sender(message)), convert.from_twist_msg(message)
+            controller, twist = ControllerId(robot, sender(message)), convert.from_twist_msg(message)
             simulation.jobs.post(lambda: simulation.controllers.command(controller, twist))
 
         def on_answer(message: TickAnswer) -> None:
-            controller, stamp_ns = Controller(robot, sender(message)), convert.to_ns(message.tick)
+            controller, stamp_ns = ControllerId(robot, sender(message)), convert.to_ns(message.tick)
             twist = convert.from_twist_msg(message.command) if message.has_command else None
             simulation.jobs.post(lambda: simulation.controllers.answer(controller, stamp_ns, twist))
 

@@ -1,4 +1,4 @@
-"""The topics on which one robot's measurements are published, each message with the stamp of its step."""
+"""The topics on which one robot's measurements are published, packed ones stamped by sender.c, others by rospy."""
 
 from typing import Any, Callable, Dict
 
@@ -31,7 +31,7 @@ class RobotTopics:
         self._scan_number = counter()
         self.topics: Dict[str, Any] = {}  # by sensor
         self.packed: Dict[str, PackedMessage] = {}  # by sensor, as scan_message()
-        self.publish: Dict[str, Callable[[], None]] = {}  # by sensor, of those that are published seldom
+        self.publish: Dict[str, Callable[[], None]] = {}  # by sensor, of those that rospy serializes
 
         def topic(sensor: str, relative: str, kind: Any) -> None:
             self.topics[sensor] = publisher(prefixed(name, relative), kind, on_change=on_change)

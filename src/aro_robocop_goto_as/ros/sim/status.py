@@ -10,7 +10,7 @@ from std_msgs.msg import Float64, Header
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...robot.model import RobotSpec
-from ...simulation.lockstep import Controller
+from ...simulation.lockstep import ControllerId
 from ...simulation.pacer import FactorReport
 from ...simulation.simulation import Simulation
 from .. import convert
@@ -18,7 +18,7 @@ from ..names import SIMULATOR
 from ..publishing import publisher
 
 
-def controller_name(controller: Controller, robots: Sequence[RobotSpec]) -> str:
+def controller_name(controller: ControllerId, robots: Sequence[RobotSpec]) -> str:
     """How messages name a controller: by its node, and among several robots also by the one that it commands."""
     return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
 
@@ -28,10 +28,10 @@ class StatusTopics:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._report = FactorReport(0.0, simulation.time.pacer.factor, 0.0, 0.0)
+        self._report = FactorReport(0.0, simulation.time_control.pacer.factor, 0.0, 0.0)
         self._running = 0  # reports while simulated time ran
         self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
-        self._drivers: List[Controller] = []
+        self._awaited: List[ControllerId] = []
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
         self._diagnostics = publisher("/diagnostics", DiagnosticArray)
@@ -39,14 +39,14 @@ class StatusTopics:
     def report(self) -> bool:
         """Publish what is due; cheap when nothing is. Returns whether a second has passed."""
         simulator = self._simulation.simulator
-        report = self._simulation.time.pacer.report(simulator.time, simulator.steps)
+        report = self._simulation.time_control.pacer.report(simulator.time, simulator.steps)
         if report is not None:
             self._report = report
             self._factor.publish(report.reached)
             self.publish()
-            if not self._simulation.time.paused:
+            if not self._simulation.time_control.paused:
                 self._count(report)
-        elif self._simulation.controllers.awaited() != self._drivers:
+        elif self._simulation.controllers.awaited() != self._awaited:
             self.publish()
         return report is not None
 
@@ -71,7 +71,7 @@ class StatusTopics:
     def publish(self) -> None:
         """Publish the newest report now."""
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        self._drivers = simulation.controllers.awaited()
+        self._awaited = simulation.controllers.awaited()
         self._status.publish(
             SimStatus(
                 stamp=convert.to_time(simulator.stamp_ns),
@@ -80,12 +80,12 @@ class StatusTopics:
                 seed=simulator.seed,
                 drive=simulator.p.engine.drive,
                 sync=self._sync,
-                paused=simulation.time.paused,
-                factor_asked=simulation.time.pacer.factor,
+                paused=simulation.time_control.paused,
+                factor_asked=simulation.time_control.pacer.factor,
                 factor_reached=report.reached,
                 step_time=report.step_time,
                 behind=report.lag,
-                drivers=sorted(controller_name(driver, simulator.robots) for driver in self._drivers),
+                drivers=sorted(controller_name(controller, simulator.robots) for controller in self._awaited),
                 lockstep_misses=simulation.controllers.lockstep.misses,
             )
         )
@@ -98,8 +98,8 @@ class StatusTopics:
 
     def _diagnostic_array(self) -> DiagnosticArray:
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        level, text = DiagnosticStatus.OK, "paused" if simulation.time.paused else "running"
-        if report.behind and not simulation.time.paused:
+        level, text = DiagnosticStatus.OK, "paused" if simulation.time_control.paused else "running"
+        if report.behind and not simulation.time_control.paused:
             level, text = DiagnosticStatus.WARN, "slower than the requested real-time factor"
         values = {
             "world": simulator.world.name,
@@ -107,7 +107,7 @@ class StatusTopics:
             "seed": simulator.seed,
             "drive": simulator.p.engine.drive,
             "sync": self._sync,
-            "real-time factor asked": simulation.time.pacer.factor,
+            "real-time factor asked": simulation.time_control.pacer.factor,
             "real-time factor reached": round(report.reached, 3),
             "step time [s]": report.step_time,
             "behind [s]": report.lag,

@@ -53,9 +53,9 @@ class StepTopics:
         """All measurements of one step; then the clock, if wanted, so that a tick's data is there when it ticks."""
         key = observed.due, observed.scans.shape[1], clock
         if key not in self._batches:
-            self._batches[key] = self._seldom(observed.due), self._batch(observed.due, clock)
-        seldom, batch = self._batches[key]
-        for publish in seldom:
+            self._batches[key] = self._unpacked(observed.due), self._batch(observed.due, clock)
+        unpacked, batch = self._batches[key]
+        for publish in unpacked:
             publish()
         batch.send(observed.stamp_ns)
 
@@ -69,14 +69,16 @@ class StepTopics:
         for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
             batch.count()
 
-    def _seldom(self, due: Due) -> Sequence[Callable[[], None]]:
+    def _unpacked(self, due: Due) -> Sequence[Callable[[], None]]:
         """What publishes the measurements that are not in a batch."""
-        of = [(self.robots[robot], sensor) for sensor, robots in due.robots.items() if sensor != TF for robot in robots]
+        of = [
+            (self.robots[robot], sensor) for sensor, robots in due.sensors.items() if sensor != TF for robot in robots
+        ]
         return [robot.publish[sensor] for robot, sensor in of if sensor in robot.publish and sensor not in self._hidden]
 
     def _batch(self, due: Due, clock: bool) -> Batch:
         messages: List[Posted] = []
-        for sensor, robots in due.robots.items():
+        for sensor, robots in due.sensors.items():
             if sensor == TF:
                 transforms = [transform for robot in robots for transform in self.transforms.of(robot)]
                 messages += [(self.transforms.tf, packed_transforms(transforms))] if transforms else []

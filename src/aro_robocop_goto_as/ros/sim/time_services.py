@@ -27,7 +27,7 @@ class TimeServices:
         rospy.Service("~unpause", Trigger, lambda _: (True, call(lambda: self._set_paused(False))))
         rospy.Service("~step", Step, self._on_step)
         rospy.Service("~reset", Reset, self._on_reset)
-        rospy.set_param("~real_time_factor", simulation.time.pacer.factor)  # where dynamic_reconfigure's server starts
+        rospy.set_param("~real_time_factor", simulation.time_control.pacer.factor)  # its server begins here
         self._reconfigure = Server(SimConfig, self._on_reconfigure)
 
     def set_factor(self, factor: float) -> None:
@@ -42,7 +42,7 @@ class TimeServices:
         """Blocks this service's thread until the span is over; the owner's loop goes on meanwhile."""
         if not (math.isfinite(request.duration) and 0.0 <= request.duration <= LONGEST_STEP):
             return self._step_refused(f"duration {request.duration}: expected 0 to {LONGEST_STEP:g} s")
-        jobs, time, simulator = self._simulation.jobs, self._simulation.time, self._simulation.simulator
+        jobs, time, simulator = self._simulation.jobs, self._simulation.time_control, self._simulation.simulator
         ended = jobs.call(lambda: time.begin_span(request.duration, simulator.steps))
         if ended is None:
             return self._step_refused("another step request is in progress")
@@ -67,12 +67,12 @@ class TimeServices:
         )
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:
-        factor, current = config.real_time_factor, self._simulation.time.pacer.factor
+        factor, current = config.real_time_factor, self._simulation.time_control.pacer.factor
         if not 0.0 <= factor < math.inf:
             rospy.logerr("real_time_factor: expected a number, 0 or more, got %g; keeping %g", factor, current)
             config.real_time_factor = current
         elif factor != current:
             rospy.loginfo("real-time factor %g, was %g", factor, current)
-            simulator, time = self._simulation.simulator, self._simulation.time
+            simulator, time = self._simulation.simulator, self._simulation.time_control
             self._simulation.jobs.post(lambda: time.set_real_time_factor(factor, simulator.steps))
         return config

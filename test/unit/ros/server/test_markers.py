@@ -16,7 +16,7 @@ from aro_robocop_goto_as.ros.server.markers import (
     NOT_REACHED,
     REACHED,
     UNKNOWN,
-    sector_color,
+    cone_color,
     server_markers,
 )
 
@@ -48,4 +48,4 @@ def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
 
 @pytest.mark.parametrize("clearance, color", [(None, UNKNOWN), (0.29, BLOCKED), (0.31, NEAR), (0.61, FREE)])
 def test_sector_ahead_says_by_its_colour_how_near_an_obstacle_is(clearance, color):
-    assert sector_color(clearance, 0.3) == color
+    assert cone_color(clearance, 0.3) == color

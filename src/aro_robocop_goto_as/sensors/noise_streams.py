@@ -1,4 +1,4 @@
-"""Repeatable sensor noise: it depends on seed, stream and step only, not on the order of the calls."""
+"""Repeatable noise of slip, IMU and number of beams, by seed, stream and step only; ranges draw theirs in lidar.c."""
 
 import numpy as np
 

@@ -1,7 +1,4 @@
-"""Gazebo's services about links, joints and physics; those that have no meaning on a plane answer with success false.
-
-A client that waits for one of them therefore gets an answer instead of waiting forever.
-"""
+"""Gazebo's services that tell the properties of links, joints, models and physics."""
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
@@ -19,23 +16,6 @@ from .gazebo_topics import State, links, relative, state_of
 
 SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
 GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
-
-PUSHED = "only /cmd_vel, the wheels' motors and contacts move a robot, and the world's models stand still"
-REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
-    "apply_body_wrench": (srv.ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
-    "apply_joint_effort": (srv.ApplyJointEffort, f"efforts are not simulated: {PUSHED}"),
-    "get_link_properties": (srv.GetLinkProperties, "masses of links are not kept; a robot's are in /robot_description"),
-    "set_joint_properties": (srv.SetJointProperties, "joints are as in the robot's URDF"),
-    "set_link_properties": (srv.SetLinkProperties, "links are as in the robot's URDF and the world's file"),
-    "set_link_state": (
-        srv.SetLinkState,
-        "links do not move by themselves; /gazebo/set_model_state moves a whole model",
-    ),
-    "set_model_configuration": (
-        srv.SetModelConfiguration,
-        "joints cannot be set: wheels turn as the robot drives, and the world's models have no joints that move",
-    ),
-}
 
 
 def serve(simulation: Simulation, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
@@ -66,11 +46,6 @@ class GazeboProperties:
         serve(simulation, "get_model_properties", srv.GetModelProperties, self._get_model_properties)
         serve(simulation, "get_physics_properties", srv.GetPhysicsProperties, self._get_physics_properties)
         rospy.Service("/gazebo/set_physics_properties", srv.SetPhysicsProperties, self._on_set_physics_properties)
-        for name, (kind, reason) in REFUSED.items():
-            rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
-        # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
-        rospy.Service("/gazebo/clear_body_wrenches", srv.BodyRequest, lambda _: [])
-        rospy.Service("/gazebo/clear_joint_forces", srv.JointRequest, lambda _: [])
 
     # -- in the owner's thread --
 
@@ -120,14 +95,14 @@ class GazeboProperties:
         robot, _, joint = request.joint_name.rpartition("::")
         if joint not in WHEEL_JOINTS:
             raise FrameError(f"joint [{request.joint_name}] does not exist; there are: {', '.join(WHEEL_JOINTS)}")
-        self._simulator.engine.read()
+        self._simulator.engine.update_fleet()
         state = self._simulator.fleet.state(self._robot(robot) if robot else 0)
         side = WHEEL_JOINTS.index(joint)
         return {
             "type": srv.GetJointPropertiesResponse.REVOLUTE,  # as gazebo_ros says of every joint
             "damping": [0.0],
             "position": [state.wheel_angles[side]],
-            "rate": [state.wheel_velocities[side]],
+            "rate": [state.wheel_speeds[side]],
             "success": True,
             "status_message": "GetJointProperties: got properties",
         }
@@ -141,7 +116,7 @@ class GazeboProperties:
         return names.index(name)
 
     def _get_physics_properties(self, _request: Any) -> Dict[str, Any]:
-        rate, time = self._simulator.rate, self._simulation.time
+        rate, time = self._simulator.rate, self._simulation.time_control
         return {
             "time_step": 1.0 / rate,
             "pause": time.paused,
@@ -171,10 +146,6 @@ class GazeboProperties:
         if not 0.0 <= request.max_update_rate < 1e9:
             return f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more"
         return ""
-
-
-def _refuser(name: str, reason: str) -> Callable[[Any], Dict[str, Any]]:
-    return lambda _request: {"success": False, "status_message": f"{name}: {reason}"}
 
 
 def _each(names: List[str]) -> List[str]:
