@@ -1,7 +1,7 @@
 """Velocity commands: applied at once, or in lockstep at the end of the control tick, for which time is held."""
 
 from dataclasses import dataclass, field
-from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional
+from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
@@ -26,6 +26,7 @@ class TickReport:
 
     late: List[ControllerId] = field(default_factory=list)  # did not answer in time: time goes on without them
     gone: List[ControllerId] = field(default_factory=list)  # disconnected: their robots are stopped
+    slower: List[Tuple[ControllerId, float]] = field(default_factory=list)  # with the rates of their loops [Hz]
 
 
 class Controllers:
@@ -116,6 +117,7 @@ class Controllers:
         pending, self._pending = self._pending, {}
         for robot, command in pending.items():
             self._apply(robot, command.twist)
+        self._report.slower = [(name, self._rate / period) for name, period in self.lockstep.take_slower()]
         return self._report
 
     def _apply(self, robot: int, twist: Twist2D) -> None:

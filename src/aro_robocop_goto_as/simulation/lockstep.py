@@ -2,17 +2,20 @@
 
 A tick is the number of a control period. Simulated time is held at a tick until no controller is `missing`.
 
-A controller that stamps its answers names the tick of each one, so it is followed exactly. A controller that only sends
+A controller that stamps its answers names the tick of each one, so it is followed exactly. If its loop is slower than
+the ticks, all of these are multiples of its period, which is known after some answers. A controller that only sends
 velocity commands is followed by counting: what arrives after time has left tick k, and before it leaves tick k + 1, is
 its answer to tick k + 1. The gaps between its answers show its period: a 4 Hz loop on 10 Hz ticks answers after 2, 3,
 2, 3, ... ticks. Until the period is known it may answer at any tick, so the simulator waits briefly at each one.
 """
 
+import math
 from dataclasses import dataclass, field
-from typing import Dict, Generic, List, NamedTuple, Optional, TypeVar
+from typing import Dict, Generic, List, NamedTuple, Optional, Tuple, TypeVar
 
 LONGEST_GAP = 20  # ticks; a controller that is silent for longer has stopped, and counts as new when it returns
 LONGEST_PATTERN = 12  # gaps until they repeat
+STAMPED_AFTER = 3  # gaps between stamped answers show their period
 SURE_AFTER = 4  # gaps, at least, that match the pattern; after a mistake, two of the longest patterns
 
 # Share of the timeout that the simulator waits for an answer:
@@ -29,10 +32,14 @@ class _AnswerRecord:
     passed: int = -1  # newest tick at which the wait for it was given up
     gaps: List[int] = field(default_factory=list)  # ticks from answer to answer, the newest last
     mistaken: bool = False  # its gaps have predicted an answer that did not come
+    stamps: int = 0  # answers that named their tick, since time was last set
+    period: int = 0  # greatest common divisor of the gaps between these
 
     def next_gap(self) -> Optional[int]:
         """Ticks from the last answer to the next one; None while its period is unknown."""
-        if self.stamped or (self.gaps and set(self.gaps) == {1}):
+        if self.stamped:
+            return self.period if self.stamps > STAMPED_AFTER else 1
+        if self.gaps and set(self.gaps) == {1}:
             return 1
         settled = self.gaps[1:]  # the first one depends on when the loop started
         enough = 2 * LONGEST_PATTERN if self.mistaken else SURE_AFTER  # a pattern may look simpler than it is
@@ -72,6 +79,7 @@ class Lockstep(Generic[Name]):
         self.tick = tick
         self.misses = 0  # answers given up on so far
         self._controllers: Dict[Name, _AnswerRecord] = {}
+        self._slower: List[Tuple[Name, int]] = []
 
     def commanded(self, name: Name) -> None:
         """Note a velocity command that does not name its tick."""
@@ -86,8 +94,15 @@ class Lockstep(Generic[Name]):
     def answered(self, name: Name, tick: int) -> None:
         """Note an answer, which names its tick; one for an earlier tick only shows that its sender is alive."""
         known = self._controllers.get(name)
-        last = tick if known is None or not known.stamped else max(tick, known.last)
-        self._controllers[name] = _AnswerRecord(last, stamped=True)
+        if known is None or not known.stamped:
+            self._controllers[name] = _AnswerRecord(tick, stamped=True, stamps=1)
+            return
+        known.awaited, known.passed = True, -1
+        if tick > known.last:
+            period = math.gcd(known.period, tick - known.last) if known.stamps else 0
+            known.last, known.period, known.stamps = tick, period, known.stamps + 1
+            if known.stamps == STAMPED_AFTER + 1 and period > 1:
+                self._slower.append((name, period))
 
     def enroll(self, name: Name) -> None:
         """Wait from now on for a controller that stamps its answers and has connected."""
@@ -125,6 +140,11 @@ class Lockstep(Generic[Name]):
         self.misses += len(late)
         return late
 
+    def take_slower(self) -> List[Tuple[Name, int]]:
+        """Controllers that answer only each N-th tick, with N, of which that became known since the last call."""
+        slower, self._slower = self._slower, []
+        return slower
+
     def awaited(self) -> List[Name]:
         """The controllers that are waited for, sorted."""
         return sorted(name for name, known in self._controllers.items() if known.awaited)
@@ -136,7 +156,7 @@ class Lockstep(Generic[Name]):
         """
         for name, known in self._controllers.items():
             if known.stamped:
-                known.last = tick - 1
+                known.last, known.stamps, known.period = tick - 1, 0, 0
             elif tick < self.tick:
                 self._controllers[name] = _AnswerRecord(tick - 1, awaited=known.awaited)
         self.tick = tick

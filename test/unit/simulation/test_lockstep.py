@@ -137,3 +137,51 @@ def test_giving_up_leaves_no_controller_missing(events: "list[str]") -> None:
             lockstep.answered("a", lockstep.tick)
         else:
             lockstep.commanded(event)
+
+
+def _answer_and_count_misses(lockstep: Lockstep, period: int, ticks: int) -> int:
+    """A controller stamps answers to multiples of `period` only; how often it was waited for in vain."""
+    misses = 0
+    for _ in range(ticks):
+        lockstep.tick += 1
+        if lockstep.tick % period == 0:
+            lockstep.answered("/a", lockstep.tick)
+        misses += len(lockstep.give_up())
+        assert lockstep.missing() == []
+    return misses
+
+
+def test_stamping_controller_slower_than_the_ticks_is_soon_awaited_at_its_own_ticks_only() -> None:
+    lockstep: Lockstep[str] = Lockstep()
+    lockstep.enroll("/a")
+    assert 1 <= _answer_and_count_misses(lockstep, 3, 30) <= 5
+    assert lockstep.take_slower() == [("/a", 3)] and lockstep.take_slower() == []
+    assert _answer_and_count_misses(lockstep, 3, 300) == 0
+    lockstep.tick += 3 - lockstep.tick % 3
+    assert lockstep.missing() == ["/a"]
+
+
+def test_stamping_controller_that_missed_ticks_is_awaited_at_each_one_again() -> None:
+    lockstep: Lockstep[str] = Lockstep()
+    lockstep.enroll("/a")
+    for lockstep.tick in (2, 4, 8, 12):  # it hung in between
+        lockstep.answered("/a", lockstep.tick)
+    lockstep.tick = 13
+    assert lockstep.missing() == []
+    lockstep.answered("/a", 13)
+    lockstep.tick = 14
+    assert lockstep.missing() == ["/a"]
+
+
+def test_stamping_controller_at_the_rate_of_the_ticks_is_never_called_slower() -> None:
+    lockstep: Lockstep[str] = Lockstep()
+    lockstep.enroll("/a")
+    assert _answer_and_count_misses(lockstep, 1, 50) == 0 and lockstep.take_slower() == []
+
+
+def test_period_is_learned_again_after_a_reset() -> None:
+    lockstep: Lockstep[str] = Lockstep()
+    lockstep.enroll("/a")
+    _answer_and_count_misses(lockstep, 2, 30)
+    lockstep.restart(0)
+    assert lockstep.missing() == ["/a"]

@@ -94,6 +94,12 @@ class SimNode:
             names = ", ".join(controller_name(controller, robots) for controller in report.late)
             text = "lockstep: no answer from %s within %g s; simulated time continues without it"
             rospy.logwarn(text, names, controllers.timeout)
+        for controller, rate in report.slower:
+            name, control_rate = controller_name(controller, robots), self._simulator.p.rates.control_rate
+            text = (
+                "lockstep: %s runs at %g Hz, control_rate is %g Hz: it is waited for only at its own ticks from now on"
+            )
+            rospy.logwarn(text, name, rate, control_rate)
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
