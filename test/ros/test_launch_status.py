@@ -89,6 +89,10 @@ def test_quiet_launch_shows_why_the_simulator_failed(launch):
     assert "Ctrl-C" not in launched.output  # nothing about how to use what does not run
 
 
+def test_launch_starts_the_node_that_gathers_the_logs_of_all_nodes(launch):
+    launch("world:=empty").wait_for_process("/rosout")
+
+
 @pytest.mark.parametrize(
     "argument, words",
     [

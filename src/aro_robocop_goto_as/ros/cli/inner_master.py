@@ -19,22 +19,29 @@ POLL = 0.001  # [s, wall]
 
 
 @contextlib.contextmanager
-def inner_master(uri: str) -> Iterator[None]:
-    """A master at this address for the block, unless one answers there or it is not this machine's.
+def inner_master(uri: str) -> Iterator[bool]:
+    """Whether there is a master at this address for the block: not if one answers there or it is not this machine's.
 
     Then, or if another process has the port, roslaunch uses that master, or says why it can't.
     """
     host, port = rosgraph.network.parse_http_host_and_port(uri)
-    with contextlib.suppress(MasterError):
-        if rosgraph.network.is_local_address(host) and not master.master_answers(uri):
-            failed = threading.Event()
-            node = XmlRpcNode(port, ROSMasterHandler(NUM_WORKERS), on_run_error=lambda _: failed.set())
-            node.start()
-            while node.uri is None and not failed.wait(POLL):
-                pass
-            try:
-                yield
-            finally:
-                node.shutdown("the launcher ends")
-            return
-    yield
+    if not rosgraph.network.is_local_address(host) or _is_taken(uri):
+        yield False
+        return
+    failed = threading.Event()
+    node = XmlRpcNode(port, ROSMasterHandler(NUM_WORKERS), on_run_error=lambda _: failed.set())
+    node.start()
+    while node.uri is None and not failed.wait(POLL):
+        pass
+    try:
+        yield not failed.is_set()
+    finally:
+        node.shutdown("the launcher ends")
+
+
+def _is_taken(uri: str) -> bool:
+    """Whether a master answers there, or something else."""
+    try:
+        return master.master_answers(uri)
+    except MasterError:
+        return True

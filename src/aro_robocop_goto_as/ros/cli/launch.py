@@ -92,7 +92,8 @@ def launch(arguments: List[str]) -> int:
                 with buffered_stderr(deferred):
                     roslaunch_internals.load_launch_files(parent)
                 _check(parent.config)
-                until_the_end.enter_context(inner_master(uri))
+                if until_the_end.enter_context(inner_master(uri)):
+                    roslaunch_internals.start_core_nodes(parent)
                 parent.start()
             if options.quiet or options.overview:
                 simulator = _simulator(parent, expected=options.overview)

@@ -28,6 +28,26 @@ def add_early_listener(parent: Any, listener: Any) -> None:
     parent._start_pm = start_process_monitor_with_listener
 
 
+def start_core_nodes(parent: Any) -> None:
+    """Have a ROSLaunchParent that is not started yet start rosout, which gathers the logs of all nodes in /rosout_agg.
+
+    roslaunch does so only with a master that it started itself.
+    """
+    init_runner = parent._init_runner
+
+    def init_runner_as_with_own_master() -> None:
+        init_runner()
+        find_master = parent.runner._launch_master
+
+        def find_own_master() -> bool:
+            find_master()
+            return True
+
+        parent.runner._launch_master = find_own_master
+
+    parent._init_runner = init_runner_as_with_own_master
+
+
 def install_roslaunch_signal_handlers() -> None:
     """Install roslaunch's signal handlers now; roslaunch does it when it starts the first process."""
     pmon._init_signal_handlers()
