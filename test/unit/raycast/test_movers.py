@@ -34,4 +34,5 @@ def test_circles_are_where_the_motion_says(moving: "List[Tuple[float, float, Mot
         expected = [motion.carry(Pose2D(x, y), time)[:2] for x, y, motion in moving]
         np.testing.assert_array_equal(circles[1:, :2], expected)
         assert circles[0].tolist() == list(standing[0]) and (circles[1:, 2] == 0.1).all()
-        assert farthest == max(map(math.hypot, *(circles - before)[:, :2].T))
+        moved = max(map(math.hypot, *(circles - before)[:, :2].T))
+        np.testing.assert_array_max_ulp(farthest, moved, 1)  # the last bit of hypot() differs between Python and C
