@@ -109,19 +109,20 @@ def _unconnected(record: Record) -> str:
     return text("The action client looks for {}; the handout says {}", closest(name, others) or others[0], name)
 
 
-def _reports(record: Record) -> List[float]:
-    """When each report began [s]."""
+def _reports(record: Record, until: float = math.inf) -> List[float]:
+    """When each report before this time began [s]."""
     start = record.marks["watching"]
     reports: List[float] = []
     for line in record.lines:
-        if line.time > start + 0.2 and (not reports or line.time - reports[-1] > SAME_REPORT):
+        if start + 0.2 < line.time < until and (not reports or line.time - reports[-1] > SAME_REPORT):
             reports.append(line.time)
     return reports
 
 
 def _reports_without_pending(failure: Failed, retried: Record, limits: Limits) -> Failed:
     """The failure, with the cause if enough is reported for a goal that is never PENDING."""
-    enough = failure.kind == MISSING and len(_reports(retried)) >= limits.status_reports
+    second_click = retried.clicks[-1].time - 1e-6  # which changes the state
+    enough = failure.kind == MISSING and len(_reports(retried, second_click)) >= limits.status_reports
     return replace(failure, cause=text("{}. Its reports then stop", PENDING_CAUSE)) if enough else failure
 
 

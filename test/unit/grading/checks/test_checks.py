@@ -8,7 +8,7 @@ import pytest
 from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
 
 from robocop_grading import record as rec
-from robocop_grading.checks import CHECKS, Failed, NotReached, Passed
+from robocop_grading.checks import CHECKS, RETRIED, Failed, NotReached, Passed
 from robocop_grading.record import Record
 
 
@@ -228,6 +228,22 @@ def test_reported_states_are_compared_with_the_true_ones(pending: str, active: s
     record = _clicked(1.2, -0.4, *((float(t), pending if t < 10 else active) for t in range(2, 30, 4)))
     verdict = CHECKS["reports_status"](record, LIMITS)
     assert verdict == Passed() if not words else isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize(
+    "times, words",
+    [
+        ((11.0, 30.0, 30.5), "only report changes"),  # the second click, at 30 s, changes the state
+        ((11.0, 13.0), "treats a PENDING goal as finished"),
+    ],
+)
+def test_reports_of_a_goal_that_is_never_pending_tell_why_others_stop(times: Tuple[float, ...], words: str) -> None:
+    verdict = CHECKS["reports_status"](_clicked(1.2, -0.4, (11.0, "state 1")), LIMITS)
+    assert isinstance(verdict, Failed)
+    watched = _clicked(1.2, -0.4, *((time, "state") for time in times))
+    second = rec.Click(30.0, "odom", -0.6, 0.9, -0.6, 0.9)
+    _, explained = RETRIED["reports_status"]
+    assert words in explained(verdict, replace(watched, clicks=(*watched.clicks, second)), LIMITS).cause
 
 
 @pytest.mark.parametrize(
