@@ -9,7 +9,7 @@ import math
 import signal
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Tuple, Type, Union
+from typing import Any, Dict, List, Optional, Tuple, Type, Union, get_args, get_type_hints
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
 
@@ -159,17 +159,11 @@ class Record:
     marks: Dict[str, float] = field(default_factory=dict)  # named moments of the scenario [s]
 
 
-_PARTS: Dict[str, Type[Any]] = {
-    "samples": Sample,
-    "goals": Goal,
-    "cancels": Cancel,
-    "statuses": Status,
-    "results": Result,
-    "feedback": Feedback,
-    "commands": Command,
-    "clicks": Click,
-    "lines": Line,
-    "deaths": Death,
+# A record's lists of what was seen -> what they consist of.
+PARTS: Dict[str, Type[Any]] = {
+    name: get_args(hint)[0]
+    for name, hint in get_type_hints(Record).items()
+    if dataclasses.is_dataclass(next(iter(get_args(hint)), None))
 }
 
 
@@ -188,12 +182,14 @@ def write(record: Record, path: Path) -> None:
 def read(path: Path) -> Record:
     """Read a record that `write` wrote."""
     raw = json.loads(path.read_text())
-    for name, kind in _PARTS.items():
-        raw[name] = tuple(kind(**entry) for entry in raw[name])
-    for name in ("servers", "types", "unpublished"):
-        raw[name] = tuple(raw[name])
-    raw["obstacles"] = tuple(tuple(outline) for outline in raw["obstacles"])
-    return Record(**raw)
+    return Record(**{name: _frozen(value, PARTS.get(name)) for name, value in raw.items()})
+
+
+def _frozen(value: Any, kind: Optional[Type[Any]] = None) -> Any:
+    """A list as a tuple, with its mappings as objects of a class."""
+    if isinstance(value, list):
+        return tuple(_frozen(it, kind) for it in value)
+    return kind(**value) if kind is not None else value
 
 
 def results_of(record: Record, goal: Goal) -> List[Result]:

@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, Callable, Dict
+from typing import Any, Dict
 
 import actionlib
 import roslib.message
@@ -21,12 +21,10 @@ from aro_robocop_goto_as.ros import graph
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import Plan
-from ..record import Record
-from .display import is_shown
-from .node import Node
+from ..job import Job
+from ..plan import BRIDGE_SCENARIOS
 from .ros_internals import goal_senders, has_client
-from .run import Run
+from .run import TICK, Run
 from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node's first connection
@@ -44,36 +42,41 @@ STATUS_TYPES = {
 FRAMES = ("base_footprint", "map")
 
 
-class BridgeRun:
+class BridgeRun(Run):
     """One submission's bridge.
 
     Its goals stay PENDING for a fixed simulated time: how long they do with a real server depends on that server, and
     a bridge that treats PENDING as the end would pass or fail by chance.
     """
 
-    def __init__(self, plan: Plan, launch: Callable[[Stage], Node], stage: Stage) -> None:
-        self.plan = plan
-        self.launch = launch
-        self.stage = stage
+    def __init__(self, job: Job, stage: Stage) -> None:
+        super().__init__(job, stage)
         # A timer with a longer period can't report often enough, so one that can always meets a PENDING goal.
-        self.pending_time = plan.limits.status_span / max(1.0, plan.limits.status_reports)
-        self.run = Run(stage, "bridge")
-        self.run.handlers.update({"sent": self._on_sent, "goal": self._on_goal, "cancel": self._on_cancel})
+        self.pending_time = self.plan.limits.status_span / max(1.0, self.plan.limits.status_reports)
+        self.cancels = stage.listen(f"{ACTION}/cancel", GoalID, self._on_cancel)
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}  # of goals that have not ended, by id
         self.accepted_from: Dict[str, float] = {}  # likewise of PENDING goals: when they are accepted [s]
         self.server: Any = None
         self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
 
+    def scenarios(self) -> None:
+        """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
+        wanted = [name for name in BRIDGE_SCENARIOS if self.plan.examines(self.job.part, name)]
+        for name in BRIDGE_SCENARIOS[: BRIDGE_SCENARIOS.index(wanted[-1]) + 1]:
+            scenario = getattr(self, f"_{name}")
+            self.announce(name, scenario.__doc__)
+            scenario()
+
     # -- the server that it talks to --
 
     def _serve(self) -> None:
         # actionlib's server does not report a goal whose cancel arrived first, so goals are counted on the topic.
-        self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, "sent")
+        self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, self._on_sent)
         self.server = actionlib.ActionServer(
             ACTION,
             GoToPositionAction,
-            lambda handle: self.stage.post("goal", handle),
+            lambda handle: self.stage.post(self._on_goal, handle),
             lambda _handle: None,
             auto_start=False,
         )
@@ -81,18 +84,18 @@ class BridgeRun:
 
     def _on_sent(self, message: GoToPositionActionGoal) -> None:
         position, name = message.goal.position, message.goal_id.id
-        self.run.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
+        self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
         self._note_if_cancelled(name)
 
     def _note_if_cancelled(self, name: str) -> None:
         """A goal's cancel may have arrived first: they use two connections."""
-        if any(cancel.id == name for cancel in self.run.parts["cancels"]):
-            self.run.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+        if any(cancel.id == name for cancel in self.parts["cancels"]):
+            self.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
 
     def _on_goal(self, handle: Any) -> None:
         name = handle.get_goal_id().id
         self.handles[name] = handle
-        self.run.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
+        self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
         self.accepted_from[name] = self.stage.now + self.pending_time - 1e-6
         self._note_if_cancelled(name)
         self._accept_goals()
@@ -103,7 +106,7 @@ class BridgeRun:
             if self.accepted_from.get(name, math.inf) <= self.stage.now:
                 del self.accepted_from[name]
                 handle.set_accepted()
-                self.run.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
+                self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
                 handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
 
     def _on_cancel(self, message: GoalID) -> None:
@@ -112,13 +115,13 @@ class BridgeRun:
         A request for all goals spares those of the same tick: a client that cancels all and then sends a goal uses two
         connections, and cannot know which message arrives first.
         """
-        self.run.add("cancels", rec.Cancel(self.stage.now, message.id))
-        for goal in self.run.parts["goals"]:
+        self.add("cancels", rec.Cancel(self.stage.now, message.id))
+        for goal in self.parts["goals"]:
             handle = self.handles.get(goal.id)
             everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
             earlier = bool(message.stamp) and handle is not None and handle.get_goal_id().stamp <= message.stamp
             if handle is not None and (message.id == goal.id or everything or earlier):
-                self.run.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
+                self.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
                 handle.set_canceled(GoToPositionResult(False, "cancelled"))
                 del self.handles[goal.id]
                 self.accepted_from.pop(goal.id, None)
@@ -126,28 +129,28 @@ class BridgeRun:
     def _finish_goals(self) -> None:
         """Let all goals succeed, each once it has been accepted."""
         while self.accepted_from:
-            self._tick()
+            self.tick()
         for handle in self.handles.values():
             handle.set_succeeded(GoToPositionResult(True, "there"))
         self.handles.clear()
 
     # -- clicks --
 
-    def _click(self, frame: str, x: float, y: float) -> None:
+    def _send_click(self, frame: str, x: float, y: float) -> None:
         """A 2D Nav Goal; then let time pass until a goal has come, for REACTION_TIME at most."""
         robot, to_map = self.stage.odom_from_footprint(), inverse(self.stage.sim.map_from_odom())
         odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
-        self.run.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
+        self.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
         message = PoseStamped()
         message.header.frame_id, message.header.stamp = frame, self.stage.stamp
         message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
-        count = len(self.run.parts["goals"])
+        count = len(self.parts["goals"])
         self.clicks.publish(message)
-        self.run.digest()  # what the bridge does at once takes no simulated time
-        for _ in range(int(REACTION_TIME * 10)):
-            if len(self.run.parts["goals"]) > count:
+        self.stage.digest()  # what the bridge does at once takes no simulated time
+        for _ in range(round(REACTION_TIME / TICK)):
+            if len(self.parts["goals"]) > count:
                 return
-            self._tick()
+            self.tick()
 
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
@@ -156,62 +159,54 @@ class BridgeRun:
             if others and topic.name not in self.reports and topic.type in STATUS_TYPES:
                 text = f"published on {topic.name}"
                 kind = roslib.message.get_message_class(topic.type)
-                self.reports[topic.name] = self.stage.listen(topic.name, kind, "line", partial(_text, text))
+                self.reports[topic.name] = self.stage.listen(topic.name, kind, self._on_line, partial(_text, text))
 
-    def _tick(self) -> None:
-        self.run.tick()
+    def tick(self, real_time: bool = True) -> None:
+        """One control tick, after which goals may be accepted."""
+        super().tick(real_time)
         self._accept_goals()
-        self.run.digest()  # its client has learned the state before time continues
-
-    def _advance(self, seconds: float) -> None:
-        for _ in range(int(seconds * 10)):
-            self._tick()
+        self.stage.digest()  # its client has learned the state before time continues
 
     # -- scenarios, in this order --
 
-    def no_server(self, bag: str) -> Record:
+    def _no_server(self) -> None:
         """The bridge starts and gets a click while there is no server."""
-        run = self.run
-        run.begin(0, bag=bag)
-        run.node = self.launch(self.stage)
-        run.wait_for(self._is_connected, START_TIMEOUT)
-        self._advance(1.0)
+        self.begin("no_server", 0)
+        self.launch()
+        self.wait_for(self._is_connected, START_TIMEOUT)
+        self.settle(1.0)
         if self.clicks.get_num_connections():
-            self._click("odom", 0.5, 0.1)
-        self._advance(3.0)
-        return self.run.finish("no_server", up=not run.death_recorded)
+            self._send_click("odom", 0.5, 0.1)
+        self.settle(3.0)
+        self.finish("no_server", up=not self.death_recorded)
 
     def _is_connected(self) -> bool:
-        return bool(self.clicks.get_num_connections() or self.run.subscribers["cancel"].get_num_connections())
+        return bool(self.clicks.get_num_connections() or self.cancels.get_num_connections())
 
-    def click(self, bag: str) -> Record:
+    def _click(self) -> None:
         """The server is there; a click, then time passes while the goal is active."""
-        run = self.run
-        run.begin(0, bag=bag)
+        self.begin("click", 0)
         self._serve()
-        up = run.wait_for(self._server_is_connected, CONNECT_TIMEOUT)
-        self._advance(2.0)  # a click that the bridge has kept may come now
+        up = self.wait_for(self._server_is_connected, CONNECT_TIMEOUT)
+        self.settle(2.0)  # a click that the bridge has kept may come now
         self._finish_goals()
-        self._advance(0.5)
-        run.marks["clicked"] = self.stage.now
-        run.marks["listeners"] = float(self.clicks.get_num_connections())
-        run.marks["clients"] = float(goal_senders(self.server))
-        self._click("odom", 1.2, -0.4)
-        while run.parts["goals"] and self.stage.now < run.parts["goals"][-1].time + self.pending_time:
-            self._tick()
-        run.marks["watching"] = self.stage.now
+        self.settle(0.5)
+        self.marks["clicked"] = self.stage.now
+        self.marks["listeners"] = float(self.clicks.get_num_connections())
+        self.marks["clients"] = float(goal_senders(self.server))
+        self._send_click("odom", 1.2, -0.4)
+        while self.parts["goals"] and self.stage.now < self.parts["goals"][-1].time + self.pending_time:
+            self.tick()
+        self.marks["watching"] = self.stage.now
         self._watch_reports(self.plan.limits.status_span)
-        clients = graph.action_clients()
-        unpublished = tuple(topic for topic in graph.unpublished_topics() if not is_shown(topic))
-        names = {"servers": tuple(clients), "types": tuple(clients.values()), "unpublished": unpublished}
-        return self.run.finish("click", up=up and not run.death_recorded, **names)
+        self.finish("click", up=up and not self.death_recorded, **self.names(graph.action_clients()))
 
     def _watch_reports(self, seconds: float) -> None:
         """Let time pass, and record what is published on topics that appear meanwhile."""
         for tenth in range(int(round(seconds * 10))):
             if tenth % 10 == 0:
                 self._subscribe_to_reports()
-            self._tick()
+            self.tick()
         for subscriber in self.reports.values():
             subscriber.unregister()
         self.reports.clear()
@@ -219,53 +214,45 @@ class BridgeRun:
     def _server_is_connected(self) -> bool:
         return bool(self.clicks.get_num_connections() > 0 and has_client(self.server))
 
-    def replace(self, bag: str) -> Record:
+    def _replace(self) -> None:
         """A second click while the first one's goal is active."""
-        run = self.run
-        first = list(run.parts["goals"])
-        run.begin(0, bag=bag)
+        first = list(self.parts["goals"])
+        self.begin("replace", 0)
         for goal in first[-1:]:
-            run.add("goals", goal)
-        run.marks["clicked"] = self.stage.now
-        self._click("odom", -0.6, 0.9)
-        self._advance(2.0)
-        return self.run.finish("replace", up=not run.death_recorded)
+            self.add("goals", goal)
+        self.marks["clicked"] = self.stage.now
+        self._send_click("odom", -0.6, 0.9)
+        self.settle(2.0)
+        self.finish("replace", up=not self.death_recorded)
 
-    def frame(self, bag: str) -> Record:
+    def _frame(self) -> None:
         """Clicks in other frames, after the robot has moved, where map differs from odom."""
-        run = self.run
         self._finish_goals()
-        run.begin(1, bag=bag)
-        run.settle(0.5)
+        self.begin("frame", 1)
+        self.settle(0.5)
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
-            self._advance(seconds)
+            self.settle(seconds)
         for frame in FRAMES:
-            self._click(frame, 1.0, 0.2)
-            self._advance(0.5)
+            self._send_click(frame, 1.0, 0.2)
+            self.settle(0.5)
             self._finish_goals()
-            self._advance(0.5)
-        return self.run.finish("frame", up=not run.death_recorded)
+            self.settle(0.5)
+        self.finish("frame", up=not self.death_recorded)
 
-    def no_pending(self, bag: str) -> Record:
+    def _no_pending(self) -> None:
         """A click and a second one, whose goals are accepted at once, so that the bridge's timer finds them ACTIVE."""
-        run = self.run
         self._finish_goals()
         self.pending_time = 0.0
-        run.begin(0, bag=bag)
-        run.settle(1.0)
-        self._click("odom", 1.2, -0.4)
-        run.marks["watching"] = self.stage.now
+        self.begin("no_pending", 0)
+        self.settle(1.0)
+        self._send_click("odom", 1.2, -0.4)
+        self.marks["watching"] = self.stage.now
         self._watch_reports(self.plan.limits.status_span)
-        self._click("odom", -0.6, 0.9)
-        self._advance(1.0)
+        self._send_click("odom", -0.6, 0.9)
+        self.settle(1.0)
         self._finish_goals()
-        return run.finish("no_pending", up=not run.death_recorded)
-
-    def close(self) -> None:
-        """End the node."""
-        if self.run.node is not None:
-            self.run.node.end()
+        self.finish("no_pending", up=not self.death_recorded)
 
 
 def _text(text: str, message: Any) -> str:

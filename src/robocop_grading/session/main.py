@@ -1,5 +1,6 @@
 """Runs all scenarios of one part of a submission, and writes a record file for each."""
 
+import contextlib
 import os
 import sys
 import time
@@ -12,88 +13,24 @@ from aro_robocop_goto_as.errors import GraderLostError, NoTimeError, WatchError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
-from .. import record as rec
 from ..job import Job
-from ..plan import BRIDGE_SCENARIOS
 from . import ros_internals
 from .bridge import BridgeRun
-from .node import Node
-from .run import NODE_LOST
+from .run import NODE_LOST, Run
 from .server import ServerRun
 from .stage import PARAMS, Stage
 from .watch import Watch
 
 MASTER_TIMEOUT = 600.0  # [s, wall]
-
-
-class Session:
-    """A job while it is done."""
-
-    def __init__(self, job: Job, stage: Stage) -> None:
-        self.job, self.stage = job, stage
-
-    def launch(self, stage: Stage) -> Node:
-        """Start the node that is graded."""
-        master = urlparse(os.environ["ROS_MASTER_URI"]).port
-        return Node(
-            self.job.command,
-            self.job.environment,
-            self.job.folder,
-            lambda line: stage.post("line", line),
-            stage.run_jobs,
-            int(master or 0),
-            stage.sim.stamp_ns,
-        )
-
-    def begin(self, name: str, about: str) -> None:
-        """Announce the next scenario to the grader, and in the viewer if the run is watched."""
-        print(f"begin {name}", flush=True)
-        if self.stage.watch is not None:
-            self.stage.watch.begin(f"{self.job.part}: {name}", about)
-
-    def keep(self, record: rec.Record) -> None:
-        """Write a record."""
-        rec.write(record, self.job.out / f"{self.job.part}-{record.name}.json")
-
-    def bag(self, name: str) -> str:
-        """The path of a scenario's bag."""
-        return str(self.job.out / f"{self.job.part}-{name}.bag")
-
-    def serve_goals(self) -> None:
-        """Run the server's scenarios."""
-        job = self.job
-        server = ServerRun(job.plan, self.launch, self.stage)
-        try:
-            self.begin("start", "The node starts")
-            start = server.start(self.bag("start"))
-            self.keep(start)
-            for index, scenario in enumerate(job.plan.scenarios, 1):
-                if start.up and job.plan.examines(job.part, scenario.name):
-                    self.begin(scenario.name, scenario.about)
-                    self.keep(server.scenario(index, scenario, self.bag(scenario.name)))
-        finally:
-            server.close()
-
-    def click(self) -> None:
-        """Run the bridge's scenarios."""
-        bridge = BridgeRun(self.job.plan, self.launch, self.stage)
-        try:
-            wanted = [name for name in BRIDGE_SCENARIOS if self.job.plan.examines(self.job.part, name)]
-            for name in BRIDGE_SCENARIOS[: BRIDGE_SCENARIOS.index(wanted[-1]) + 1]:  # each begins where one has ended
-                scenario = getattr(bridge, name)
-                self.begin(name, scenario.__doc__)
-                self.keep(scenario(self.bag(name)))
-        finally:
-            bridge.close()
+REFUSAL = "the judge decides where the robot and the models of the world are"  # to calls of Gazebo's that change them
 
 
 def _serve_gazebo(stage: Stage) -> None:
     """For nodes that wait for Gazebo's services; the types exist if the submission was built on top of compat/."""
-    try:
-        from .gazebo import serve
-    except ImportError:
-        return
-    serve(stage.simulation)
+    with contextlib.suppress(ImportError):
+        from aro_robocop_goto_as.ros.sim.gazebo_services import GazeboServices
+
+        GazeboServices(stage.simulation, None, REFUSAL)
 
 
 def _start_master() -> None:
@@ -121,14 +58,14 @@ def main() -> None:
     stage = Stage(job.plan)
     _serve_gazebo(stage)
     stage.publish_clock()
-    session = Session(job, stage)
+    run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
     status = 0
     try:
         if job.viewer is not None:
             log = job.out / f"{job.part}-viewer.log"
             stage.watch = Watch(stage.robot, PARAMS, job.plan, job.viewer, log)
             stage.watch.open()
-        (session.serve_goals if job.part == "server" else session.click)()
+        run.scenarios()
     except GraderLostError as error:
         print(error, file=sys.stderr)
         status = 1
@@ -143,6 +80,7 @@ def main() -> None:
         print(f"error {error}")
         status = 1
     finally:
+        run.close()
         if stage.watch is not None:
             stage.watch.close()
     sys.stdout.flush()

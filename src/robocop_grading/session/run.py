@@ -1,36 +1,128 @@
-"""Advances simulated time for one node, and records what it does."""
+"""One node's run through the scenarios of its part: the ticks, and a record of everything that arrives from it."""
 
-from typing import Callable, Optional
+import os
+from typing import Any, Callable, Dict, List, Set
+from urllib.parse import urlparse
+
+import rosgraph
+import rospy
+from actionlib_msgs.msg import GoalStatusArray
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
+from geometry_msgs.msg import Twist
+from rosgraph_msgs.msg import Log
 
 from aro_robocop_goto_as.errors import GraderLostError
+from aro_robocop_goto_as.geometry import STANDSTILL
+from aro_robocop_goto_as.ros import convert, graph
 from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from .. import record as rec
+from ..handout import ACTION
+from ..job import Job
+from ..record import Record
 from ..sandbox import memory_group
 from ..sandbox.guard import exceeded_memory
+from .display import is_shown
 from .node import Node
-from .recording import Recording
 from .stage import Stage
 
 TICK = 0.1  # [s]
+MAX_ENTRIES = 20_000  # of each kind in one record
 NODE_LOST = "the grader's ROS node was shut down while the submission ran"
 
 
-class Run(Recording):
-    """The recording of the current scenario, and the ticks that both parts share."""
+class Run:
+    """A job while it is done: the current scenario's record so far, and which goals are known and have ended."""
 
-    def __init__(self, stage: Stage, part: str) -> None:
-        super().__init__(stage, part)
+    def __init__(self, job: Job, stage: Stage) -> None:
+        self.job, self.plan, self.stage = job, job.plan, stage
+        self.ended: Set[str] = set()
+        self.known: Dict[str, int] = {}  # goal -> status
+        self.parts: Dict[str, List[Any]] = {}
+        self.marks: Dict[str, float] = {}
         self.death_recorded = False
+        self.subscribers = {  # by topic
+            "/cmd_vel": stage.listen("/cmd_vel", Twist, self._on_command),
+            "/rosout": stage.listen("/rosout", Log, self._on_log),
+        }
 
-    @property
-    def node(self) -> Optional[Node]:
-        """The node that is graded."""
-        return self.stage.node
+    def scenarios(self) -> None:
+        """Run those that the plan's checks examine."""
+        raise NotImplementedError
 
-    @node.setter
-    def node(self, node: Optional[Node]) -> None:
-        self.stage.node = node
+    def announce(self, name: str, about: str) -> None:
+        """Tell the grader, and the viewer if the run is watched, which scenario is the next one."""
+        print(f"begin {name}", flush=True)
+        if self.stage.watch is not None:
+            self.stage.watch.begin(f"{self.job.part}: {name}", about)
+
+    def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
+        """Start a scenario's record and bag, with the robot at the start of the site of this index."""
+        self.parts = {part: [] for part in rec.PARTS}
+        self.marks = {}
+        self.stage.bag.open(str(self.job.out / f"{self.job.part}-{name}.bag"))
+        self.stage.command(STANDSTILL)
+        self.stage.begin(index, odd_scan)
+
+    def finish(self, name: str, **more: Any) -> Record:
+        """Write the scenario's record, and return it."""
+        self.stage.bag.close()
+        if not rosgraph.is_master_online():
+            raise GraderLostError("the ROS master was ended while the submission ran")
+        parts: Dict[str, Any] = {part: tuple(entries) for part, entries in self.parts.items()}
+        record = Record(name, self.job.part, marks=self.marks, **parts, **more)
+        rec.write(record, self.job.out / f"{self.job.part}-{name}.json")
+        return record
+
+    def add(self, part: str, entry: Any) -> None:
+        """Record an entry; of a flood of them only the first ones."""
+        if len(self.parts[part]) < MAX_ENTRIES:
+            self.parts[part].append(entry)
+
+    def names(self, others: Dict[str, str]) -> Dict[str, Any]:
+        """What a record says of action servers (name -> type) and of topics that the node waits for in vain."""
+        unpublished = tuple(topic for topic in graph.unpublished_topics() if not is_shown(topic))
+        return {"servers": tuple(others), "types": tuple(others.values()), "unpublished": unpublished}
+
+    # -- the node --
+
+    def launch(self) -> None:
+        """Start the node that is graded."""
+        self.death_recorded = False
+        self.stage.node = Node(
+            self.job.command,
+            self.job.environment,
+            self.job.folder,
+            lambda line: self.stage.post(self._on_line, line),
+            self.stage.run_jobs,
+            int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0),
+            self.stage.sim.stamp_ns,
+        )
+
+    def is_dead(self) -> bool:
+        """Whether there is no node, or it has ended."""
+        return self.stage.node is None or self.stage.node.status() is not None
+
+    def close(self) -> None:
+        """End the node."""
+        if self.stage.node is not None:
+            self.stage.node.end()
+            self.stage.node = None
+
+    def _record_death(self) -> None:
+        node = self.stage.node
+        status = None if node is None or self.death_recorded else node.status()
+        if node is None or status is None:
+            return
+        self.death_recorded = True
+        reason = node.guard.reason or node.ended
+        if not reason and status in rec.OUT_OF_TIME:
+            reason = "it used more processor time than a node may"
+        elif not reason and status in rec.KILLED and memory_group.has_killed():
+            reason = exceeded_memory(memory_group.LIMIT)
+        self.add("deaths", rec.Death(self.stage.now, status, reason))
+
+    # -- time --
 
     def tick(self, real_time: bool = True) -> None:
         """One control tick; a watched run is shown at real time."""
@@ -42,35 +134,57 @@ class Run(Recording):
             self.stage.watch.show(sample, self.parts["goals"], self.parts["clicks"])
         self._record_death()
 
-    def digest(self) -> None:
-        """Let the node do what it does at once, in no simulated time."""
-        self.stage.digest()
-
     def settle(self, seconds: float) -> None:
         """Let time pass."""
-        for _ in range(int(round(seconds / TICK))):
+        for _ in range(round(seconds / TICK)):
             self.tick()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Let time pass until a condition holds, the node is dead or `timeout` [s] is over; whether it holds."""
-        for _ in range(int(round(timeout / TICK))):
-            if condition() or self._dead():
+        for _ in range(round(timeout / TICK)):
+            if condition() or self.is_dead():
                 break
             self.tick(real_time=False)
         return condition()
 
-    def _dead(self) -> bool:
-        return self.node is None or self.node.status() is not None
+    # -- what arrives, in the main thread --
 
-    def _record_death(self) -> None:
-        if self.node is None or self.death_recorded:
-            return
-        status = self.node.status()
-        if status is not None:
-            self.death_recorded = True
-            reason = self.node.guard.reason or self.node.ended
-            if not reason and status in rec.OUT_OF_TIME:
-                reason = "it used more processor time than a node may"
-            elif not reason and status in rec.KILLED and memory_group.has_killed():
-                reason = exceeded_memory(memory_group.LIMIT)
-            self.add("deaths", rec.Death(self.stage.now, status, reason))
+    def listen_to_server(self) -> None:
+        """Record what an action server sends."""
+        for name, kind, handler in (
+            ("feedback", GoToPositionActionFeedback, self._on_feedback),
+            ("result", GoToPositionActionResult, self._on_result),
+            ("status", GoalStatusArray, self._on_status),
+        ):
+            self.subscribers[f"{ACTION}/{name}"] = self.stage.listen(f"{ACTION}/{name}", kind, handler)
+
+    def _on_command(self, message: Twist) -> None:
+        twist = convert.from_twist_msg(message)
+        self.stage.keep("/cmd_vel", message)
+        self.add("commands", rec.Command(self.stage.now, twist.v, twist.w))
+        self.stage.command(twist)
+
+    def _on_feedback(self, message: GoToPositionActionFeedback) -> None:
+        self.stage.keep(f"{ACTION}/feedback", message)
+        name, errors = message.status.goal_id.id, message.feedback
+        self.add("feedback", rec.Feedback(self.stage.now, name, errors.position_error, errors.angle_error))
+
+    def _on_result(self, message: GoToPositionActionResult) -> None:
+        self.stage.keep(f"{ACTION}/result", message)
+        name, result = message.status.goal_id.id, message.result
+        self.add("results", rec.Result(self.stage.now, name, message.status.status, result.success, result.message))
+        self.ended.add(name)
+
+    def _on_status(self, message: GoalStatusArray) -> None:
+        for entry in message.status_list:
+            if self.known.get(entry.goal_id.id) != entry.status:
+                self.known[entry.goal_id.id] = entry.status
+                self.add("statuses", rec.Status(self.stage.now, entry.goal_id.id, entry.status))
+
+    def _on_log(self, message: Log) -> None:
+        if message.name != rospy.get_name():
+            level = "ERROR" if message.level >= Log.ERROR else "WARN" if message.level >= Log.WARN else "INFO"
+            self._on_line(f"[{level}] {message.msg}")
+
+    def _on_line(self, text: str) -> None:
+        self.add("lines", rec.Line(self.stage.now, text))

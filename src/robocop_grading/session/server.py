@@ -1,7 +1,7 @@
 """The server's scenarios: goals sent to it on the action's topics, as by any client."""
 
 import math
-from typing import Callable, List, Tuple
+from typing import List
 
 import rospy
 from actionlib_msgs.msg import GoalID
@@ -14,11 +14,10 @@ from aro_robocop_goto_as.ros import graph, markers
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import Plan, Push, Scenario, Step
+from ..job import Job
+from ..plan import START, Push, Scenario, Step
 from ..record import Record
-from .display import is_shown
-from .node import Node
-from .run import Run
+from .run import TICK, Run
 from .stage import Stage, outlines
 
 START_TIMEOUT = 20.0  # [s] for the node to connect to the recorder of /rosout
@@ -27,55 +26,59 @@ WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AT_END = 0.25  # [s] before a result, in which the robot was where it ended
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
 MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
-Launch = Callable[[Stage], Node]
 
 
-class ServerRun:
+class ServerRun(Run):
     """One submission's server, restarted after a scenario that left it in a bad state."""
 
-    def __init__(self, plan: Plan, launch: Launch, stage: Stage) -> None:
-        self.plan = plan
-        self.limits = plan.limits
-        self.launch = launch
-        self.stage = stage
-        self.run = Run(stage, "server")
-        self.goal_topic, self.cancel_topic = _topics()
+    def __init__(self, job: Job, stage: Stage) -> None:
+        super().__init__(job, stage)
+        self.listen_to_server()
+        self.limits = job.plan.limits
+        self._advertise()
         self._used = False  # the node has served a scenario
         self._pushes: List[Push] = []  # that are still to come
         self._pushed_until = 0.0  # [s]
 
-    def start(self, bag: str = "") -> Record:
+    def _advertise(self) -> None:
+        """Publish goals and cancel requests."""
+        self.goal_topic = rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10)
+        self.cancel_topic = rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10)
+
+    def scenarios(self) -> None:
+        """Start the node, then all scenarios, if its action server comes up."""
+        self.announce(START, "The node starts")
+        start = self._start()
+        for index, scenario in enumerate(self.plan.scenarios, 1):
+            if start.up and self.plan.examines(self.job.part, scenario.name):
+                self.announce(scenario.name, scenario.about)
+                self._scenario(index, scenario)
+
+    def _start(self) -> Record:
         """Start the node; the record says whether its action server came up."""
-        self.run.begin(0, bag=bag)
+        self.begin(START, 0)
         up = self._bring_up()
-        servers = graph.action_servers()
-        unpublished = [topic for topic in graph.unpublished_topics() if not is_shown(topic)]
-        self.run.settle(0.3)
-        return self.run.finish(
-            "start", up=up, servers=tuple(servers), types=tuple(servers.values()), unpublished=tuple(unpublished)
-        )
+        names = self.names(graph.action_servers())
+        self.settle(0.3)
+        return self.finish(START, up=up, **names)
 
     def _bring_up(self) -> bool:
-        run = self.run
-        run.death_recorded, run.known, self._used = False, {}, False
-        run.node = self.launch(self.stage)
-        log = run.subscribers["log"]
-        run.wait_for(lambda: log.get_num_connections() > 0, START_TIMEOUT)
-        up = run.wait_for(self._connected, SERVER_TIMEOUT)
-        run.settle(0.2)
-        return up and not run.death_recorded
+        self.known, self._used = {}, False
+        self.launch()
+        log = self.subscribers["/rosout"]
+        self.wait_for(lambda: log.get_num_connections() > 0, START_TIMEOUT)
+        up = self.wait_for(self._connected, SERVER_TIMEOUT)
+        self.settle(0.2)
+        return up and not self.death_recorded
 
     def _connected(self) -> bool:
         """Whether all five topics are connected, so that no message is lost."""
-        return (
-            self.goal_topic.get_num_connections() > 0
-            and self.cancel_topic.get_num_connections() > 0
-            and all(self.run.subscribers[name].get_num_connections() for name in ("result", "feedback", "status"))
-        )
+        heard = [self.subscribers[f"{ACTION}/{name}"] for name in ("result", "feedback", "status")]
+        return all(topic.get_num_connections() for topic in (self.goal_topic, self.cancel_topic, *heard))
 
     # -- one scenario --
 
-    def scenario(self, index: int, scenario: Scenario, bag: str) -> Record:
+    def _scenario(self, index: int, scenario: Scenario) -> None:
         """Run its script to the end, or until it can't continue.
 
         If a goal ends otherwise than it should, with a node that has served other scenarios, the scenario is repeated
@@ -83,29 +86,28 @@ class ServerRun:
         goals, and must not fail the others.
         """
         used = self._used
-        record = self._play(index, scenario, bag)
-        return self._play(index, scenario, bag) if used and self._unexpected(record) else record
+        if self._unexpected(self._play(index, scenario)) and used:
+            self._play(index, scenario)
 
-    def _play(self, index: int, scenario: Scenario, bag: str) -> Record:
-        run = self.run
-        run.begin(index, scenario.odd_scan, bag)
+    def _play(self, index: int, scenario: Scenario) -> Record:
+        self.begin(scenario.name, index, scenario.odd_scan)
         problem = ""
-        run.ended.clear()
+        self.ended.clear()
         self._pushes = list(scenario.pushes)
-        if run.node is None or run.node.status() is not None:
+        if self.is_dead():
             self._end_node()
             if not self._bring_up():
                 problem = "the node did not come up again"
         self._used = True
         if not problem:
-            run.settle(WARM_UP)
+            self.settle(WARM_UP)
             for number, step in enumerate(scenario.steps, 1):
                 problem = self._step(index, f"{scenario.name}-{number}", step)
                 if problem:
                     break
         if problem:
-            run.settle(AFTER)
-        record = run.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
+            self.settle(AFTER)
+        record = self.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
         if problem or self._unclean(record):
             self._end_node()
         return record
@@ -132,35 +134,33 @@ class ServerRun:
         return False
 
     def _end_node(self) -> None:
-        if self.run.node is not None:
-            self.run.node.end()
-            self.run.node = None
+        if self.stage.node is not None:
+            self.close()
             self.stage.run_jobs()  # its last messages belong to the previous scenario
             # rospy drops a dead subscriber only on the next write; new publishers count only the next node.
             for topic in (self.goal_topic, self.cancel_topic):
                 topic.unregister()
-            self.goal_topic, self.cancel_topic = _topics()
+            self._advertise()
 
     def _step(self, index: int, name: str, step: Step) -> str:
         """Run one step of a script; returns the problem, or an empty text."""
-        run = self.run
         if step.place:
             self.stage.teleport(index, Pose2D(*step.place))
-            run.settle(WARM_UP)
+            self.settle(WARM_UP)
             return ""
         if step.goal:
             goal = self._send(name, step)
-            run.digest()
+            self.stage.digest()
         elif step.cancel:
-            goal = run.parts["goals"][-1]
-            run.add("cancels", rec.Cancel(self.stage.now, goal.id))
+            goal = self.parts["goals"][-1]
+            self.add("cancels", rec.Cancel(self.stage.now, goal.id))
             self.cancel_topic.publish(GoalID(id=goal.id))
-            run.digest()
+            self.stage.digest()
         if step.run:
             return self._advance(goal, step.run)
         problem = self._until_end(goal)
         if not problem or step.ends == "PREEMPTED":
-            run.settle(AFTER)
+            self.settle(AFTER)
         return problem
 
     def _send(self, name: str, step: Step) -> rec.Goal:
@@ -169,7 +169,7 @@ class ServerRun:
             there = compose(self.stage.odom_from_footprint(), Pose2D(x, y))
             x, y = there.x, there.y
         goal = rec.Goal(name, x, y, self.stage.now, step.ends or "PREEMPTED")
-        self.run.add("goals", goal)
+        self.add("goals", goal)
         message = GoToPositionActionGoal(goal=GoToPositionGoal())
         message.header.stamp = message.goal_id.stamp = self.stage.stamp
         message.goal_id.id = name
@@ -180,8 +180,8 @@ class ServerRun:
         return goal
 
     def _advance(self, goal: rec.Goal, seconds: float) -> str:
-        for _ in range(int(round(seconds * 10))):
-            if goal.id in self.run.ended:
+        for _ in range(round(seconds / TICK)):
+            if goal.id in self.ended:
                 return "the goal ended too early"
             problem = self._tick()
             if problem:
@@ -191,7 +191,7 @@ class ServerRun:
     def _until_end(self, goal: rec.Goal) -> str:
         """Tick until the goal has ended; returns the problem, or an empty text."""
         started, progress = self.stage.now, None
-        while goal.id not in self.run.ended:
+        while goal.id not in self.ended:
             problem = self._tick()
             if problem:
                 return problem
@@ -206,10 +206,8 @@ class ServerRun:
 
     def _tick(self) -> str:
         self._push()
-        self.run.tick()
-        if self.run.node is None or self.run.node.status() is not None:
-            return "the node died"
-        return ""
+        self.tick()
+        return "the node died" if self.is_dead() else ""
 
     def _push(self) -> None:
         """Push the robot where the plan says so."""
@@ -220,16 +218,3 @@ class ServerRun:
             push = self._pushes.pop(0)
             self.stage.push(Twist2D(push.v, push.w))
             self._pushed_until = self.stage.now + push.seconds
-
-    def close(self) -> None:
-        """End the node."""
-        if self.run.node is not None:
-            self.run.node.end()
-
-
-def _topics() -> Tuple[rospy.Publisher, rospy.Publisher]:
-    """Publishers of goals and cancel requests."""
-    return (
-        rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10),
-        rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10),
-    )

@@ -2,7 +2,8 @@
 
 import math
 from collections import deque
-from typing import Any, Callable, Deque, Dict, Optional, Tuple
+from functools import partial
+from typing import Any, Callable, Deque, Optional, Tuple
 
 import genpy
 import numpy as np
@@ -61,12 +62,11 @@ class Stage:
         self.simulation = Simulation(self.sim)
         self._topics = StepTopics(self.sim, hidden={JOINTS})
         self.robot = self._topics.robots[0]
-        self.handlers: Dict[str, Callable[[Any], object]] = {}  # by the name under which a message is posted
         self.odd_scan = False
         self.bag = ScenarioBag(self.sim, self.robot, self._topics.transforms, PARAMS.frames)
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
-        self._arrived: Deque[Callable[[], None]] = deque()
+        self._arrived: Deque[Callable[[], object]] = deque()
         self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._real_time = True
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
@@ -83,21 +83,18 @@ class Stage:
 
     # -- what arrives --
 
-    def post(self, name: str, payload: Any) -> None:
+    def post(self, handler: Callable[[Any], object], payload: Any) -> None:
         """Have the main thread handle something; may be called from any thread."""
+        self._arrived.append(partial(handler, payload))
 
-        def handle() -> None:
-            if name in self.handlers:
-                self.handlers[name](payload)
-
-        self._arrived.append(handle)
-
-    def listen(self, topic: str, kind: Any, name: str, of: Callable[[Any], Any] = trimmed) -> rospy.Subscriber:
-        """Post what arrives on a topic under a name; `of` reduces a message to what is kept of it."""
+    def listen(
+        self, topic: str, kind: Any, handler: Callable[[Any], object], of: Callable[[Any], Any] = trimmed
+    ) -> rospy.Subscriber:
+        """Have the main thread handle what arrives on a topic; `of` reduces a message to what is kept of it."""
 
         def receive(message: Any) -> None:
             if len(self._arrived) < MOST_WAITING:  # messages of a flood beyond that are dropped
-                self.post(name, of(message))
+                self.post(handler, of(message))
 
         return rospy.Subscriber(topic, kind, receive, tcp_nodelay=True)
 
