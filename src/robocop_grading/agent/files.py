@@ -7,7 +7,7 @@ import socket
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from . import scheduler
-from .scheduler import Traffic
+from .scheduler import Files, Traffic
 
 
 def traffic_of(connection: socket.socket) -> Traffic:
@@ -32,7 +32,7 @@ def traffic_of(connection: socket.socket) -> Traffic:
 def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
-    if scheduler.active and timeout != 0 and not flags & socket.MSG_DONTWAIT:
+    if timeout != 0 and not flags & socket.MSG_DONTWAIT:
         if not scheduler.poll([(connection.fileno(), select.POLLIN)], timeout):
             raise socket.timeout("timed out")
 
@@ -64,29 +64,42 @@ def _sending(method: Callable[..., Any]) -> Callable[..., Any]:
     return send
 
 
+def _when_ready(look: Callable[[], Any], files: Files, timeout: Optional[float]) -> Any:
+    """What `look` finds at once, or after `timeout` [s, simulated], or as soon as one of these files is ready."""
+    ready = look()
+    if timeout == 0 or any(ready):
+        return ready
+    scheduler.poll(files, None if timeout is None or timeout < 0 else timeout)
+    return look()
+
+
+def _descriptor(file: Any) -> int:
+    return file if isinstance(file, int) else int(file.fileno())
+
+
 class Poll:
-    """select.poll(), or with another `make` select.epoll()."""
+    """select.poll()."""
 
-    def __init__(self, make: Callable[..., Any] = select.poll, *arguments: Any, **options: Any) -> None:
-        self._poll = make(*arguments, **options)
+    def __init__(self) -> None:
+        self._poll = scheduler.select_poll()
         self._files: Dict[int, int] = {}
-        self.register, self.modify, self.unregister = self._register, self._poll.modify, self._unregister
 
-    def _register(self, file: Any, events: int = select.POLLIN | select.POLLPRI | select.POLLOUT) -> None:
+    def register(self, file: Any, events: int = select.POLLIN | select.POLLPRI | select.POLLOUT) -> None:
         self._poll.register(file, events)
-        self._files[file if isinstance(file, int) else file.fileno()] = events
+        self._files[_descriptor(file)] = events
 
-    def _unregister(self, file: Any) -> None:
+    def modify(self, file: Any, events: int) -> None:
+        self._poll.modify(file, events)
+        self._files[_descriptor(file)] = events
+
+    def unregister(self, file: Any) -> None:
         self._poll.unregister(file)
-        self._files.pop(file if isinstance(file, int) else file.fileno(), None)
+        self._files.pop(_descriptor(file), None)
 
     def poll(self, timeout: Optional[float] = None) -> List[Tuple[int, int]]:
         """Wait for `timeout` [ms, simulated]."""
-        ready = self._poll.poll(0)
-        if ready or timeout == 0 or not scheduler.active:
-            return list(ready) if ready or timeout == 0 else list(self._poll.poll(timeout))
-        scheduler.poll(list(self._files.items()), None if timeout is None or timeout < 0 else timeout / 1e3)
-        return list(self._poll.poll(0))
+        seconds = None if timeout is None else timeout / 1e3
+        return list(_when_ready(lambda: self._poll.poll(0), list(self._files.items()), seconds))
 
 
 class Epoll:
@@ -106,11 +119,8 @@ class Epoll:
 
     def poll(self, timeout: Optional[float] = None, maxevents: int = -1) -> List[Tuple[int, int]]:
         """Wait for `timeout` [s, simulated]."""
-        ready = self._epoll.poll(0, maxevents)
-        if ready or timeout == 0 or not scheduler.active:
-            return list(ready) if ready or timeout == 0 else list(self._epoll.poll(timeout, maxevents))
-        scheduler.poll([(self._epoll.fileno(), select.POLLIN)], None if timeout is None or timeout < 0 else timeout)
-        return list(self._epoll.poll(0, maxevents))
+        files = [(self._epoll.fileno(), select.POLLIN)]
+        return list(_when_ready(lambda: self._epoll.poll(0, maxevents), files, timeout))
 
 
 _epoll, _select = select.epoll, select.select
@@ -120,20 +130,15 @@ def simulated_select(
     reads: Any, writes: Any, errors: Any, timeout: Optional[float] = None
 ) -> Tuple[List[Any], List[Any], List[Any]]:
     """select.select()."""
-    reads, writes, errors = list(reads), list(writes), list(errors)
-    ready = _select(reads, writes, errors, 0)
-    if any(ready) or timeout == 0 or not scheduler.active:
-        return ready if any(ready) or timeout == 0 else _select(reads, writes, errors, timeout)
-    if not (reads or writes or errors):
-        scheduler.pause(scheduler.deadline(timeout))
-        return ready
+    given = list(reads), list(writes), list(errors)
     wanted: Dict[int, int] = {}
-    for files, events in ((reads, select.POLLIN), (writes, select.POLLOUT), (errors, select.POLLPRI)):
-        for file in files:
-            number = file if isinstance(file, int) else file.fileno()
-            wanted[number] = wanted.get(number, 0) | events
-    scheduler.poll(list(wanted.items()), timeout)
-    return _select(reads, writes, errors, 0)
+    for files, events in zip(given, (select.POLLIN, select.POLLOUT, select.POLLPRI)):
+        for file in map(_descriptor, files):
+            wanted[file] = wanted.get(file, 0) | events
+    ready: Tuple[List[Any], List[Any], List[Any]] = _when_ready(
+        lambda: _select(*given, 0), list(wanted.items()), timeout
+    )
+    return ready
 
 
 def install() -> None:

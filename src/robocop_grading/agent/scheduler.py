@@ -120,6 +120,8 @@ def poll(files: Files, timeout: Optional[float] = None) -> bool:
     if me in calling:
         poller.poll()
         return True
+    if not active:
+        return bool(poller.poll(None if timeout is None else timeout * 1e3))
     if timeout is not None and timeout <= 0.0:
         return False
     waiter = Waiter(files)
