@@ -52,7 +52,7 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
         extra = " (extra)" if result.extra else ""
         points = f"{result.points:4g} / {result.points_available:<4g}"
         lines.append(f"{LABELS[result.outcome]:11}  {points}  {result.sentence}{extra}")
-        lines.append(f"{'':11}  {result.explanation()}")
+        lines.append(f"{'':11}  {result.words}")
     for why, results in not_reached.items():
         points = f"{0:4g} / {sum(result.points_available for result in results):<4g}"
         names = ", ".join(result.name for result in results)

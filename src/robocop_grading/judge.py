@@ -41,12 +41,7 @@ class CheckResult:
     failure: Optional[Failed] = None
     why: str = ""  # reason for NOT_REACHED
     follows: str = ""  # name of the check whose failure is the reason for this one, failed or not reached
-
-    words: str = ""  # the explanation
-
-    def explanation(self) -> str:
-        """The outcome with its reason."""
-        return self.words
+    words: str = ""  # the outcome with its reason
 
 
 @dataclass(frozen=True)

@@ -69,7 +69,7 @@ def row(wrong: Wrong) -> str:
     cells = (
         wrong.name,
         wrong.check if check.failure is not None else "NO",
-        "yes" if wrong.words in check.explanation() else "NO",
+        "yes" if wrong.words in check.words else "NO",
         others,
         f"{grade.points:g}",
         f"{seconds:.0f}",

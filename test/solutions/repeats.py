@@ -96,8 +96,8 @@ def _wrong(wrong: Wrong, folder: Path, whole: bool, seed: int) -> Tuple[List[str
     run = recorded(wrong.text(), folder, [] if whole else [wrong.check], seed=seed)
     grade = judge.judge(wrong.name, plan, {part: run.records}, {part: run.problem})
     result = next(result for result in grade.checks if result.name == wrong.check)
-    expected = result.outcome is Outcome.FAILED and wrong.words in result.explanation()
-    return ([] if expected else [result.explanation()]), grade
+    expected = result.outcome is Outcome.FAILED and wrong.words in result.words
+    return ([] if expected else [result.words]), grade
 
 
 def _right(name: str, folder: Path, seed: int) -> Tuple[List[str], Grade]:
@@ -108,7 +108,7 @@ def _right(name: str, folder: Path, seed: int) -> Tuple[List[str], Grade]:
         grade = Grader(Runner(load(PLAN, seed), STATE, opened)).grade(submission, folder / "report")
     else:
         grade = graded(name, RIGHT[name].read_text(), folder, seed)
-    return [check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED], grade
+    return [check.words for check in grade.checks if check.outcome is not Outcome.PASSED], grade
 
 
 def differences(entries: List[Entry]) -> List[str]:

@@ -246,5 +246,5 @@ def test_node_that_kills_itself_is_graded(tmp_path):
     submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
     grade = Grader(Runner(load(PLAN), STATE, sandbox())).grade(submission, tmp_path / "report")
     (alive,) = [check for check in grade.checks if check.name == "stays_alive"]
-    assert alive.failure is not None and "The node died: signal 9 (SIGKILL)" in alive.explanation()
+    assert alive.failure is not None and "The node died: signal 9 (SIGKILL)" in alive.words
     assert grade.points < grade.points_available

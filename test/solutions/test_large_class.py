@@ -29,17 +29,17 @@ def test_a_large_class_needs_little_time_for_each_hand_in_and_keeps_no_report_in
     for number in range(COUNT):
         (tmp_path / "class" / f"s{number:05}.py").write_text(f"{text}# {number}")
     monkeypatch.setattr(dask_cluster, "work", graded_at_once)
-    here, memory = psutil.Process(), []
+    here, memory, plan = psutil.Process(), [], load(PLAN)
 
     def tasks(waiting):
         for number, hand_in in enumerate(waiting):
             if number % (COUNT // 10) == 0:
                 memory.append(here.memory_info().rss)
-            yield Task(pack(hand_in.path), "", 0)
+            yield Task(pack(hand_in.path), plan)
 
     started, busy = time.monotonic(), time.process_time()
     hand_ins, _ = collect(tmp_path / "class")
-    group = Class(tmp_path / "class", Results(tmp_path / "results", {}), load(PLAN), hand_ins, again=False)
+    group = Class(tmp_path / "class", Results(tmp_path / "results", {}), plan, hand_ins, again=False)
     grade(group, tasks(list(group.waiting.values())), Place(workers=len(os.sched_getaffinity(0))))
     wall, busy = time.monotonic() - started, time.process_time() - busy
 

@@ -37,14 +37,14 @@ def pytest_generate_tests(metafunc):
 
 def test_correct_solution_gets_full_marks(right, tmp_path):
     grade = graded(right, RIGHT[right].read_text(), tmp_path)
-    assert {check.name: check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
+    assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
 
 
 def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(wrong, tmp_path):
     grade = graded(wrong.name, wrong.text(), tmp_path)
     check = next(check for check in grade.checks if check.name == wrong.check)
-    assert check.outcome is Outcome.FAILED, check.explanation()
-    assert wrong.words in check.explanation()
+    assert check.outcome is Outcome.FAILED, check.words
+    assert wrong.words in check.words
     if wrong.alone:
         assert [mistake.check.name for mistake in grade.mistakes] == [wrong.check]
 
@@ -53,7 +53,7 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp_path):
     grade = graded("base_server", RIGHT["base_server"].read_text(), tmp_path, seed)
-    assert {check.name: check.explanation() for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
+    assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ MOST_DIRECTORY = 4 * 1024**2  # bytes of a zip's list of its entries, which zipf
 TOO_MANY = f"expected at most {MOST_ENTRIES} files and folders"
 LEFT_OUT = {*BUILD_PRODUCTS, ".git", ".robocop", "__MACOSX"}
 ZIP = ".zip"
+TYPES = {stat.S_IFREG: tarfile.REGTYPE, stat.S_IFDIR: tarfile.DIRTYPE, stat.S_IFLNK: tarfile.SYMTYPE}
 DIRECTORY_SIZE = 5  # index in zipfile's record of a zip's end
 
 
@@ -65,13 +66,7 @@ def pack(path: Path) -> HandIn:
                     raise SubmissionError(TOO_MANY)
                 info = tarfile.TarInfo(f"{path.name}/{name}" if name else path.name)
                 info.mode, info.size, info.linkname = stat.S_IMODE(mode), len(content), target
-                info.type = (
-                    tarfile.DIRTYPE
-                    if stat.S_ISDIR(mode)
-                    else tarfile.SYMTYPE
-                    if stat.S_ISLNK(mode)
-                    else tarfile.REGTYPE
-                )
+                info.type = TYPES[stat.S_IFMT(mode)]
                 archive.addfile(info, io.BytesIO(content))
                 sums.update(repr((name, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
     except SubmissionError as error:
@@ -95,7 +90,7 @@ def _on_disk(path: Path) -> Iterator[Entry]:
     left = MOST_BYTES
     for inner, name in _walk(path):
         mode = os.lstat(inner).st_mode
-        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
+        if stat.S_IFMT(mode) not in TYPES:
             raise SubmissionError(f"{name}: expected a file, folder or link")
         content = _at_most(open(inner, "rb"), left) if stat.S_ISREG(mode) else b""
         left -= len(content)

@@ -98,8 +98,8 @@ def main() -> None:
         results_folder = Path(args.report) if args.report else state / "classes" / folder.name
         texts = load_texts(Path(args.texts) if args.texts else None, share)
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE, texts)
-        text = plan.path.read_text(encoding="utf-8")
-        words = Path(args.texts).read_text(encoding="utf-8") if args.texts else ""
+        sources = [plan.path, *([Path(args.texts)] if args.texts else [])]
+        digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
         out = make_report_folder(results_folder)
         if not args.unsafe:
             expect_private(folder)
@@ -112,13 +112,12 @@ def main() -> None:
         with scratch_folder(), exclusive(out / ".run"):
             seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
             plan = load(plan.path, seed, texts)
-            digest = hashlib.sha256((text + words).encode()).hexdigest()
             results = Results(out, {"plan": digest, "seed": seed, "grader": version})
             group = Class(folder, results, plan, hand_ins, args.again)
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             print(f"scenarios: seed {seed}", flush=True)
             # Packed when it is their turn, from what is there then.
-            tasks = (Task(pack(it.path), text, seed, args.unsafe, words) for it in list(group.waiting.values()))
+            tasks = (Task(pack(it.path), plan, args.unsafe) for it in list(group.waiting.values()))
             send_child_errors_to(out / WORKERS_LOG)
             place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
             grade(group, tasks, place, adapts=args.workers is None)

@@ -15,12 +15,11 @@ from ..grader import Grader
 from ..hosting.places import places
 from ..hosting.tree import temporary_folder
 from ..judge import Grade
-from ..plan import load
+from ..plan import Plan
 from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import lab_environment, prepare_submission
-from ..texts import load as load_texts
 from .hand_ins import HandIn, unpack
 
 MOST_PROBLEM = 4_000  # characters
@@ -31,10 +30,8 @@ class Task:
     """A hand-in with the options for grading it."""
 
     hand_in: HandIn
-    plan: str  # the text of config/grading.yaml
-    seed: int
+    plan: Plan
     unsafe: bool = False
-    texts: str = ""  # of a translation of config/grading_texts.yaml
 
 
 @dataclass(frozen=True)
@@ -67,10 +64,6 @@ def work(task: Task) -> Union[Done, NoTimeError]:
     state, share = places()
     with temporary_folder("robocop-class-", _scratch()) as top:
         folder = top / "report"
-        (top / "plan.yaml").write_text(task.plan, encoding="utf-8")
-        (top / "texts.yaml").write_text(task.texts, encoding="utf-8")
-        texts = load_texts(top / "texts.yaml" if task.texts else None, share)
-        plan = load(top / "plan.yaml", task.seed, texts)
         try:
             sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
             if task.hand_in.problem:
@@ -78,7 +71,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
             path = _unpacked(task.hand_in, top / "hand_in")
             submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
             submission = dataclasses.replace(submission, name=name)
-            Grader(Runner(plan, state, sandbox), scratch=top).grade(submission, folder)
+            Grader(Runner(task.plan, state, sandbox), scratch=top).grade(submission, folder)
         except NoTimeError as error:
             return error
         except UngradableError:
@@ -87,7 +80,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
             folder.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
             problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
-            write(Grade(name, (), (problem,)), plan, {}, folder)
+            write(Grade(name, (), (problem,)), task.plan, {}, folder)
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
     return Done(
         task.hand_in.name,

@@ -32,7 +32,7 @@ def _test(check: CheckResult) -> Dict[str, object]:
         "name": check.sentence,
         "status": "pass" if passed else "fail",
         "score": check.points,
-        "message": "" if passed else printable(check.explanation()),
+        "message": "" if passed else printable(check.words),
         "test_code": check.name,
         "filename": "",
         "line_no": 0,

@@ -14,7 +14,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
         test: Dict[str, object] = {
             "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
             "number": f"{check.part}.{check.name}",
-            "output": printable_lines(check.explanation()),
+            "output": printable_lines(check.words),
         }
         if passed or not check.extra:  # an extra check that did not pass is shown without points, neither green nor red
             test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available

@@ -68,7 +68,7 @@ def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
     for check in grade.checks:
         case = ElementTree.SubElement(suite, "testcase", {"classname": f"grade.{check.part}", "name": check.name})
         if check.failure is not None:
-            message = {"message": printable_lines(check.explanation())}
+            message = {"message": printable_lines(check.words)}
             ElementTree.SubElement(case, "failure", message).text = check.sentence
         elif check.outcome is Outcome.NOT_REACHED:
             ElementTree.SubElement(case, "skipped", {"message": printable_lines(check.why)})

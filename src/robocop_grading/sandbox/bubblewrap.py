@@ -30,24 +30,10 @@ CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an externa
 WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
-SYSTEM = (
-    "/usr",
-    "/bin",
-    "/sbin",
-    "/lib",
-    "/lib32",
-    "/lib64",
-    "/opt",
-    "/etc/alternatives",
-    "/etc/catkin",
-    "/etc/group",
-    "/etc/hosts",
-    "/etc/ld.so.cache",
-    "/etc/localtime",
-    "/etc/nsswitch.conf",
-    "/etc/passwd",
-    "/etc/ros",
-)
+SYSTEM = """
+/usr /bin /sbin /lib /lib32 /lib64 /opt /etc/ros
+/etc/alternatives /etc/catkin /etc/group /etc/hosts /etc/ld.so.cache /etc/localtime /etc/nsswitch.conf /etc/passwd
+""".split()
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")
@@ -74,34 +60,28 @@ class Sandbox:
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path
     ) -> List[str]:
         """Command line of a node: reads the system and its own files, writes to a small home in memory."""
-        return [
-            *self._isolation([*reads, home]),
-            *_mounts("--ro-bind", [*self.reads, *reads]),
-            *_writable(str(home)),
-            *SEALED,
-            "--chdir",
-            str(home),
-            "--",
-            *_restrictions(environment, self.cpu_time),
-            *command,
-        ]
+        return self._inside(command, environment, self.cpu_time, reads, home, _writable(str(home)))
 
     def build_command(
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
     ) -> List[str]:
         """Command line of a build: as node_command(), without network; `folder` is writable, its owner is user()."""
-        return [
-            *self._isolation([*reads, folder]),
-            "--unshare-net",
-            *_mounts("--ro-bind", [*self.reads, *reads]),
-            *_mounts("--bind", [folder]),
-            *SEALED,
-            "--chdir",
-            str(folder),
-            "--",
-            *_restrictions(environment, CPU_TIME),
-            *command,
-        ]
+        place = ["--unshare-net", *_mounts("--bind", [folder])]
+        return self._inside(command, environment, CPU_TIME, reads, folder, place)
+
+    def _inside(
+        self,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        cpu_time: int,
+        reads: Sequence[Path],
+        folder: Path,
+        place: Sequence[str],
+    ) -> List[str]:
+        """Command line that starts in a writable folder, for which `place` has bubblewrap's options."""
+        inside = ["--chdir", str(folder), "--", *_restrictions(environment, cpu_time), *command]
+        mounts = [*_mounts("--ro-bind", [*self.reads, *reads]), *place, *SEALED]
+        return [*self._isolation([*reads, folder]), *mounts, *inside]
 
     def _isolation(self, visible: Sequence[Path]) -> List[str]:
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
@@ -144,31 +124,13 @@ def change_owner(folder: Path, owner: int) -> None:
 
 def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
-    command = []
-    if os.geteuid() == 0:
-        command = [
-            "setpriv",
-            f"--reuid={user()}",
-            f"--regid={user()}",
-            "--clear-groups",
-            "--no-new-privs",
-            "--bounding-set=-all",
-            "--inh-caps=-all",
-            "--",
-        ]
+    limits = {"as": ADDRESS_SPACE, "nproc": PROCESSES, "nofile": FILES, "fsize": FILE_SIZE, "core": 0}
+    limits_of = [f"--{name}={limit}" for name, limit in limits.items()]
+    drop = ["--clear-groups", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
     return [
-        *command,
-        "prlimit",
-        f"--as={ADDRESS_SPACE}",
-        f"--nproc={PROCESSES}",
-        f"--nofile={FILES}",
-        f"--fsize={FILE_SIZE}",
-        f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}",
-        "--core=0",
-        "--",
-        "env",
-        "-i",
-        *(f"{name}={value}" for name, value in environment.items()),
+        *(["setpriv", f"--reuid={user()}", f"--regid={user()}", *drop, "--"] if os.geteuid() == 0 else []),
+        *["prlimit", *limits_of, f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}", "--"],
+        *["env", "-i", *(f"{name}={value}" for name, value in environment.items())],
     ]
 
 

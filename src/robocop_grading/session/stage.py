@@ -181,7 +181,7 @@ class Stage:
         self._topics.publish(observed, clock=False)
         self._topics.count()  # the agent is told how much was sent
         if self.watch is not None and observed.of(TF):
-            self.watch.publish_transforms(self._topics.transforms.messages(0, stamp))
+            self.watch.tf.publish(self._topics.transforms.messages(0, stamp))
         self.bag.write_step(observed, stamp)
         if observed.due.clock:
             self.bag.write("/clock", Clock(stamp), stamp)
@@ -195,7 +195,7 @@ class Stage:
         """map -> odom has jumped."""
         transforms = self._topics.transforms.publish_static()
         if self.watch is not None:
-            self.watch.publish_static(transforms)
+            self.watch.tf_static.publish(transforms)
         self.bag.write_static_frames(self._site)
 
     def keep(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:

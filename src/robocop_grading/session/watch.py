@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Sequence
 
 import rospy
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
-from geometry_msgs.msg import Point, TransformStamped, Twist
+from geometry_msgs.msg import Point, Twist
 from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
 from tf2_msgs.msg import TFMessage
@@ -58,8 +58,8 @@ class Watch:
         self._last_tick = 0.0  # [s, wall] of the clock
         self._seen = 0.0  # [s, wall] when a browser was last found to show the page
         self._path: List[Point] = []
-        self._tf = publisher(f"{NAMESPACE}/tf", TFMessage)
-        self._tf_static = publisher(f"{NAMESPACE}/tf_static", TFMessage, latch=True)
+        self.tf = publisher(f"{NAMESPACE}/tf", TFMessage)
+        self.tf_static = publisher(f"{NAMESPACE}/tf_static", TFMessage, latch=True)
         self._joints = publisher(f"{NAMESPACE}/joint_states", JointState)
         self._scene = publisher(SCENE, MarkerArray)
         self._forwarded: Dict[str, rospy.Publisher] = {}
@@ -90,7 +90,7 @@ class Watch:
     def _shown(self) -> Sequence[rospy.Publisher]:
         """The topics that the viewer subscribes to, and last the one of robot_state_publisher."""
         only_rviz = () if self._display.is_page else (self._robot.topics[ODOM],)
-        return self._robot.topics[SCAN], *only_rviz, self._tf, self._tf_static, self._scene, self._joints
+        return self._robot.topics[SCAN], *only_rviz, self.tf, self.tf_static, self._scene, self._joints
 
     @property
     def is_open(self) -> bool:
@@ -127,14 +127,6 @@ class Watch:
             angles: Any = seen.joint_angles[0].tolist()
             speeds: Any = seen.fleet.wheel_speeds[0].tolist()
             self._joints.publish(convert.to_joint_state(angles, speeds, convert.to_time(seen.stamp_ns)))
-
-    def publish_transforms(self, transforms: Sequence[TransformStamped]) -> None:
-        """Publish transforms."""
-        self._tf.publish(transforms)
-
-    def publish_static(self, transforms: Sequence[TransformStamped]) -> None:
-        """Publish static transforms."""
-        self._tf_static.publish(transforms)
 
     def forward(self, topic: str, message: Any) -> None:
         """Show a message of the submission in the page, which does not subscribe to the submission's topics."""

@@ -47,7 +47,7 @@ def test_part_that_is_killed_twice_on_a_machine_short_of_memory_is_not_gradable(
 def test_part_that_is_killed_twice_though_the_kernel_has_killed_nothing_is_graded(tmp_path, monkeypatch):
     grade = graded([EXCUSED, KILLED], tmp_path, monkeypatch)
     (death,) = [check for check in grade.checks if check.failure is not None and check.name == "stays_alive"]
-    assert "The node died: signal 9 (SIGKILL). " in death.explanation()
+    assert "The node died: signal 9 (SIGKILL). " in death.words
 
 
 def test_the_kernel_tells_how_many_processes_it_has_killed(tmp_path, monkeypatch):

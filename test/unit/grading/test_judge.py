@@ -31,7 +31,7 @@ def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal()
     crash = checks["bridge_alive"].failure
     assert crash is not None and "AttributeError: no attribute 'x'" in crash.cause
     assert checks["forwards_goal"].follows == "bridge_alive"
-    assert "wait_for_server" not in checks["waits_for_server"].explanation()
+    assert "wait_for_server" not in checks["waits_for_server"].words
 
 
 def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
@@ -107,7 +107,7 @@ def test_interrupted_scenario_fails_its_checks_with_the_reason() -> None:
     checks = {check.name: check for check in _grade(load(PLAN), start=replace(RIGHT, name="start")).checks}
     assert checks["action_server"].outcome is Outcome.PASSED
     assert checks["reaches_goal"].outcome is Outcome.FAILED
-    assert "time-out: it was at left" in checks["reaches_goal"].explanation()
+    assert "time-out: it was at left" in checks["reaches_goal"].words
 
 
 def test_only_submitted_parts_are_graded() -> None:

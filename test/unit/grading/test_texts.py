@@ -78,7 +78,7 @@ def test_translation_tells_contract_cause_and_values(tmp_path):
     grade = judge("x", plan, {"server": {"left": commanded(lambda c: replace(c, v=0.1))}}, {})
     check = next(check for check in grade.checks if check.name == "turns_to_goal")
     assert check.sentence == "Er dreht sich."
-    assert check.explanation() == "Fehler: Er fährt beim Drehen. bei 0.6 rad 0.10 m/s in left"
+    assert check.words == "Fehler: Er fährt beim Drehen. bei 0.6 rad 0.10 m/s in left"
     assert grade.mistakes[0].sentence == "Er fährt beim Drehen."
 
 

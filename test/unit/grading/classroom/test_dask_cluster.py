@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from class_records import PLAN
 
 from aro_robocop_goto_as.errors import NoTimeError
 from robocop_grading.classroom import dask_cluster
@@ -76,7 +77,7 @@ def test_hand_in_without_time_is_graded_again_at_the_end_and_has_no_grade_if_it_
     here = Here(grade)
     monkeypatch.setattr(dask_cluster, "as_completed", lambda: here)
     monkeypatch.setattr(dask_cluster, "wait", lambda _: None)
-    tasks = [Task(HandIn(name), "", 0) for name in ("anna", "ben", "carl", "dora")]
+    tasks = [Task(HandIn(name), PLAN) for name in ("anna", "ben", "carl", "dora")]
     found = dict(grade_all(here, tasks, Pace(2, False)))
     assert found["ben"] == "no grade: the machine is busy"
     assert all(isinstance(found[name], Done) for name in ("anna", "carl", "dora"))

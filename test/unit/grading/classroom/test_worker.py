@@ -22,6 +22,6 @@ def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, mo
     monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
     monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
     anna = pack(folder / "anna")
-    done = worker.work(worker.Task(anna, PLAN.path.read_text(), 0))
+    done = worker.work(worker.Task(anna, PLAN))
     report = json.loads(done.files["report.json"])
     assert report["checks"] == [] and type(error).__name__ in report["problems"][0]
