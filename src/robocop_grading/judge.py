@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
-from .checks import AFTER, CHECKS, NEEDS, RETRIED, Failed, NotReached, Passed, description
+from .checks import CHECKS, Failed, NotReached, Passed
 from .plan import CheckPlan, Plan
 from .record import Record
 from .texts import Texts, sentences, text
@@ -185,12 +185,12 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> 
         if result.failure is not None:
             reason = first[alike(_cause(failed[reasons[result.name]]))]
             if reason != result.name:
-                cause = text('This follows from another failed check: "{}"', description(reason))
+                cause = text('This follows from another failed check: "{}"', CHECKS[reason].contract)
                 if result.failure.seen == INCOMPLETE:
                     cause = result.failure.cause
                 result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)
         elif result.outcome is Outcome.NOT_REACHED:
-            needs = (FIRST,) if result.why == NOT_STARTED else NEEDS[result.name]
+            needs = (FIRST,) if result.why == NOT_STARTED else CHECKS[result.name].needs
             blocking = next((name for name in needs if name in failed), "")
             result = replace(result, follows=blocking and first[alike(_cause(failed[reasons[blocking]]))])
         explained.append(result)
@@ -206,7 +206,7 @@ def _reason(name: str, failed: Mapping[str, CheckResult], records: Mapping[str, 
     chain = [name]
     while True:
         failure, record = failed[chain[-1]].failure, records.get(failed[chain[-1]].scenario)
-        for after in AFTER[chain[-1]]:
+        for after in CHECKS[chain[-1]].after:
             earlier = failed[after.check].failure if after.check in failed else None
             if after.check in chain or failure is None or earlier is None or record is None:
                 continue
@@ -230,7 +230,7 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         verdict = CHECKS[check.name](records[name], plan.limits)
         examined = examined or name
         if isinstance(verdict, Failed):
-            retried, explained = RETRIED.get(check.name, ("", None))
+            retried, explained = CHECKS[check.name].retried or ("", None)
             if explained is not None and retried in records:
                 verdict = explained(verdict, records[retried], plan.limits)
             return _result(check, Outcome.FAILED, name, verdict)
@@ -245,7 +245,7 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
 def _result(
     check: CheckPlan, outcome: Outcome, scenario: str, failure: Optional[Failed] = None, why: str = ""
 ) -> CheckResult:
-    points, contract = check.points if outcome is Outcome.PASSED else 0.0, description(check.name)
+    points, contract = check.points if outcome is Outcome.PASSED else 0.0, CHECKS[check.name].contract
     return CheckResult(
         check.name, check.part, contract, outcome, points, check.points, check.extra, scenario, failure, why
     )

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
 from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 
-from .checks import CHECKS, RETRIED, description
+from .checks import CHECKS
 from .checks.limits import Limits
 from .hosting.files import read_bytes
 from .scenario_draw import MIDDLE, Draw, checked_seed
@@ -94,12 +94,12 @@ class Plan:
 
     def contract(self, check: str) -> str:
         """What a check tests, in the language of the texts."""
-        return self.texts.told(description(check))
+        return self.texts.told(CHECKS[check].contract)
 
     def examines(self, part: str, scenario: str = "") -> bool:
         """Whether some check examines this part, or this scenario of it."""
         return any(
-            check.part == part and scenario in ("", *check.scenarios, *RETRIED.get(check.name, ())[:1])
+            check.part == part and scenario in ("", *check.scenarios, *(CHECKS[check.name].retried or ())[:1])
             for check in self.checks
         )
 

@@ -1,7 +1,7 @@
-"""The verdict of a check on one record, and the registry of all checks with what they depend on."""
+"""The verdict of a check on one record, and the table of all checks with what they depend on."""
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 from ..record import Goal, Record
 from .limits import Limits
@@ -36,7 +36,7 @@ class Failed:
 
 
 Verdict = Union[Passed, NotReached, Failed]
-Check = Callable[[Record, Limits], Verdict]
+Judge = Callable[[Record, Limits], Verdict]
 Retry = Tuple[str, Callable[[Failed, Record, Limits], Failed]]
 When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure
 
@@ -57,34 +57,38 @@ class After:
     when: When = always
 
 
-CHECKS: Dict[str, Check] = {}
-PLOTS: Dict[str, str] = {}
-AFTER: Dict[str, Tuple[After, ...]] = {}
-NEEDS: Dict[str, Tuple[str, ...]] = {}
-RETRIED: Dict[str, Retry] = {}
-
-
-def check(
-    plot: str, after: Sequence[After] = (), needs: Sequence[str] = (), retried: Optional[Retry] = None
-) -> Callable[[Check], Check]:
-    """Register a function as the check of its name; `plot` names the plot that illustrates it.
+@dataclass(frozen=True)
+class Check:
+    """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
     Its failure follows from the first one in `after` that applies. If it is not reached, the first one in `needs` that
     has failed is the reason. `retried` names another scenario, and a function that finds the cause from what happened
     there instead.
     """
 
-    def register(function: Check) -> Check:
-        name = function.__name__
-        CHECKS[name], PLOTS[name], AFTER[name] = function, plot, tuple(after)
-        NEEDS[name] = tuple(needs)
-        if retried is not None:
-            RETRIED[name] = retried
-        return function
+    judge: Judge
+    plot: str
+    after: Sequence[After] = ()
+    needs: Sequence[str] = ()
+    retried: Optional[Retry] = None
+
+    def __call__(self, record: Record, limits: Limits) -> Verdict:
+        return self.judge(record, limits)
+
+    @property
+    def contract(self) -> str:
+        """What it tests: the first line of its function's docstring."""
+        return (self.judge.__doc__ or "").strip().splitlines()[0]
+
+
+CHECKS: Dict[str, Check] = {}
+
+
+def check(plot: str, **options: Any) -> Callable[[Judge], Judge]:
+    """Have a function judge records as a Check with these options."""
+
+    def register(judge: Judge) -> Judge:
+        CHECKS[judge.__name__] = Check(judge, plot, **options)
+        return judge
 
     return register
-
-
-def description(name: str) -> str:
-    """The contract that a check tests: the first line of its docstring."""
-    return (CHECKS[name].__doc__ or "").strip().splitlines()[0]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, Sequence
 from xml.etree import ElementTree
 
-from ..checks import PLOTS as PLOT_OF
+from ..checks import CHECKS
 from ..judge import CheckResult, Grade, Outcome, Records, printable_lines
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
@@ -88,7 +88,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
             ]
             if part == "server" and not record.goals and not checks:
                 continue
-            shown = {PLOT_OF[check.name] for check in checks}
+            shown = {CHECKS[check.name].plot for check in checks}
             rest = [_plot(plot, record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
             bag = folder / f"{part}-{record.name}.bag"
             yield {
@@ -112,12 +112,12 @@ def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str,
     """Each check that failed beside the plot that illustrates it; checks that passed share one panel a plot."""
     shown = set()
     for check in checks:
-        plot, passed = PLOT_OF[check.name], check.outcome is Outcome.PASSED
+        plot, passed = CHECKS[check.name].plot, check.outcome is Outcome.PASSED
         if passed and plot in shown:
             continue
         first = plot not in shown
         shown.add(plot)
-        others = [other for other in checks if other.outcome is Outcome.PASSED and PLOT_OF[other.name] == plot]
+        others = [other for other in checks if other.outcome is Outcome.PASSED and CHECKS[other.name].plot == plot]
         moments = [] if check.failure is None else [check.failure.time]
         yield {
             "check": check,

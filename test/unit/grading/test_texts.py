@@ -11,7 +11,7 @@ from grading_records import PLAN, RIGHT, changed, commanded
 from support import ROOT
 
 from aro_robocop_goto_as.errors import PlanError
-from robocop_grading.checks import CHECKS, description
+from robocop_grading.checks import CHECKS
 from robocop_grading.judge import Outcome, judge
 from robocop_grading.plan import load
 from robocop_grading.record import Record
@@ -55,7 +55,7 @@ def is_docstring(node):
 
 def test_file_lists_every_text_of_checks_and_causes():
     modules = [path for path in sorted((SOURCE / "checks").glob("*.py")) if path.name not in ("output.py", "limits.py")]
-    wanted, fixed = set(map(description, CHECKS)), set()
+    wanted, fixed = {check.contract for check in CHECKS.values()}, set()
     for path in [*modules, SOURCE / "judge.py"]:
         texts, others = told_in(path)
         wanted |= texts
