@@ -7,18 +7,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
 
-import yaml
-
-from aro_robocop_goto_as.errors import HostingError, PlanError
+from aro_robocop_goto_as.errors import PlanError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
 from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 
 from .checks import CHECKS
 from .checks.limits import Limits
-from .hosting.files import read_bytes
 from .scenario_draw import MIDDLE, Draw, checked_seed
-from .texts import ENGLISH, Texts
+from .texts import ENGLISH, Texts, read_yaml
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m
@@ -119,11 +116,7 @@ def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
     Seed 0 takes the middle of each range.
     """
     checked_seed(seed)
-    try:
-        raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
-    except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
-        raise PlanError(f"{path}: {error}") from error
-    keys = {"limits", "scenarios", "checks"}
+    raw, keys = read_yaml(path), {"limits", "scenarios", "checks"}
     _expect(raw, keys, str(path), keys)
     raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
     for name, kind, words in (

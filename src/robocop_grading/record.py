@@ -86,6 +86,14 @@ class Feedback:
     position_error: float
     angle_error: float
 
+    @property
+    def errors(self) -> Tuple[float, float]:
+        """Both, in the order of errors_at."""
+        return self.position_error, self.angle_error
+
+
+ERRORS = ("position_error", "angle_error")
+
 
 @dataclass(frozen=True)
 class Command:

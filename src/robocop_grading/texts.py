@@ -2,7 +2,7 @@
 
 import string
 from pathlib import Path
-from typing import List, Mapping, Optional, Sequence, Tuple
+from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
 import yaml
 
@@ -75,11 +75,16 @@ def _examples(template: str) -> List[object]:
     return [1.5 if spec else "x" for _, name, spec, _ in string.Formatter().parse(template) if name is not None]
 
 
-def _read(path: Path) -> Mapping[str, Optional[str]]:
+def read_yaml(path: Path) -> Any:
+    """A file's plain values; PlanError if it can't be read."""
     try:
-        raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
+        return yaml.safe_load(read_bytes(path).decode("utf-8"))
     except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
+
+
+def _read(path: Path) -> Mapping[str, Optional[str]]:
+    raw = read_yaml(path)
     if not isinstance(raw, dict) or not all(isinstance(it, str) or it is None for pair in raw.items() for it in pair):
         raise PlanError(f"{path}: expected texts by text, got {str(raw)[:100]}")
     return raw

@@ -1,7 +1,7 @@
 """Checks of a goal's terminal state and result."""
 
 from dataclasses import replace
-from typing import Optional
+from typing import Callable, Optional
 
 from ..handout import GOAL_RADIUS
 from ..record import (
@@ -52,6 +52,12 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     state = status_name(result.status)
     seen = state + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
+
+
+def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
+    """The first problem that a goal has."""
+    found = next(filter(None, map(problem, record.goals)), None)
+    return found or (Passed() if record.goals else NotReached("no goal was sent"))
 
 
 def _stopped(record: Record, end: float, limits: Limits) -> bool:

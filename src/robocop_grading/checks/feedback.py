@@ -5,14 +5,17 @@ from typing import Callable, List, Optional, Sequence
 
 import numpy as np
 
-from ..record import Goal, Record, active_until, errors_at, samples_between, wrapped
+from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_between, wrapped
 from ..texts import text
 from .consequences import nothing_came
 from .feedback_causes import (
+    ANGLE,
     ANGLE_CAUSES,
+    POSITION,
     POSITION_CAUSES,
     POSITION_UNUSED,
     RELATIVE,
+    UNITS,
     WORLD,
     Hypothesis,
     Pair,
@@ -112,8 +115,8 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     wrong = _wrong(pairs, _position_deviation, limits.position_tolerance)
     otherwise = "position_error is not the distance from the position in /odom to the goal"
     if wrong:
-        return _failed(wrong, pairs, 0, "m", POSITION_CAUSES, otherwise)
-    return _old(record, 0) or Passed()
+        return _failed(wrong, pairs, POSITION, POSITION_CAUSES, otherwise)
+    return _old(record, POSITION) or Passed()
 
 
 OF_POSITION = "of the position"
@@ -123,7 +126,7 @@ FROM_POSITION = After("feedback_position", lambda _record, failure, _earlier: fa
 @check("errors", after=(FROM_POSITION,), needs=("feedback_rate",))
 def feedback_angle(record: Record, limits: Limits) -> Verdict:
     """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
-    pairs = [pair for pair in _pairs(record) if errors_at(pair.samples[-1], pair.goal)[0] > NEAR]
+    pairs = [pair for pair in _pairs(record) if pair.truth[POSITION] > NEAR]
     if not pairs:
         return NotReached("there was no feedback")
     beyond = [pair for pair in pairs if abs(pair.feedback.angle_error) > math.pi + 0.05]
@@ -139,12 +142,12 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
     wrong = _wrong(pairs, _angle_deviation, limits.angle_tolerance)
     otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
     if wrong:
-        return _failed(wrong, pairs, 1, "rad", ANGLE_CAUSES, otherwise)
-    return Passed() if _old(record, 0) else _old(record, 1) or Passed()  # one mistake is counted once
+        return _failed(wrong, pairs, ANGLE, ANGLE_CAUSES, otherwise)
+    return Passed() if _old(record, POSITION) else _old(record, ANGLE) or Passed()  # one mistake is counted once
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:
-    """Feedback that was true an iteration ago; `index` as in errors_at."""
+    """Feedback that was true an iteration ago."""
     differences = [_differences(record, goal, index) for goal in record.goals]
     rows = np.concatenate([np.zeros((0, len(AGES))), *differences])
     if len(rows) < MOVING:
@@ -153,7 +156,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     best = int(means.argmin())
     if AGES[best] < OLD or means[best] > 0.5 * means[0]:
         return None
-    name, seen = ("position_error", "angle_error")[index], text("one of {:.2f} s ago", AGES[best])
+    name, seen = ERRORS[index], text("one of {:.2f} s ago", AGES[best])
     cause = text(
         "{} in the feedback is an iteration old: calculate it from the newest pose, then publish "
         "the feedback, both in the same iteration",
@@ -168,7 +171,7 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
     own = [message for message in record.feedback if message.id == goal.id]
     if len(samples) < 2 or not own:
         return np.zeros((0, len(AGES)))
-    values = np.array([(message.position_error, message.angle_error)[index] for message in own])
+    values = np.array([message.errors[index] for message in own])
     truth = np.array([errors_at(sample, goal)[index] for sample in samples])
     truth = np.unwrap(truth) if index else truth
     sampled = [sample.time for sample in samples]
@@ -182,13 +185,10 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
 
 
 def _failed(
-    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, unit: str, causes: Sequence[Hypothesis], otherwise: str
+    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, causes: Sequence[Hypothesis], otherwise: str
 ) -> Failed:
-    """The first wrong value with the likely cause of all of them, among all pairs; `index` as in errors_at."""
-    name = ("position_error", "angle_error")[index]
-    value = getattr(wrong[0].feedback, name)
-    truth = errors_at(wrong[0].samples[-1], wrong[0].goal)[index]
-    cause = likely_cause(name, wrong, pairs, causes, otherwise)
-    of_position = cause.endswith((RELATIVE, POSITION_UNUSED, WORLD))
-    kind = OF_POSITION if of_position else ""
-    return Failed(f"{truth:.2f} {unit}", f"{name} {value:.2f}", wrong[0].feedback.time, cause, kind)
+    """The first wrong value with the likely cause of all of them, among all pairs."""
+    first, cause = wrong[0], likely_cause(index, wrong, pairs, causes, otherwise)
+    kind = OF_POSITION if cause.endswith((RELATIVE, POSITION_UNUSED, WORLD)) else ""
+    seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
+    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, cause, kind)

@@ -6,11 +6,13 @@ from typing import Callable, Iterator, List, NamedTuple, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
-from ..record import Feedback, Goal, Sample, errors_at, wrapped
+from ..record import ERRORS, Feedback, Goal, Sample, errors_at, wrapped
 from ..texts import text
 
 FITS = 0.1  # [m], [rad] largest median error of a hypothesis
 OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
+POSITION, ANGLE = range(2)  # indices of ERRORS
+UNITS = ("m", "rad")
 EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
 
 
@@ -21,6 +23,11 @@ class Pair(NamedTuple):
     samples: List[Sample]
     goal: Goal
     start: Sample
+
+    @property
+    def truth(self) -> Tuple[float, float]:
+        """Both true errors."""
+        return errors_at(self.samples[-1], self.goal)
 
 
 def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
@@ -110,12 +117,11 @@ def _direction_at_start(pair: Pair) -> float:
     return wrapped(math.atan2(pair.goal.y - pair.start.y, pair.goal.x - pair.start.x) - pair.samples[-1].yaw)
 
 
-def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis]) -> Iterator[Tuple[str, List[float]]]:
+def _predictions(index: int, pairs: Sequence[Pair], causes: Sequence[Hypothesis]) -> Iterator[Tuple[str, List[float]]]:
     """For each cause the values that it would lead to."""
-    index = ("position_error", "angle_error").index(name)
     for cause, predict in causes:
         yield cause, [predict(pair.samples[-1], pair.goal) for pair in pairs]
-    if index == 1:
+    if index == ANGLE:
         yield DIRECTION_ONCE, [_direction_at_start(pair) for pair in pairs]
     for misread in MISREAD:
         yield RELATIVE, [errors_at(pair.samples[-1], misread(pair))[index] for pair in pairs]
@@ -123,53 +129,54 @@ def _predictions(name: str, pairs: Sequence[Pair], causes: Sequence[Hypothesis])
 
 def _knows_position(pairs: Sequence[Pair]) -> bool:
     """Whether position_error is right, so that the robot's position is used."""
-    return _miss("position_error", pairs, [errors_at(pair.samples[-1], pair.goal)[0] for pair in pairs]) < FITS
+    return _miss(POSITION, pairs, [pair.truth[POSITION] for pair in pairs]) < FITS
 
 
 def likely_cause(
-    name: str, wrong: Sequence[Pair], pairs: Sequence[Pair], causes: Sequence[Hypothesis], otherwise: str
+    index: int, wrong: Sequence[Pair], pairs: Sequence[Pair], causes: Sequence[Hypothesis], otherwise: str
 ) -> str:
     """The hypothesis that fits the wrong values best, if one fits these and all values.
 
     A few wrong values fit many hypotheses, which the right ones then contradict.
     """
-    values = [getattr(pair.feedback, name) for pair in wrong]
+    values = [pair.feedback.errors[index] for pair in wrong]
     if not all(map(math.isfinite, values)):
-        return text("Some values of {} are not finite", name)
-    if name == "angle_error" and _knows_position(pairs):
+        return text("Some values of {} are not finite", ERRORS[index])
+    if index == ANGLE and _knows_position(pairs):
         causes = [it for it in causes if not it[0].endswith(POSITION_UNUSED)]
     best, least = otherwise, FITS
-    for (cause, of_wrong), (_, of_all) in zip(_predictions(name, wrong, causes), _predictions(name, pairs, causes)):
-        miss = _miss(name, wrong, of_wrong)
-        if miss < least and _miss(name, pairs, of_all) < FITS:
+    for (cause, of_wrong), (_, of_all) in zip(_predictions(index, wrong, causes), _predictions(index, pairs, causes)):
+        miss = _miss(index, wrong, of_wrong)
+        if miss < least and _miss(index, pairs, of_all) < FITS:
             best, least = cause, miss
-    cause, miss = _offset(name, pairs)
+    cause, miss = _offset(index, pairs)
     if miss < least:
         best, least = cause, miss
     if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
-        return text("{} is always {:.2f}: recalculate it in each iteration from the newest pose", name, values[0])
+        return text(
+            "{} is always {:.2f}: recalculate it in each iteration from the newest pose", ERRORS[index], values[0]
+        )
     return best
 
 
-def _offset(name: str, pairs: Sequence[Pair]) -> Tuple[str, float]:
+def _offset(index: int, pairs: Sequence[Pair]) -> Tuple[str, float]:
     """The cause if most values differ from the true ones by the same amount, and how much they deviate from it."""
-    index = ("position_error", "angle_error").index(name)
-    differences = [getattr(pair.feedback, name) - errors_at(pair.samples[-1], pair.goal)[index] for pair in pairs]
-    if index == 1:
+    differences = [pair.feedback.errors[index] - pair.truth[index] for pair in pairs]
+    if index == ANGLE:
         differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
     middle = sorted(differences)[len(differences) // 2]
     spread = sorted(abs(difference - middle) for difference in differences)
     cause = text(
-        "{} is always {:.2f} {} too {}", name, abs(middle), ("m", "rad")[index], "large" if middle > 0.0 else "small"
+        "{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], "large" if middle > 0.0 else "small"
     )
     return cause, spread[9 * len(spread) // 10] if abs(middle) > OFFSET else math.inf
 
 
-def _miss(name: str, pairs: Sequence[Pair], predicted: Sequence[float]) -> float:
+def _miss(index: int, pairs: Sequence[Pair], predicted: Sequence[float]) -> float:
     """The median difference between values and predictions; degrees and squares, which vary more, are scaled."""
-    values = [getattr(pair.feedback, name) for pair in pairs]
+    values = [pair.feedback.errors[index] for pair in pairs]
     misses = sorted(
-        abs(wrapped(value - prediction) if name == "angle_error" and abs(value) < 4.0 else value - prediction)
+        abs(wrapped(value - prediction) if index == ANGLE and abs(value) < 4.0 else value - prediction)
         for value, prediction in zip(values, predicted)
     )
     return misses[len(misses) // 2] / (1.0 if max(abs(value) for value in values) < 7.0 else 10.0)

@@ -8,7 +8,7 @@ from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
 from ..texts import text
 from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
-from .endings import success_too_far, wrong_ending
+from .endings import of_goals, success_too_far, wrong_ending
 from .limits import Limits
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
@@ -199,15 +199,12 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
-    for goal in record.goals:
-        problem = (
-            wrong_ending(record, goal, SUCCEEDED, limits)
-            or success_too_far(record, goal, limits)
-            or _success_too_late(record, goal)
-        )
-        if problem is not None:
-            return problem
-    return Passed() if record.goals else NotReached("no goal was sent")
+    return of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _success_too_late(record, goal))
+
+
+def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that did not succeed, or not at its position."""
+    return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
 
 
 def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
@@ -234,15 +231,9 @@ SWERVES = After("drives_straight", lambda _record, failure, _earlier: failure.ki
 @check("track", after=(*ENDING, SWERVES, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
-    for goal in record.goals:
-        problem = (
-            wrong_ending(record, goal, SUCCEEDED, limits)
-            or success_too_far(record, goal, limits)
-            or _long_turn(record, goal)
-        )
-        if problem is not None:
-            return problem
-    return Passed() if len(record.goals) > 1 else NotReached("the first goal did not end")
+    verdict = of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _long_turn(record, goal))
+    alone = len(record.goals) < 2 and not isinstance(verdict, Failed)
+    return NotReached("the first goal did not end") if alone else verdict
 
 
 def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
@@ -265,15 +256,18 @@ def far_goal(record: Record, limits: Limits) -> Verdict:
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
 def already_there(record: Record, limits: Limits) -> Verdict:
     """A goal closer than 0.1 m succeeds at once, and the robot stays where it is."""
-    for goal in record.goals:
-        problem = wrong_ending(record, goal, SUCCEEDED, limits)
-        if problem is not None:
-            return problem
-        end = _end(record, goal)
-        samples = samples_between(record, goal.time, end + limits.stop_within)
-        moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
-        if end - goal.time > 2.0 or moved > 0.05:
-            seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
-            cause = text("position_error is below {:g} m from the start: check it before moving", GOAL_RADIUS)
-            return Failed("success at once", seen, goal.time, cause)
-    return Passed() if record.goals else NotReached("no goal was sent")
+    return of_goals(
+        record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits) or _not_at_once(record, goal, limits)
+    )
+
+
+def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """A robot that takes long or moves although it is at the goal."""
+    end = _end(record, goal)
+    samples = samples_between(record, goal.time, end + limits.stop_within)
+    moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
+    if end - goal.time <= 2.0 and moved <= 0.05:
+        return None
+    seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
+    cause = text("position_error is below {:g} m from the start: check it before moving", GOAL_RADIUS)
+    return Failed("success at once", seen, goal.time, cause)

@@ -8,7 +8,7 @@ from ..handout import STOP_DISTANCE
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, active_until, results_of, samples_between
 from ..texts import sentences, text
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY
-from .endings import RAISED, narrow_obstacle, wrong_ending
+from .endings import RAISED, narrow_obstacle, of_goals, wrong_ending
 from .limits import Limits
 from .output import EXCEPTION_LOGGED, last_error, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
@@ -83,11 +83,7 @@ def _at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
 @check("distances", after=(After("stops_at_obstacle", _too_early), *ENDING))
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
-    for goal in record.goals:
-        problem = wrong_ending(record, goal, SUCCEEDED, limits)
-        if problem is not None:
-            return problem
-    return Passed() if record.goals else NotReached("no goal was sent")
+    return of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
 
 
 @check("distances", after=(*ENDING, After("stops_at_obstacle", _at_wall)))

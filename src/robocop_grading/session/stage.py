@@ -215,19 +215,8 @@ class Stage:
         ahead = clearance_ahead(
             list(map(float, self.sim.exact_distances())), spec.angle_min, spec.increment, 0.0, float("inf"), AHEAD
         )
-        return Sample(
-            self.now,
-            here.x,
-            here.y,
-            here.yaw,
-            world.x,
-            world.y,
-            world.yaw,
-            velocity.v,
-            velocity.w,
-            float("inf") if ahead is None else ahead,
-            bool(self.sim.touching()),
-        )
+        nearest = float("inf") if ahead is None else ahead
+        return Sample(self.now, *here, *world, *velocity, nearest, bool(self.sim.touching()))
 
 
 def _make_odd(ranges: np.ndarray) -> None:
