@@ -10,7 +10,7 @@ import socket
 import subprocess
 import sys
 from dataclasses import dataclass
-from typing import Any, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.params import WebParams
@@ -68,19 +68,8 @@ def _listen(host: str, ports: Sequence[int]) -> socket.socket:
     problem = ""
     for port in ports:
         try:
-            family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-            return _bound(socket.socket(family, kind, protocol), address)
+            family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+            return socket.create_server((host, port), family=family, backlog=BACKLOG)
         except OSError as error:
-            problem = f"{host}:{port}: {error.strerror or error}"
+            problem = f"{host}:{port}: {(error.strerror or str(error)).partition(' (while attempting')[0]}"
     raise GradingError(f"--watch can't open a port for its web page, end what uses it: {problem}")
-
-
-def _bound(made: socket.socket, address: Any) -> socket.socket:
-    try:
-        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        made.bind(address)
-        made.listen(BACKLOG)
-    except OSError:
-        made.close()
-        raise
-    return made

@@ -3,7 +3,7 @@
     python agent CHANNEL SCRIPT [ARGUMENT...]
 
     scheduler    which threads run, and for what the others wait; simulated time
-    locks, clock, io, threads    Python's ways to wait, each of which tells the scheduler
+    locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
     ros          calls to the grader's own ports, whose answers come without simulated time
     channel      the grader's requests to go on until a simulated time, and the answers

@@ -11,12 +11,12 @@ from ..checks import CHECKS
 from ..judge import CheckResult, Grade, Outcome, Records, printable_lines
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
-from .github import as_classroom, as_summary
-from .gradescope import as_gradescope
 from .html import render
 from .plots import PLOTS
+from .services import as_classroom, as_gradescope
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
+MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖"}  # of outcomes in the summary
 MOST_LINES = 60  # of a node's output in the report
 
 
@@ -26,7 +26,9 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool =
     ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
-    (folder / "summary.md").write_text(as_summary(grade), encoding="utf-8", errors="replace")
+    # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
+    summary = render("summary.html", grade=grade, marks=MARKS)
+    (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")
     scenarios = list(_scenarios(grade, plan, records, folder, kept))
     page = render(
         "report.html",

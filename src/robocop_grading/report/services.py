@@ -1,9 +1,33 @@
-"""A grade as Gradescope's autograders report it."""
+"""A grade in the formats of GitHub Classroom and Gradescope."""
 
 from typing import Dict
 
-from ..judge import Grade, Outcome, printable_lines
+from ..judge import CheckResult, Grade, Outcome, printable, printable_lines
 from ..plan import Plan
+
+
+def as_classroom(grade: Grade) -> Dict[str, object]:
+    """The result of one runner as GitHub's action classroom-resources/autograding-grading-reporter reads it."""
+    return {
+        "version": 1,
+        "status": "pass" if grade.all_right else "fail",
+        "max_score": grade.points_available,
+        "tests": [_test(check) for check in grade.checks if check.points or not check.extra],
+    }
+
+
+def _test(check: CheckResult) -> Dict[str, object]:
+    passed = check.outcome is Outcome.PASSED
+    return {
+        "name": check.sentence,
+        "status": "pass" if passed else "fail",
+        "score": check.points,
+        "message": "" if passed else printable(check.words),
+        "test_code": check.name,
+        "filename": "",
+        "line_no": 0,
+        "duration": 0,
+    }
 
 
 def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
