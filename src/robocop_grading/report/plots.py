@@ -3,9 +3,10 @@
 import io
 import math
 import re
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, NamedTuple, Sequence, Tuple
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
@@ -47,60 +48,48 @@ NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclas
 Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
 
 
-def _figure(height: float, rows: int, left: float) -> Tuple[Figure, List[Axes]]:
-    """Axes below each other, with fixed margins: a constrained layout takes as long as drawing."""
-    figure = Figure(figsize=(WIDTH, height))
-    axes = figure.subplots(rows, 1, sharex=True, squeeze=False)
-    row = (height - TOP - BOTTOM - (rows - 1) * BETWEEN) / rows
-    figure.subplots_adjust(left / WIDTH, BOTTOM / height, 1.0 - RIGHT / WIDTH, 1.0 - TOP / height, hspace=BETWEEN / row)
-    return figure, [row[0] for row in axes]
+class Plot(NamedTuple):
+    """What draws a record into axes below each other, and how large they are."""
+
+    draw: Callable[[Sequence[Axes], Record, Sequence[float]], None]
+    height: float  # [inch]
+    rows: int = 1
+    left: float = LEFT  # [inch]
 
 
-def _svg(figure: Figure) -> str:
-    """The figure as an element of an HTML page."""
+def svg(name: str, record: Record, at: Sequence[float]) -> str:
+    """One of the PLOTS as an element of an HTML page, with these simulated times [s] marked."""
+    draw, height, rows, left = PLOTS[name]
     text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
-    svg = text.getvalue()
-    return NOT_INLINE.sub("", svg[svg.index("<svg") :])
-
-
-def _plot(draw: Callable[..., None], height: float, rows: int = 1, left: float = LEFT) -> "Plot":
-    """Turn a function that draws into axes into one that returns SVG."""
-
-    def plot(record: Record, at: Sequence[float]) -> str:
-        with matplotlib.rc_context(STYLE):
-            figure, axes = _figure(height, rows, left)
-            draw(axes, record, at)
-            return _svg(figure)
-
-    plot.__doc__ = draw.__doc__
-    return plot
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, height))
+        axes = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
+        # Fixed margins: a constrained layout takes as long as drawing.
+        row = (height - TOP - BOTTOM - (rows - 1) * BETWEEN) / rows
+        right, top, between = 1.0 - RIGHT / WIDTH, 1.0 - TOP / height, BETWEEN / row
+        figure.subplots_adjust(left / WIDTH, BOTTOM / height, right, top, hspace=between)
+        draw(axes, record, at)
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    drawn = text.getvalue()
+    return NOT_INLINE.sub("", drawn[drawn.index("<svg") :])
 
 
 def over_time(
-    axes: Axes,
-    title: str,
-    curves: Sequence[Curve],
-    levels: Sequence[float],
-    at: Sequence[float],
-    bound: float,
-    stepped: bool = False,
+    axes: Axes, title: str, curves: Sequence[Curve], levels: Sequence[float], bound: float, stepped: bool = False
 ) -> None:
     """Curves over simulated time [s], clipped to +-`bound`.
 
-    `levels` are thresholds to compare with, `at` times to mark. A `stepped` curve keeps each value until the next one.
+    `levels` are thresholds to compare with. A `stepped` curve keeps each value until the next one.
     """
     axes.set_title(title)
     for name, colour, points in curves:
-        finite = [(t, max(-bound, min(bound, y))) for t, y in points if math.isfinite(t) and math.isfinite(y)]
-        shown = _parted(finite[:: max(1, len(finite) // MOST_POINTS)], math.inf if stepped else GAP)
-        axes.plot(
-            [t for t, _ in shown],
-            [y for _, y in shown],
-            color=colour,
-            label=name,
-            drawstyle="steps-post" if stepped else "default",
-        )
+        curve = np.array([point for point in points if all(map(math.isfinite, point))]).reshape(-1, 2)
+        curve = curve[:: max(1, len(curve) // MOST_POINTS)].clip((-math.inf, -bound), (math.inf, bound))
+        times, values = curve.T
+        if not stepped:  # a NaN in each longer interval without a value interrupts the curve
+            ends = np.flatnonzero(np.diff(times) > GAP)
+            times, values = np.insert(times, ends + 1, times[ends]), np.insert(values, ends + 1, np.nan)
+        axes.plot(times, values, color=colour, label=name, drawstyle="steps-post" if stepped else "default")
     for level in levels:
         axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
         axes.annotate(
@@ -112,27 +101,15 @@ def over_time(
             va="center",
             color=GREY,
         )
-    _mark(axes, at)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=len(curves))
 
 
-def _parted(points: Sequence[Tuple[float, float]], gap: float) -> List[Tuple[float, float]]:
-    """The points with a NaN in each interval longer than a gap [s], which interrupts the curve."""
-    parted: List[Tuple[float, float]] = []
-    for point in points:
-        if parted and point[0] - parted[-1][0] > gap:
-            parted.append((point[0], math.nan))
-        parted.append(point)
-    return parted
-
-
-def _mark(axes: Axes, at: Sequence[float]) -> None:
-    for moment in at:
-        axes.axvline(moment, color=RED, linestyle=":", linewidth=1.6)
-
-
-def _time_axis(axes: Axes) -> None:
-    axes.set_xlabel("simulated time [s]")
+def _finish(all_axes: Sequence[Axes], at: Sequence[float]) -> None:
+    """Mark simulated times [s], and say what the common axis is."""
+    for axes in all_axes:
+        for moment in at:
+            axes.axvline(moment, color=RED, linestyle=":", linewidth=1.6)
+    all_axes[-1].set_xlabel("simulated time [s]")
 
 
 def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
@@ -217,8 +194,8 @@ def _errors(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
             ("true", BLUE, [(time, errors[index]) for time, errors in pairs]),
             ("feedback", ORANGE, [(time, errors[index]) for time, errors in told]),
         ]
-        over_time(all_axes[index], title, curves, levels, at, 50.0)
-    _time_axis(all_axes[1])
+        over_time(all_axes[index], title, curves, levels, 50.0)
+    _finish(all_axes, at)
 
 
 def _distances(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
@@ -227,8 +204,8 @@ def _distances(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) ->
         ("to the goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
         ("to the nearest obstacle ahead", RED, [(s.time, s.ahead) for s in record.samples]),
     ]
-    over_time(all_axes[0], "distance [m]", curves, [STOP_DISTANCE, GOAL_RADIUS], at, 4.0)
-    _time_axis(all_axes[0])
+    over_time(all_axes[0], "distance [m]", curves, [STOP_DISTANCE, GOAL_RADIUS], 4.0)
+    _finish(all_axes, at)
 
 
 def _speeds(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
@@ -237,8 +214,8 @@ def _speeds(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
         ("linear.x [m/s]", BLUE, [(command.time, command.v) for command in record.commands]),
         ("angular.z [rad/s]", ORANGE, [(command.time, command.w) for command in record.commands]),
     ]
-    over_time(all_axes[0], "commands", curves, [], at, 10.0, stepped=True)
-    _time_axis(all_axes[0])
+    over_time(all_axes[0], "commands", curves, [], 10.0, stepped=True)
+    _finish(all_axes, at)
 
 
 def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
@@ -276,16 +253,14 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
     axes.set_yticks(range(len(goals)), [_name(goal) for goal in goals], parse_math=False)
     axes.set_ylim(max(1, len(goals)) - 0.5, -0.5)
     axes.grid(False, axis="y")
-    _mark(axes, at)
-    _time_axis(axes)
+    _finish(all_axes, at)
 
 
-Plot = Callable[[Record, Sequence[float]], str]
 PLOTS: Dict[str, Plot] = {
-    "track": _plot(_track, 3.6),
-    "errors": _plot(_errors, 3.4, 2),
-    "distances": _plot(_distances, 2.2),
-    "speeds": _plot(_speeds, 2.0),
-    "states": _plot(_states, 1.5, left=LEFT_OF_NAMES),
-    "clicks": _plot(_track, 3.6),
+    "track": Plot(_track, 3.6),
+    "errors": Plot(_errors, 3.4, 2),
+    "distances": Plot(_distances, 2.2),
+    "speeds": Plot(_speeds, 2.0),
+    "states": Plot(_states, 1.5, left=LEFT_OF_NAMES),
+    "clicks": Plot(_track, 3.6),
 }

@@ -12,7 +12,7 @@ from ..judge import CheckResult, Grade, Outcome, Records, printable_lines
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
 from .html import render
-from .plots import PLOTS
+from .plots import svg
 from .services import as_classroom, as_gradescope
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
@@ -107,7 +107,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
 
 def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
     """A plot of a scenario with these moments marked [s]; nothing for one that has nothing to show, as the start."""
-    return PLOTS[name](record, moments) if record.goals or record.clicks or record.commands else ""
+    return svg(name, record, moments) if record.goals or record.clicks or record.commands else ""
 
 
 def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
