@@ -61,7 +61,6 @@ class Submission:
     """A server, a bridge or both, ready to be run."""
 
     name: str
-    path: Path
     reads: Sequence[Path]  # what it needs to read, besides the system and what every submission needs
     environment: Environment
     scripts: List[Script]
@@ -102,7 +101,6 @@ def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission
         scripts.append(Script(part, path, _node_name(part), [], _next_step(path, path.name)))
     return Submission(
         top.stem if top.is_file() else top.name,
-        top,
         [top, _lab_folder(state)],  # `top` may contain helper modules
         lab_environment(share, state),
         scripts,
@@ -175,7 +173,6 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
         raise GradingError(f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}")
     return Submission(
         package.path.name,
-        package.path,
         [folder, *below],
         environment,
         list(scripts.values()),

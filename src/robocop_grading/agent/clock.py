@@ -28,14 +28,10 @@ def monotonic() -> float:
 
 
 def sleep(seconds: float) -> None:
-    if not scheduler.active:
-        _real["sleep"](seconds)
-    elif seconds < 0:
-        raise ValueError("sleep length must be non-negative")
-    elif seconds > 0:
+    if scheduler.active and seconds > 0:
         scheduler.pause(scheduler.deadline(seconds))
     else:
-        _real["sleep"](0)
+        _real["sleep"](seconds)  # also complains of a negative time
 
 
 def localtime(seconds: Optional[float] = None) -> time.struct_time:
@@ -58,21 +54,11 @@ def install() -> None:
     import socketserver
     import threading
 
-    replacements: List[Tuple[Any, str, Callable[..., Any]]] = [
-        (time, "time", now),
-        (time, "time_ns", time_ns),
-        (time, "monotonic", monotonic),
-        (time, "monotonic_ns", monotonic_ns),
-        (time, "perf_counter", monotonic),
-        (time, "perf_counter_ns", monotonic_ns),
-        (time, "clock_gettime", clock_gettime),
-        (time, "sleep", sleep),
-        (time, "localtime", localtime),
-        (time, "gmtime", gmtime),
-        (threading, "_time", monotonic),
-        (queue, "time", monotonic),
-        (socketserver, "time", monotonic),
-    ]
-    for module, name, function in replacements:
+    functions: List[Callable[..., Any]] = [time_ns, monotonic, monotonic_ns, sleep, localtime, gmtime, clock_gettime]
+    others = {"time": now, "perf_counter": monotonic, "perf_counter_ns": monotonic_ns}
+    for name, function in {**{it.__name__: it for it in functions}, **others}.items():
         # As an attribute of a class, which logging makes of localtime, a function would get `self`; this does not.
-        setattr(module, name, functools.partial(function))
+        setattr(time, name, functools.partial(function))
+    copies: List[Tuple[Any, str]] = [(threading, "_time"), (queue, "time"), (socketserver, "time")]
+    for module, name in copies:
+        setattr(module, name, functools.partial(monotonic))

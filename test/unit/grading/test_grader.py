@@ -25,7 +25,7 @@ def graded(outcomes, folder, monkeypatch):
     """The grade of a server whose runs have these outcomes."""
     left = list(outcomes)
     monkeypatch.setattr(Runner, "run", lambda *_: left.pop(0))
-    submission = Submission("anna", folder, (), {}, [Script("server", folder, "node")])
+    submission = Submission("anna", (), {}, [Script("server", folder, "node")])
     return Grader(Runner(PLAN, folder)).grade(submission, folder / "report")
 
 
