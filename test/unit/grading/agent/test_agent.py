@@ -68,6 +68,10 @@ def printed(folder, text, seconds=20.0):
 
 
 AFTER = "round(time.monotonic() - start, 6)"
+POLL = (
+    "import select, socket, threading; s, p = socket.socketpair(), select.poll()\n"
+    "threading.Timer(0.4, s[1].send, [b'x']).start()\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -85,6 +89,8 @@ AFTER = "round(time.monotonic() - start, 6)"
         ("import select; select.select([], [], [], 0.6)", 0.6),
         ("import select, socket; s = socket.socketpair(); select.select([s[0]], [], [], 0.6)", 0.6),
         ("import select, socket; s = socket.socketpair(); p = select.poll(); p.register(s[0], 1); p.poll(300)", 0.3),
+        (f"{POLL}p.register(s[0], 0); p.modify(s[0], 1); p.poll(2000)", 0.4),
+        ("import select, socket; s = socket.socketpair(); e = select.epoll(); e.register(s[0], 1); e.poll(0.3)", 0.3),
         ("import socket; s = socket.socketpair(); s[0].settimeout(0.2)\ntry: s[0].recv(1)\nexcept OSError: pass", 0.2),
         ("import asyncio; asyncio.run(asyncio.sleep(0.35))", 0.35),
         ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
