@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import PlanError
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose, compose3, lifted
 from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 
@@ -50,13 +50,38 @@ class Push:
 
 
 @dataclass(frozen=True)
+class Block:
+    """An obstacle that stands on the floor: a box or a cylinder."""
+
+    kind: str  # box or cylinder
+    pose: Pose2D  # odom_from_block at the scenario's start
+    sizes: Tuple[float, ...]  # [m] length and width of a box, radius of a cylinder
+
+    @property
+    def geometry(self) -> Geometry:
+        """Its shape."""
+        return Box((self.sizes[0], self.sizes[1], HEIGHT)) if self.kind == "box" else Cylinder(self.sizes[0], HEIGHT)
+
+    @property
+    def outline(self) -> Tuple[float, ...]:
+        """It seen from above, in odom: x, y, x, y, ... [m]."""
+        if self.kind == "box":
+            length, width = self.sizes
+            corners = [(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        else:
+            (radius,) = self.sizes
+            corners = [(radius * math.cos(n * math.pi / 8), radius * math.sin(n * math.pi / 8)) for n in range(17)]
+        return tuple(round(it, 4) for corner in corners for it in compose(self.pose, Pose2D(*corner))[:2])
+
+
+@dataclass(frozen=True)
 class Scenario:
     """A script that starts with the robot at odom's origin."""
 
     name: str
     about: str
     steps: Tuple[Step, ...]
-    obstacles: Tuple[Tuple[str, Tuple[float, ...]], ...] = ()
+    obstacles: Tuple[Block, ...] = ()
     odd_scan: bool = False
     pushes: Tuple[Push, ...] = ()
 
@@ -181,9 +206,10 @@ def _scenario(raw: Any, where: str, seed: int) -> Scenario:
         _expect(entry, {"box", "cylinder"}, where)
         for kind, value in entry.items():
             numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}", draw)
-            if min(numbers[{"box": 3, "cylinder": 2}[kind] :]) <= 0.0:
+            place = numbers[: {"box": 3, "cylinder": 2}[kind]]
+            obstacles.append(Block(kind, Pose2D(*place), numbers[len(place) :]))
+            if min(obstacles[-1].sizes) <= 0.0:
                 raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
-            obstacles.append((kind, numbers))
     steps = tuple(_step(step, where, draw) for step in _list(raw["script"], f"{where}: script", "steps"))
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
@@ -243,12 +269,7 @@ def world_of(plan: Plan) -> World:
     """The obstacles of all scenarios: those of the first one at site 1, and so on; site 0 is empty."""
     obstacles = [Obstacle("ground/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0)))]
     for index, scenario in enumerate(plan.scenarios, 1):
-        for number, (kind, values) in enumerate(scenario.obstacles):
-            yaw = values[2] if kind == "box" else 0.0
-            pose = compose3(lifted(site(index)), lifted(Pose2D(values[0], values[1], yaw), HEIGHT / 2.0))
-            obstacles.append(Obstacle(f"{scenario.name}/{number}/{kind}", pose, _geometry(kind, values)))
+        for number, block in enumerate(scenario.obstacles):
+            pose = compose3(lifted(site(index)), lifted(block.pose, HEIGHT / 2.0))
+            obstacles.append(Obstacle(f"{scenario.name}/{number}/{block.kind}", pose, block.geometry))
     return World("grading", tuple(obstacles), Pose2D(), (), "config/grading.yaml")
-
-
-def _geometry(kind: str, values: Tuple[float, ...]) -> Geometry:
-    return Box((values[3], values[4], HEIGHT)) if kind == "box" else Cylinder(values[2], HEIGHT)

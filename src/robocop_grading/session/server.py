@@ -18,7 +18,7 @@ from ..job import Job
 from ..plan import START, Push, Scenario, Step
 from ..record import Record
 from .run import TICK, Run
-from .stage import Stage, outlines
+from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node to connect to the recorder of /rosout
 SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then on
@@ -107,7 +107,9 @@ class ServerRun(Run):
                     break
         if problem:
             self.settle(AFTER)
-        record = self.finish(scenario.name, obstacles=outlines(self.plan, scenario.name), problem=problem)
+        record = self.finish(
+            scenario.name, obstacles=tuple(block.outline for block in scenario.obstacles), problem=problem
+        )
         if problem or self._unclean(record):
             self._end_node()
         return record

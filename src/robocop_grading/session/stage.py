@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from functools import partial
-from typing import Any, Callable, Deque, Optional, Tuple
+from typing import Any, Callable, Deque, Optional
 
 import genpy
 import numpy as np
@@ -223,23 +223,3 @@ def _make_odd(ranges: np.ndarray) -> None:
     """Put no-return values of all kinds among the beams of a scan (n,) [m]."""
     ranges[::ZERO_EVERY] = 0.0
     ranges[::NAN_EVERY] = np.nan
-
-
-def outlines(plan: Plan, name: str) -> Tuple[Tuple[float, ...], ...]:
-    """A scenario's obstacles seen from above, in odom: x, y, x, y, ... [m]."""
-    found = []
-    for scenario in plan.scenarios:
-        for kind, values in scenario.obstacles if scenario.name == name else ():
-            if kind == "box":
-                x, y, yaw, length, width = values
-                corners = [
-                    compose(Pose2D(x, y, yaw), Pose2D(sx * length / 2, sy * width / 2))
-                    for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))
-                ]
-            else:
-                x, y, radius = values
-                corners = [
-                    Pose2D(x + radius * np.cos(a), y + radius * np.sin(a)) for a in np.linspace(0, 2 * np.pi, 17)
-                ]
-            found.append(tuple(round(float(n), 4) for corner in corners for n in (corner.x, corner.y)))
-    return tuple(found)
