@@ -310,7 +310,7 @@ def test_controller_that_hangs_causes_one_miss_and_is_awaited_again_when_it_cont
 
 @pytest.mark.slow
 def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again(ros):
-    simulator = ros.simulator(drive="kinematic", physics_rate=60, world="empty", lockstep_timeout=0.5)
+    simulator = ros.simulator(drive="kinematic", physics_rate=60, imu_rate=60, world="empty", lockstep_timeout=0.5)
     server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
     remote = Remote(ros, simulator)
     remote.wait_for_driver(SERVER, server)
