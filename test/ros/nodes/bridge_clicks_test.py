@@ -60,7 +60,9 @@ class BridgeClicks(SystemTest):
             self.wait_for_goals(count)
         for goal in self.goals.of_others()[:-1]:
             goal.result("PREEMPTED")
-        self.goals.of_others()[-1].cancel()
+        last = self.goals.of_others()[-1]
+        last.wait_for_feedback(lambda _: True, "the server has accepted it, or the cancel would recall it")
+        last.cancel()
         self.clicks.wait_for_status("last goal PREEMPTED: PREEMPTED: ")
         errors = [m.msg for m in self.goals.log.messages if m.name == BRIDGE and m.level >= Log.ERROR]
         self.assertEqual(errors, [])
