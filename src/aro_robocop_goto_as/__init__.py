@@ -12,7 +12,7 @@ From a velocity command to odometry, scan, tf and clock:
         sensors                   models of odometry, scanner, IMU, magnetometer and camera
     ros.sim.node                  the loop
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.outbox                the batch: sender.c writes the measurements into packed messages and sends them
+        ros.batch                 the batch: sender.c writes the measurements into packed messages and sends them
 
     rospy serializes the other topics (bumper, battery, magnetic field, camera).
 

@@ -1,6 +1,6 @@
 /* Fills the messages of one step with the simulation's numbers, and sends them to all their subscribers.
  *
- * The structures are mirrored in outbox.py and packed.py; ARO_SENDER_VERSION changes with them. ROS's messages are
+ * The structures are mirrored in batch.py and packed.py; ARO_SENDER_VERSION changes with them. ROS's messages are
  * little-endian, as all processors are for which Debian builds ROS 1.
  */
 

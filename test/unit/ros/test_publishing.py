@@ -18,7 +18,7 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from sensor_msgs.msg import LaserScan
 from subscriber_links import Link
 
-from aro_robocop_goto_as.ros.outbox import Batch
+from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.packed import PackedMessage
 from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher, resume
 from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics

@@ -24,10 +24,10 @@ from ..publishing import publisher
 from ..rospy_internals import is_connected_to, sender
 from ..ticker import Ticker
 from ..timer import start_timer
-from . import markers
 from .goal_execution import Ending, GoalExecution
 from .goal_server import GoalServer
 from .inputs import Inputs
+from .server_markers import server_markers
 from .tuning import Tuning
 
 MARKER_PERIOD = 0.1  # [s]
@@ -195,7 +195,7 @@ class GotoNode:
             return
         robot = rospy.get_namespace().strip("/")
         state = f"{robot}: {self.state}" if robot else self.state  # its text may stand beside another robot
-        self.markers.publish(markers.server_markers(self.tuning.params, self.inputs, self.newest, state))
+        self.markers.publish(server_markers(self.tuning.params, self.inputs, self.newest, state))
 
 
 def main() -> None:

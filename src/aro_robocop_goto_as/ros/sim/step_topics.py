@@ -6,7 +6,7 @@ from rosgraph_msgs.msg import Clock
 
 from ...simulation.observations import SCAN, TF, Due, Observations, Subscriptions
 from ...simulation.simulator import Simulator
-from ..outbox import Batch, Posted
+from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
 from ..publishing import publisher
 from ..rospy_internals import set_latched

@@ -6,8 +6,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from ...simulation.simulator import Simulator
 from .. import convert
+from ..batch import Batch
 from ..names import prefixed
-from ..outbox import Batch
 from ..packed import PackedMessage
 from ..publishing import publisher
 from .map_topics import MapTopics

@@ -9,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 from aro_robocop_goto_as.goto import Goal, Outcome
 from aro_robocop_goto_as.params import GotoParams
 from aro_robocop_goto_as.ros import markers
-from aro_robocop_goto_as.ros.server.markers import (
+from aro_robocop_goto_as.ros.server.server_markers import (
     BLOCKED,
     FREE,
     NEAR,

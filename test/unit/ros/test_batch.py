@@ -11,7 +11,7 @@ import pytest
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
-from aro_robocop_goto_as.ros.outbox import Batch
+from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
 
