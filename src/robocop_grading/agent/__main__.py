@@ -52,8 +52,6 @@ def main() -> None:
         status = 1
     else:
         status = 0
-    finally:
-        start.leave()
     sys.exit(status)
 
 

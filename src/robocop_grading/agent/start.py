@@ -18,9 +18,3 @@ def install(descriptor: int, ports: Set[int]) -> None:
     threads.install()
     ros.install(ports)
     scheduler.start_new_thread(channel.Channel(descriptor, ports).serve, ())
-
-
-def leave() -> None:
-    """The main thread has come to its end; Python now waits for the others."""
-    with scheduler.guard:
-        scheduler.leave()

@@ -31,8 +31,21 @@ def register_main() -> None:
     native_ids[_thread.get_ident()] = threading.get_native_id()
 
 
+def _join_others() -> None:
+    """Wait for the threads that Python waits for at the end of the main thread."""
+    for thread in iter(lambda: next(filter(_is_waited_for, threading.enumerate()), None), None):
+        thread.join()
+
+
+def _is_waited_for(thread: threading.Thread) -> bool:
+    return not thread.daemon and thread is not threading.current_thread()
+
+
 def install() -> None:
     """For all threads that are started from now on."""
+    system: Any = threading
+    # The first to be registered is called last. Python 3.8 waits by itself, which stuck.py sees.
+    getattr(system, "_register_atexit", lambda _: None)(_join_others)
     cls: Any = threading.Thread
     start, bootstrap, join = cls.start, cls._bootstrap, cls.join
 
@@ -86,5 +99,5 @@ def install() -> None:
             scheduler.starting += 1
         return scheduler.start_new_thread(counted, ())
 
-    system: Any = _thread
+    system = _thread
     system.start_new_thread = system.start_new = start_new_thread

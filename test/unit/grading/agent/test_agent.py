@@ -126,6 +126,23 @@ def test_agent_tells_when_the_program_will_wake_up(tmp_path):
         assert program.go_on(6 * 10**9) is None  # rospy takes 0.1 s to end
 
 
+@pytest.mark.parametrize(
+    "text, seconds",
+    [
+        ("import atexit; atexit.register(lambda: [0 for _ in range(10**6)]); time.sleep(3.0)", 3.0),
+        ("import atexit; atexit.register(time.sleep, 1.0); time.sleep(3.0)", 4.0),
+        ("import threading; threading.Thread(target=time.sleep, args=(4.0,)).start(); time.sleep(3.0)", 4.0),
+        ("import threading; threading.Thread(target=time.sleep, args=(9.0,), daemon=True).start(); time.sleep(3.0)", 3.0),
+        ("from concurrent.futures import ThreadPoolExecutor as E; E().submit(time.sleep, 4.0); time.sleep(3.0)", 4.0),
+    ],
+)
+def test_program_ends_at_the_time_at_which_all_that_it_waits_for_is_over(text, seconds, tmp_path):
+    with Program(tmp_path, text) as program:
+        end = round((seconds + 0.1) * 1e9)  # rospy takes 0.1 s
+        assert program.go_on(end - 1)
+        assert program.go_on(end) is None
+
+
 def test_program_that_polls_in_a_busy_loop_does_not_stop_time(tmp_path):
     text = "time.sleep(0.001)\nwhile time.monotonic() - start < 0.2: pass\nprint('done')\ntime.sleep(60)"
     with Program(tmp_path, text) as program:
