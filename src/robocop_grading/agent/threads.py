@@ -33,12 +33,12 @@ def register_main() -> None:
 
 def _join_others() -> None:
     """Wait for the threads that Python waits for at the end of the main thread."""
-    for thread in iter(lambda: next(filter(_is_waited_for, threading.enumerate()), None), None):
-        thread.join()
-
-
-def _is_waited_for(thread: threading.Thread) -> bool:
-    return not thread.daemon and thread is not threading.current_thread()
+    me = threading.current_thread()
+    while True:
+        others = [thread for thread in threading.enumerate() if thread is not me and not thread.daemon]
+        if not others:
+            return
+        others[0].join()
 
 
 def install() -> None:

@@ -80,7 +80,7 @@ class BridgeClicks(SystemTest):
 
     def test_status_follows_a_goal_from_its_start_to_its_end(self):
         self.clicks.click(1.0, 0.0, "map")
-        self.clicks.wait_for_status("goal x 1.70 y 0.00 is ")
+        self.clicks.wait_for_status("goal x 1.00 y 0.00 in map is ")
         driving = self.clicks.wait_for_status("is ACTIVE: driving, ")
         self.assertRegex(driving, r"\(position_error \d\.\d\d m, angle_error -?\d\.\d\d rad\)$")
         self.wait_for_goals(1)[0].cancel()

@@ -51,7 +51,7 @@ class BridgeWaits(unittest.TestCase):
         clicks.click(0.5, 0.25, "odom")
         right = Server(ACTION)
         wait_for(lambda: right.goals, "the goal at the right server")
-        clicks.wait_for_status("goal x 0.50 y 0.25 is ")
+        clicks.wait_for_status("goal x 0.50 y 0.25 in odom is ")
         right.finish.set()
         clicks.wait_for_status(f"{ACTION} is ready, last goal SUCCEEDED: REACHED: by the test")
         self.assertEqual([(goal.position.x, goal.position.y) for goal in right.goals], [(0.5, 0.25)])

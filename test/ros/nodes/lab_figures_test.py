@@ -42,7 +42,7 @@ class LabFigures(SystemTest):
 
     def test_the_first_drive(self):
         took, _, _, message = self.drive(1.0, 0.0)
-        line = r"REACHED: 0\.098 m from the goal x 1\.00 y 0\.00 after ([\d.]+) s"
+        line = r"REACHED: 0\.098 m from the goal x 1\.00 y 0\.00 in odom after ([\d.]+) s"
         for figure in printed(f"SUCCEEDED: {line} .*{line}"):
             self.assertAlmostEqual(took, figure, delta=0.15)
         self.assertTrue(message.startswith("REACHED: 0.098 m from the goal"), message)

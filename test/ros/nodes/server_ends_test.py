@@ -55,7 +55,7 @@ class ServerEnds(unittest.TestCase):
         goal = self.start(0.5, 0.0)
         self.robot.follow(goal)
         text = self.assert_ended(goal, "REACHED")
-        self.assertRegex(text, r"^REACHED: 0\.(0..|100) m from the goal x 0\.50 y 0\.00 after \d\.\d s$")
+        self.assertRegex(text, r"^REACHED: 0\.(0..|100) m from the goal x 0\.50 y 0\.00 in odom after \d\.\d s$")
 
     def test_obstacle_ahead_ends_the_goal(self):
         goal = self.start()
@@ -166,7 +166,7 @@ class ServerEnds(unittest.TestCase):
         self.assertAlmostEqual(self.robot.follow(goal) + 1.0, 15.1, delta=0.25)
         text = self.assert_ended(goal, "TIMEOUT")
         self.assertRegex(
-            text, r"^TIMEOUT: not reached within 15 s; 9\d\.\d+ m from the goal x 100\.00 y 0\.00 after 15\.\d s$"
+            text, r"^TIMEOUT: not reached within 15 s; 9\d\.\d+ m from the goal x 100\.00 y 0\.00 in odom after 15\.\d s$"
         )
 
     def test_goal_of_nan_infinity_or_out_of_reach_is_a_bad_goal_and_does_not_move_the_robot(self):

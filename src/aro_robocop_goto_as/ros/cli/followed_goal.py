@@ -115,16 +115,16 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
         return NOT_REACHED
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     print(f"goal {given}" + (f", x {position.x:.2f} y {position.y:.2f} in {odom}" if given.split()[-1] != odom else ""))
-    return _follow(client, position)
+    return _follow(client, position, given)
 
 
-def _follow(client: actionlib.ActionClient, position: Point) -> int:
-    """Send a position in odom, show feedback, cancel on Ctrl-C."""
+def _follow(client: actionlib.ActionClient, position: Point, where: str) -> int:
+    """Send a position in odom, which is called `where`, show feedback, cancel on Ctrl-C."""
     progress, pause = _ProgressLine(), _PauseNotice()
     goal: Optional[SentGoal] = None
     try:
         with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
-            goal = SentGoal(client, position, on_feedback=progress.show)
+            goal = SentGoal(client, position, where, on_feedback=progress.show)
         while not goal.done.wait(0.1):
             signals.reraise_if_interrupted()
             pause.poll()

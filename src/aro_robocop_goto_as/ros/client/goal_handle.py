@@ -29,10 +29,12 @@ class SentGoal:
         self,
         client: actionlib.ActionClient,
         position: Point,
+        where: str,
         on_end: Callable[[str], None] = lambda ending: None,
         on_feedback: Callable[[GoToPositionFeedback], None] = lambda feedback: None,
     ) -> None:
-        self.position = position
+        """Send a goal at a position in the server's frame; `where` is what a person knows as its place."""
+        self._where = where
         self.done = threading.Event()
         self.ending = ""  # state and message, once it is done
         self.feedback: Optional[GoToPositionFeedback] = None
@@ -65,7 +67,7 @@ class SentGoal:
 
     def __str__(self) -> str:
         state = STATES[self._handle.get_goal_status()]
-        goal = f"goal x {self.position.x:.2f} y {self.position.y:.2f}"
+        goal = f"goal {self._where}"
         if state not in UNFINISHED:
             return f"{goal} has ended ({state}), waiting for its result"
         feedback = self.feedback

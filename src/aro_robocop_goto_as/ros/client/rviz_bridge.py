@@ -63,7 +63,7 @@ class Bridge:
             if click is None:
                 continue
             try:
-                self._replace_goal(self._resolve(click))
+                self._replace_goal(self._resolve(click), click)
             except FrameError as error:
                 rospy.logerr("goal refused, an earlier goal continues: %s", error)
                 self._publish_status(f"goal refused: {error}", rospy.loginfo)
@@ -88,8 +88,11 @@ class Bridge:
         )
         return click.pose.position
 
-    def _replace_goal(self, position: Point) -> None:
-        """Cancel the earlier goal, wait for its end, then send this one, unless a newer click arrives meanwhile."""
+    def _replace_goal(self, position: Point, click: PoseStamped) -> None:
+        """Cancel the earlier goal, wait for its end, then send this one, unless a newer click arrives meanwhile.
+
+        Reports name the place that was clicked, as the view shows it.
+        """
         if not self._wait_for_server():
             return
         earlier = self.sent
@@ -103,8 +106,9 @@ class Bridge:
                 )
         if self.click is not None:
             return
-        self.sent = SentGoal(self.client, position, lambda ending: rospy.loginfo("goal ended, %s", ending))
-        rospy.loginfo("goal sent: x %.2f y %.2f in %s", position.x, position.y, self.p.goal_frame)
+        where = _place(click.pose.position, click.header.frame_id or self.p.default_frame)
+        self.sent = SentGoal(self.client, position, where, lambda ending: rospy.loginfo("goal ended, %s", ending))
+        rospy.loginfo("goal sent: %s, for the server %s", where, _place(position, self.p.goal_frame))
         self._report()
 
     def _wait_for_server(self) -> bool:
@@ -138,6 +142,10 @@ class Bridge:
             log("%s", text)
         self.last_status = text
         self.status.publish(String(text))
+
+
+def _place(point: Point, frame: str) -> str:
+    return f"x {point.x:.2f} y {point.y:.2f} in {frame}"
 
 
 def main() -> None:

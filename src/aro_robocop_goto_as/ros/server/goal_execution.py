@@ -88,8 +88,7 @@ class GoalExecution:
         self, p: GotoParams, decision: Decision, clearance: float, elapsed: float, idle: float
     ) -> Optional[Ending]:
         """The ending that follows from this decision, the time without progress or the time since the start."""
-        x, y = self.goal.x, self.goal.y
-        where = f"{decision.errors.position:.3f} m from the goal x {x:.2f} y {y:.2f} after {elapsed:.1f} s"
+        where = f"{decision.errors.position:.3f} m from the {self._place()} after {elapsed:.1f} s"
         if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)
         if isinstance(decision, End):
@@ -104,7 +103,12 @@ class GoalExecution:
     def stopped_early(self, outcome: Outcome, reason: str) -> Ending:
         """The ending of a goal that a client or a shutdown stops."""
         elapsed = 0.0 if self._started is None else max(0.0, rospy.get_rostime().to_sec() - self._started)
-        return Ending(outcome, f"goal x {self.goal.x:.2f} y {self.goal.y:.2f} stopped after {elapsed:.1f} s: {reason}")
+        return Ending(outcome, f"{self._place()} stopped after {elapsed:.1f} s: {reason}")
+
+    def _place(self) -> str:
+        odom = self._inputs.odom
+        frame = "" if odom is None else f" in {odom.message.header.frame_id}"
+        return f"goal x {self.goal.x:.2f} y {self.goal.y:.2f}{frame}"
 
 
 def describe(decision: Decision) -> str:

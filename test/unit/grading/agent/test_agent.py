@@ -132,7 +132,7 @@ def test_agent_tells_when_the_program_will_wake_up(tmp_path):
         ("import atexit; atexit.register(lambda: [0 for _ in range(10**6)]); time.sleep(3.0)", 3.0),
         ("import atexit; atexit.register(time.sleep, 1.0); time.sleep(3.0)", 4.0),
         ("import threading; threading.Thread(target=time.sleep, args=(4.0,)).start(); time.sleep(3.0)", 4.0),
-        ("import threading; threading.Thread(target=time.sleep, args=(9.0,), daemon=True).start(); time.sleep(3.0)", 3.0),
+        ("import threading; threading.Thread(target=time.sleep, args=(9,), daemon=True).start(); time.sleep(3.0)", 3.0),
         ("from concurrent.futures import ThreadPoolExecutor as E; E().submit(time.sleep, 4.0); time.sleep(3.0)", 4.0),
     ],
 )

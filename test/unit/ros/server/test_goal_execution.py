@@ -21,6 +21,8 @@ PERIOD = 100  # [ms] of the control loop
 class BlockedRobot:
     """Inputs of a robot that never moves, with nothing ahead."""
 
+    odom = None  # whose frame a text would name
+
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Nothing."""
 
