@@ -30,7 +30,9 @@ class ReachGoal(SystemTest):
         self.assertTrue(client.wait_for_result(rospy.Duration(300.0)))
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED)
         self.assertTrue(client.get_result().success)
-        self.assertRegex(client.get_result().message, r"^REACHED: 0\.(0..|100) m from the goal x 0\.40 y 0\.30 in odom after ")
+        self.assertRegex(
+            client.get_result().message, r"^REACHED: 0\.(0..|100) m from the goal x 0\.40 y 0\.30 in odom after "
+        )
         self.assertLess(
             distance(self.robot.wait_until_it_stands(), in_world(SPAWN, Pose2D(0.4, 0.3))), TOLERANCE + DRIFT
         )

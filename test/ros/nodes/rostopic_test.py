@@ -41,7 +41,9 @@ class Rostopic(SystemTest):
         self.assertRegex(feedback.output, r"(?m)^  angle_error: -?0\.\d+$")
         self.assertRegex(result.output, r"(?m)^  status: 3$")
         self.assertRegex(result.output, r"(?m)^  success: True$")
-        self.assertRegex(result.output, r'(?m)^  message: "REACHED: 0\.(0..|100) m from the goal x 0\.30 y 0\.10 in odom ')
+        self.assertRegex(
+            result.output, r'(?m)^  message: "REACHED: 0\.(0..|100) m from the goal x 0\.30 y 0\.10 in odom '
+        )
         self.robot.wait_until_it_stands()
 
 

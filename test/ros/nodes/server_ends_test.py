@@ -166,7 +166,8 @@ class ServerEnds(unittest.TestCase):
         self.assertAlmostEqual(self.robot.follow(goal) + 1.0, 15.1, delta=0.25)
         text = self.assert_ended(goal, "TIMEOUT")
         self.assertRegex(
-            text, r"^TIMEOUT: not reached within 15 s; 9\d\.\d+ m from the goal x 100\.00 y 0\.00 in odom after 15\.\d s$"
+            text,
+            r"^TIMEOUT: not reached within 15 s; 9\d\.\d+ m from the goal x 100\.00 y 0\.00 in odom after 15\.\d s$",
         )
 
     def test_goal_of_nan_infinity_or_out_of_reach_is_a_bad_goal_and_does_not_move_the_robot(self):
