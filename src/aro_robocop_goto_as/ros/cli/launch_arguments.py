@@ -20,7 +20,7 @@ OTHER_NAMES = {
     "robot": "model",
     "position": "spawn",
     "pose": "spawn",
-    "headless": "rviz",
+    "headless": "rviz:=false",  # the opposite
 }
 
 
@@ -63,8 +63,8 @@ class LaunchArguments:
 
 
 def _meant(name: str, known: List[str]) -> str:
-    other = OTHER_NAMES.get(name)
-    return f"; did you mean {other}?" if other in known else did_you_mean(name, known)
+    other = OTHER_NAMES.get(name, "")
+    return f"; did you mean {other}?" if other.partition(":=")[0] in known else did_you_mean(name, known)
 
 
 def _absolute(word: str) -> str:

@@ -51,6 +51,12 @@ def test_other_words_are_refused(file, word, message):
     assert refused.value.code == f"robocop: {message}"
 
 
+def test_opposite_of_an_argument_is_suggested_with_its_value(tmp_path):
+    (tmp_path / "my.launch").write_text('<launch><arg name="rviz" default="true"/></launch>')
+    with pytest.raises(SystemExit, match="did you mean rviz:=false[?]"):
+        LaunchArguments.parse(tmp_path / "my.launch", ["headless:=true"])
+
+
 def test_path_of_a_file_is_made_absolute_but_not_the_name_of_a_world(file, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "maze").write_text("")
