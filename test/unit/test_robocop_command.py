@@ -160,7 +160,7 @@ def test_doctor_shows_the_system_the_versions_and_that_nothing_is_missing():
     assert report["set-up"] == f"complete, in {ROOT}/.robocop"
     assert report["display"] == ":4711 does not answer"
     assert f"\nROS master  none at {uri}\n" in done.stdout
-    assert done.stdout.endswith("\nnothing is missing\n")
+    assert done.stdout.endswith("\nnothing is missing: ./robocop run starts the lab\n")
 
 
 def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(checkout):

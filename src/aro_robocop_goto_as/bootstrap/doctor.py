@@ -151,7 +151,7 @@ def report(script: str, checkout: str, state: str) -> int:
     rows, problems = examine(checkout, state, ros, ask("_unsupported"), {**required, **missing})
     for name, value in rows:
         print(f"{name:11} {value}")
-    print("\nnothing is missing" if not problems else "\nmissing or wrong:")
+    print("\nnothing is missing: ./robocop run starts the lab" if not problems else "\nmissing or wrong:")
     for what, remedy in problems:
         print(f"  {what}\n      {remedy}")
     return 1 if problems else 0

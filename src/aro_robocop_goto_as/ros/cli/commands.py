@@ -215,7 +215,7 @@ def setup(parts: List[str]) -> None:
     if "grade" in parts:  # what the first grading would build: a container would repeat it at each start
         prebuild = program.module("robocop_grading.prebuild")
         subprocess.run([program.SCRIPT, "_start", *prebuild], check=True)
-    say(f"ready in {program.state()}")
+    say(f"ready in {program.state()}; ./robocop run starts the lab")
 
 
 def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
