@@ -24,7 +24,7 @@ From a goal to its result:
         goto                      the handout's rule: rotate, move forward, reached or obstacle
     ros.server.node               -> feedback, cmd_vel, in the end result and terminal state
 
-    A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2), goal_handle.
+    A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2), sent_goal.
 
 From a world file to a scan:
 

@@ -67,7 +67,8 @@ class BridgeWaits(unittest.TestCase):
         def refused():
             clicks.click(1.0, 0.0, "far")
             return any(
-                "got x 1000001.0 y 0.0 z 0.0 in 'odom', transformed from 'far'" in m.data for m in clicks.status.messages
+                "got x 1000001.0 y 0.0 z 0.0 in 'odom', transformed from 'far'" in m.data
+                for m in clicks.status.messages
             )
 
         wait_for(refused, "a refusal")

@@ -17,7 +17,7 @@ from ...process import signals
 from .. import log_handlers
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
-from ..client.goal_handle import SentGoal
+from ..client.sent_goal import SentGoal
 from ..names import ACTION, absolute_if_named, prefixed
 from ..ticker import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain

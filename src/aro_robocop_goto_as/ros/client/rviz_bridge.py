@@ -22,7 +22,7 @@ from ..ticker import wait_until
 from ..timer import start_timer
 from . import discovery
 from .goal_frame import GoalTransformer
-from .goal_handle import SentGoal
+from .sent_goal import SentGoal
 
 ADVICE_AFTER = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives

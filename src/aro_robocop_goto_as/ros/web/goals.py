@@ -15,7 +15,7 @@ from ...web.goal_history import Ended, GoalHistory
 from ...web.pick import floor_point
 from ...web.state import PageState
 from .. import convert
-from ..client.goal_handle import STATES
+from ..client.sent_goal import STATES
 from ..covariances import diagonal
 from ..names import ACTION, absolute
 from .inbox import Inbox
