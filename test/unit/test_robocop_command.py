@@ -19,8 +19,11 @@ BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "m
 
 
 def test_shell_passes_arguments_and_exit_status_through():
-    done = robocop("shell", "bash", "-c", 'printf "[%s]" "$@"; exit 7', "_", "a b", "-0.5", "")
-    assert (done.returncode, done.stdout) == (7, "[a b][-0.5][]")
+    words = ("a b", "-0.5", "", "--help", "--extend")  # catkin's set-up files know the last two
+    done = robocop("shell", "bash", "-c", 'rospack find aro_robocop_goto_as; printf "[%s]" "$@"; exit 7', "_", *words)
+    found, words_passed = done.stdout.split("\n")
+    assert (done.returncode, words_passed) == (7, "[a b][-0.5][][--help][--extend]")
+    assert found.endswith("src/aro_robocop_goto_as"), done.stderr
 
 
 def test_shell_finds_the_package():

@@ -23,6 +23,14 @@ def test_help_lists_every_command():
     assert described == {*COMMANDS, "clean", "help"} - {"--version"}
 
 
+@pytest.mark.parametrize("words", [("run", "--help"), ("sim", "world:=stage_1", "-h"), ("grade-worker", "--help")])
+def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
+    done = robocop(*words)
+    assert done.returncode == 0 and done.stdout.startswith(f"  {words[0]} "), done.stderr
+    assert done.stdout.strip("\n") in robocop("help").stdout
+    assert len(re.findall(r"(?m)^  [a-z]", done.stdout)) == (2 if words[0] == "sim" else 1)
+
+
 def test_no_command_prints_the_help():
     assert robocop().stdout == robocop("help").stdout
 
