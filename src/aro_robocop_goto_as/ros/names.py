@@ -1,4 +1,4 @@
-"""Names in ROS: the lab's package, nodes and action, and what belongs to a robot. It imports nothing of ROS."""
+"""Names in ROS: the lab's package, nodes and action, what belongs to a robot, and places. It imports nothing of ROS."""
 
 PACKAGE = "aro_robocop_goto_as"
 SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
@@ -22,3 +22,8 @@ def absolute(robot: str, name: str) -> str:
 def absolute_if_named(robot: str, name: str) -> str:
     """The topic /ROBOT/NAME of a robot that a user named; without a robot, NAME in this node's namespace."""
     return absolute(robot, name) if robot else name
+
+
+def place(x: float, y: float, frame: str) -> str:
+    """A position [m] in words, as messages name it."""
+    return f"x {x:.2f} y {y:.2f} in {frame}"

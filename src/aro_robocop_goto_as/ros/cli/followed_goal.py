@@ -18,7 +18,7 @@ from .. import log_handlers
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.sent_goal import SentGoal
-from ..names import ACTION, absolute_if_named, prefixed
+from ..names import ACTION, absolute_if_named, place, prefixed
 from ..ticker import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
 
@@ -114,7 +114,7 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
             complain(PAUSED)
         return NOT_REACHED
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
-    print(f"goal {given}" + (f", x {position.x:.2f} y {position.y:.2f} in {odom}" if given.split()[-1] != odom else ""))
+    print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
     return _follow(client, position, given)
 
 

@@ -31,6 +31,10 @@ class GoalTransformer:
         self.buffer = TfBuffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
 
+    def frame_of(self, pose: PoseStamped) -> str:
+        """The frame in which a pose is given; the default where it names none."""
+        return pose.header.frame_id.lstrip("/") or self.default_frame
+
     def resolve(self, pose: PoseStamped) -> Point:
         """The pose's position in goal_frame at the pose's stamp.
 
@@ -41,9 +45,8 @@ class GoalTransformer:
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)
-        frame = pose.header.frame_id.lstrip("/")
-        if not frame:
-            frame = self.default_frame
+        frame = self.frame_of(pose)
+        if not pose.header.frame_id.lstrip("/"):
             rospy.logwarn("goal without frame_id; assuming the default %r", frame)
         if frame == self.goal_frame:
             return Point(x, y, z)

@@ -16,7 +16,7 @@ from aro_robocop_goto_as.msg import GoToPositionAction
 from ...errors import FrameError
 from ...params import BridgeParams
 from .. import param_server
-from ..names import ACTION, BRIDGE
+from ..names import ACTION, BRIDGE, place
 from ..node_main import node
 from ..ticker import wait_until
 from ..timer import start_timer
@@ -106,9 +106,10 @@ class Bridge:
                 )
         if self.click is not None:
             return
-        where = _place(click.pose.position, click.header.frame_id or self.p.default_frame)
+        clicked = click.pose.position
+        where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
         self.sent = SentGoal(self.client, position, where, lambda ending: rospy.loginfo("goal ended, %s", ending))
-        rospy.loginfo("goal sent: %s, for the server %s", where, _place(position, self.p.goal_frame))
+        rospy.loginfo("goal sent: %s, for the server %s", where, place(position.x, position.y, self.p.goal_frame))
         self._report()
 
     def _wait_for_server(self) -> bool:
@@ -142,10 +143,6 @@ class Bridge:
             log("%s", text)
         self.last_status = text
         self.status.publish(String(text))
-
-
-def _place(point: Point, frame: str) -> str:
-    return f"x {point.x:.2f} y {point.y:.2f} in {frame}"
 
 
 def main() -> None:

@@ -33,7 +33,7 @@ class SentGoal:
         on_end: Callable[[str], None] = lambda ending: None,
         on_feedback: Callable[[GoToPositionFeedback], None] = lambda feedback: None,
     ) -> None:
-        """Send a goal at a position in the server's frame; `where` is what a person knows as its place."""
+        """Send a goal at a position in the server's frame; `where`: its place as the user gave it, for reports."""
         self._where = where
         self.done = threading.Event()
         self.ending = ""  # state and message, once it is done

@@ -14,6 +14,7 @@ from ...geometry import FARTHEST, STANDSTILL
 from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate
 from ...goto_params import GotoParams
 from ...simulation.schedule import NANOSECONDS
+from ..names import place
 from .inputs import Inputs
 from .tuning import Tuning
 
@@ -106,9 +107,8 @@ class GoalExecution:
         return Ending(outcome, f"{self._place()} stopped after {elapsed:.1f} s: {reason}")
 
     def _place(self) -> str:
-        odom = self._inputs.odom
-        frame = "" if odom is None else f" in {odom.message.header.frame_id}"
-        return f"goal x {self.goal.x:.2f} y {self.goal.y:.2f}{frame}"
+        x, y, odom = self.goal.x, self.goal.y, self._inputs.odom
+        return "goal " + (f"x {x:.2f} y {y:.2f}" if odom is None else place(x, y, odom.message.header.frame_id))
 
 
 def describe(decision: Decision) -> str:
