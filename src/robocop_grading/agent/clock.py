@@ -2,7 +2,7 @@
 
 import functools
 import time
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from . import scheduler
 
@@ -54,9 +54,12 @@ def install() -> None:
     import socketserver
     import threading
 
-    functions: List[Callable[..., Any]] = [time_ns, monotonic, monotonic_ns, sleep, localtime, gmtime, clock_gettime]
-    others = {"time": now, "perf_counter": monotonic, "perf_counter_ns": monotonic_ns}
-    for name, function in {**{it.__name__: it for it in functions}, **others}.items():
+    functions: Dict[str, Callable[..., Any]] = {
+        **{"time": now, "time_ns": time_ns, "sleep": sleep, "localtime": localtime, "gmtime": gmtime},
+        **{"monotonic": monotonic, "monotonic_ns": monotonic_ns, "clock_gettime": clock_gettime},
+        **{"perf_counter": monotonic, "perf_counter_ns": monotonic_ns},
+    }
+    for name, function in functions.items():
         # As an attribute of a class, which logging makes of localtime, a function would get `self`; this does not.
         setattr(time, name, functools.partial(function))
     copies: List[Tuple[Any, str]] = [(threading, "_time"), (queue, "time"), (socketserver, "time")]

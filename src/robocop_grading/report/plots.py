@@ -68,7 +68,7 @@ def svg(name: str, record: Record, at: Sequence[float]) -> str:
         row = (height - TOP - BOTTOM - (rows - 1) * BETWEEN) / rows
         right, top, between = 1.0 - RIGHT / WIDTH, 1.0 - TOP / height, BETWEEN / row
         figure.subplots_adjust(left / WIDTH, BOTTOM / height, right, top, hspace=between)
-        draw(axes, record, at)
+        draw(list(axes), record, at)
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     drawn = text.getvalue()
     return NOT_INLINE.sub("", drawn[drawn.index("<svg") :])
