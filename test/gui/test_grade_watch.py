@@ -22,11 +22,14 @@ class WatchedInRviz(Watched):
         return window and self.desktop.canvas(window)
 
     def wait_for_picture(self, parts, what):
-        """Wait until RViz shows these parts of the scenario."""
+        """Wait until RViz has shown each of these parts of the scenario."""
+        missing = set(parts)
 
         def drawn():
             view = self.view()
-            return view and shown(self.desktop.pixels(view)) >= parts
+            if view:
+                missing.difference_update(shown(self.desktop.pixels(view)))
+            return not missing
 
         self.wait_for(drawn, what)
 
