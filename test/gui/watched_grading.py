@@ -11,7 +11,7 @@ from waiting import DEADLINE, PATIENCE, wait_for
 ROOT = Path(__file__).resolve().parents[2]
 # [m] of the goal. The run is at real time, so it is longer where a busy machine draws fewer pictures of it.
 AHEAD = min(float(os.environ.get(PATIENCE, "1")), 5.0)
-DURATION = (AHEAD - 0.1) / 0.2  # [s, simulated] until it is reached: this server stops 0.1 m before, and drives at 0.2 m/s
+DURATION = (AHEAD - 0.1) / 0.2  # [s, simulated] until it is reached: this server drives at 0.2 m/s, stops 0.1 m before
 PLAN = """
 limits:
 scenarios:
