@@ -86,7 +86,7 @@ def main() -> None:
     interrupt_on_signal()
     try:
         state, share = places()
-        texts = load_texts(Path(args.texts) if args.texts else None, share)
+        texts = load_texts(Path(args.texts) if args.texts else None)
         path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
         plan = load(path, args.seed, texts).restricted(args.only)
         given = make_report_folder(Path(args.report)) if args.report else None

@@ -13,8 +13,6 @@ from .texts import Texts, sentences, text
 INCOMPLETE = "an incomplete one"
 FIRST = "action_server"  # the check without which no other one of a server is reached
 NOT_STARTED = "the server did not start"
-UNPUBLISHED = "it subscribes to {}, which nobody publishes"
-TRUTH_UNPUBLISHED = "it subscribes to {}, which nobody publishes; the position comes from /odom, as on a real robot"
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
@@ -160,7 +158,7 @@ def _told(check: CheckResult, texts: Texts) -> CheckResult:
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
     """What to say of topics that the node waits for in vain; its action server's own have no client by then."""
     return [
-        text(TRUTH_UNPUBLISHED if "ground_truth" in topic else UNPUBLISHED, topic)
+        text("truth_unpublished" if "ground_truth" in topic else "unpublished", topic)
         for record in records.values()
         for topic in record.unpublished
         if topic.rpartition("/")[0] not in record.servers
@@ -230,9 +228,10 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         verdict = CHECKS[check.name](records[name], plan.limits)
         examined = examined or name
         if isinstance(verdict, Failed):
-            retried, explained = CHECKS[check.name].retried or ("", None)
-            if explained is not None and retried in records:
-                verdict = explained(verdict, records[retried], plan.limits)
+            retried = CHECKS[check.name].retried
+            if retried is not None and retried.scenario in records:
+                if retried.when(verdict, records[retried.scenario], plan.limits):
+                    verdict = replace(verdict, cause=text(retried.cause))
             return _result(check, Outcome.FAILED, name, verdict)
         passed = passed or isinstance(verdict, Passed)
         if isinstance(verdict, NotReached):

@@ -1,5 +1,6 @@
 """Texts of checks and causes, which remember what they are made of: a file can tell them in another language."""
 
+import functools
 import string
 from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence, Tuple
@@ -9,20 +10,23 @@ import yaml
 from aro_robocop_goto_as.errors import HostingError, PlanError
 
 from .hosting.files import read_bytes
+from .hosting.places import places
+
+FILE = "config/grading_texts.yaml"  # of this package
 
 
 class Text(str):
-    """A text in English, with the template and the values, or the sentences, that it was made of."""
+    """A text in English, with its name and the values, or the sentences, that it was made of."""
 
-    template: str = ""
+    name: str = ""
     values: Sequence[object] = ()
     parts: Tuple[str, ...] = ()
 
 
-def text(template: str, *values: object) -> str:
-    """The template, as of str.format(), with these values."""
-    made = Text(template.format(*values))
-    made.template, made.values = template, values
+def text(name: str, *values: object) -> str:
+    """A text of FILE, or one that is its own name, with these values, as of str.format()."""
+    made = Text((_english().get(name) or name).format(*values))
+    made.name, made.values = name, values
     return made
 
 
@@ -35,39 +39,45 @@ def sentences(*parts: str) -> str:
 
 
 class Texts:
-    """Translations: English text or template -> the same in another language; what is missing stays English."""
+    """Translations: name of a text -> the text in another language; what is missing stays English."""
 
-    def __init__(self, translations: Mapping[str, str]) -> None:
+    def __init__(self, translations: Mapping[str, Optional[str]]) -> None:
         self._translations = translations
 
     def told(self, what: str) -> str:
         """A text in that language, with all that it is made of."""
         if not isinstance(what, Text):
-            return self._translations.get(what, what)
+            return self._translations.get(what) or what
         if what.parts:
             return str(sentences(*map(self.told, what.parts)))
         values = [self.told(it) if isinstance(it, str) else it for it in what.values]
-        return self._translations.get(what.template, what.template).format(*values)
+        return (self._translations.get(what.name) or _english().get(what.name) or what.name).format(*values)
 
 
 ENGLISH = Texts({})
 
 
-def load(path: Optional[Path], share: Path) -> Texts:
-    """Translations from a copy of config/grading_texts.yaml; PlanError names the file and the mistake in it."""
+@functools.lru_cache(maxsize=None)
+def _english() -> Mapping[str, Optional[str]]:
+    return _read(places()[1] / FILE)
+
+
+def load(path: Optional[Path]) -> Texts:
+    """Translations from a copy of FILE; PlanError names the file and the mistake in it."""
     if path is None:
         return ENGLISH
-    known, found = _read(share / "config" / "grading_texts.yaml"), _read(path)
-    for english, translation in found.items():
-        if english not in known:
-            raise PlanError(f"{path}: unknown text: {english!r}; copy config/grading_texts.yaml of this version")
+    known, found = _english(), _read(path)
+    for name, translation in found.items():
+        if name not in known:
+            raise PlanError(f"{path}: unknown text: {name!r}; copy {FILE} of this version")
+        english = known[name] or name
         try:
             (translation or "").format(*_examples(english))
         except (ValueError, LookupError, AttributeError) as error:
             raise PlanError(
                 f"{path}: {translation!r}: expected the same values in brackets as in {english!r}"
             ) from error
-    return Texts({english: translation for english, translation in found.items() if translation})
+    return Texts(found)
 
 
 def _examples(template: str) -> List[object]:

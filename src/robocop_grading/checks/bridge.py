@@ -2,8 +2,7 @@
 
 import math
 import re
-from dataclasses import replace
-from typing import Dict, List, NamedTuple, Optional, Set
+from typing import List, NamedTuple, Optional, Set
 
 from ..handout import ACTION
 from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
@@ -11,29 +10,15 @@ from ..texts import text
 from .consequences import alike
 from .limits import Limits
 from .node_lifetime import closest, no_exception, stays_alive
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Passed, Retry, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
 CLICKS = "/move_base_simple/goal"
-UNCONNECTED = "No action client connected to robocop_goto_as: is one created?"
-NO_NEWER_GOAL = (
-    "The newer goal was never sent: does the callback wait for the older goal? While it waits, for instance in "
-    "wait_for_result(), it is not called again"
-)
-PENDING_CAUSE = (
-    "The bridge treats a PENDING goal as finished; PENDING only means that the server has not accepted it yet"
-)
-
-
-def _missing(_record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether something did not happen, as after a crash."""
-    return failure.kind == MISSING
-
-
-CRASH = After("bridge_alive", _missing)
+NEEDS = "bridge_alive", "forwards_goal"
+CRASH = After("bridge_alive", lambda _record, failure, _earlier: failure.kind == MISSING)
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
@@ -56,9 +41,8 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
         return Failed(text("a goal at {}", wanted), "no goal", click.time, _missing_connection(record), MISSING)
     goal = goals[-1]
     if not _distance(goal, click.x, click.y) <= POSITION_TOLERANCE:  # this way round NaN fails, too
-        return Failed(
-            wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, _other_position(click, goal), POSITION
-        )
+        seen = text("x {:.2f} y {:.2f}", goal.x, goal.y)
+        return Failed(wanted, seen, goal.time, _other_position(click, goal), POSITION)
     if len(goals) > 1:
         return Failed("one goal", text("{} goals", len(goals)), goals[1].time, "The click is sent more than once")
     return Passed()
@@ -78,7 +62,7 @@ def _other_position(click: Click, goal: Goal) -> str:
     ):
         if _distance(goal, *there) <= POSITION_TOLERANCE:
             return text("{}: set goal.position = msg.pose.position", cause)
-    return "The goal does not have the message's position: set goal.position = msg.pose.position"
+    return text("other_position")
 
 
 def _has_client(record: Record) -> bool:
@@ -92,21 +76,16 @@ def _missing_connection(record: Record) -> str:
         return _unconnected(record)
     if not record.marks.get("listeners", 1.0):
         similar = closest(CLICKS, record.unpublished)
-        if similar:
-            return text("The node does not subscribe to {} but to {}: is the name right?", CLICKS, similar)
-        return text("The node does not subscribe to {}: is the name right?", CLICKS)
-    return (
-        "No goal was sent: does the callback call send_goal()? Does a bridge that is started before the server wait "
-        "for it, with wait_for_server() without a timeout?"
-    )
+        return text("other_topic", CLICKS, similar) if similar else text("no_subscriber", CLICKS)
+    return text("nothing_sent")
 
 
 def _unconnected(record: Record) -> str:
     """Why no action client connected to the server."""
     name, others = ACTION[1:], [server.lstrip("/") for server in record.servers]
     if not others or name in others:
-        return UNCONNECTED
-    return text("The action client looks for {}; the handout says {}", closest(name, others) or others[0], name)
+        return text("unconnected")
+    return text("other_action", closest(name, others) or others[0], name)
 
 
 def _reports(record: Record, until: float = math.inf) -> List[float]:
@@ -119,19 +98,13 @@ def _reports(record: Record, until: float = math.inf) -> List[float]:
     return reports
 
 
-def _reports_without_pending(failure: Failed, retried: Record, limits: Limits) -> Failed:
-    """The failure, with the cause if enough is reported for a goal that is never PENDING."""
+def _reports_without_pending(failure: Failed, retried: Record, limits: Limits) -> bool:
+    """Whether enough is reported for a goal that is never PENDING."""
     second_click = retried.clicks[-1].time - 1e-6  # which changes the state
-    enough = failure.kind == MISSING and len(_reports(retried, second_click)) >= limits.status_reports
-    return replace(failure, cause=text("{}. Its reports then stop", PENDING_CAUSE)) if enough else failure
+    return failure.kind == MISSING and len(_reports(retried, second_click)) >= limits.status_reports
 
 
-@check(
-    "clicks",
-    after=(CRASH,),
-    needs=("bridge_alive", "forwards_goal"),
-    retried=("no_pending", _reports_without_pending),
-)
+@check("clicks", after=(CRASH,), needs=NEEDS, retried=Retry("no_pending", _reports_without_pending, "reports_stop"))
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
@@ -141,15 +114,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         return _untrue(record) or Passed()
     if not _has_client(record):  # it may wait for the server before it creates its timer
         return NotReached(_unconnected(record))
-    cause = (
-        "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report "
-        "it repeatedly, also when it has not changed"
-    )
-    if count:
-        cause = (
-            "The status is not reported repeatedly while a goal is active: is the rospy.Timer's period too long, does "
-            "anything end it, or does it only report changes?"
-        )
+    cause = text("reported_once" if count else "nothing_reported")
     wanted = text("{} reports within {:g} s", limits.status_reports, limits.status_span)
     return Failed(wanted, f"{count}", record.marks["watching"], cause, MISSING)
 
@@ -170,7 +135,7 @@ class Report(NamedTuple):
 
 def _stated(record: Record) -> List[Report]:
     """The reports that name a state, while a goal is PENDING or ACTIVE, each once."""
-    changes = sorted((change for change in record.statuses), key=lambda change: change.time)
+    changes = sorted(record.statuses, key=lambda change: change.time)
     found: List[Report] = []
     for line in record.lines:
         before = [change for change in changes if change.time <= line.time + 1e-6]
@@ -185,43 +150,28 @@ def _stated(record: Record) -> List[Report]:
 def _untrue(record: Record) -> Optional[Failed]:
     """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
     reports = _stated(record)
-    of_state: Dict[int, List[Report]] = {}
-    for report in reports:
-        of_state.setdefault(report.true, []).append(report)
     wrong = [report for report in reports if report.true not in report.states]
-    for true, some in of_state.items():
-        untrue = [report for report in some if true not in report.states]
+    true_states = dict.fromkeys(report.true for report in reports)
+    for true in true_states:
+        some = [report for report in reports if report.true == true]
+        untrue = [report for report in wrong if report.true == true]
         if len(untrue) > 1 and len(untrue) > MOSTLY * len(some) or len(wrong) == len(reports) > 1:
             first = untrue[0]
             names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-            cause = text(
-                "The bridge reports {} while the goal is {}: report what get_state() returns", names, STATUS_NAMES[true]
-            )
             shifts = {state - report.true for report in reports for state in report.states}
-            if len(of_state) > 1 and len(shifts) == 1:
-                cause = text(
-                    "The names of the states are shifted: {} is reported for {}; GoalStatus has PENDING = 0, "
-                    "ACTIVE = 1, PREEMPTED = 2, SUCCEEDED = 3, ABORTED = 4",
-                    names,
-                    STATUS_NAMES[true],
-                )
-            return Failed(STATUS_NAMES[true], names, first.time, cause)
+            cause = "shifted_states" if len(true_states) > 1 and len(shifts) == 1 else "untrue_state"
+            return Failed(STATUS_NAMES[true], names, first.time, text(cause, names, STATUS_NAMES[true]))
     return None
 
 
-def _cancels_without_pending(failure: Failed, retried: Record, _limits: Limits) -> Failed:
-    """The failure, with the cause if an older goal that is never PENDING is cancelled."""
+def _cancels_without_pending(failure: Failed, retried: Record, _limits: Limits) -> bool:
+    """Whether an older goal that is never PENDING is cancelled."""
     cancelled = any(cancel.time >= retried.clicks[-1].time - 1e-6 for cancel in retried.cancels)
-    if failure.kind != NOT_CANCELLED or not cancelled:
-        return failure
-    return replace(failure, cause=text("{}. It then sees no older goal to cancel", PENDING_CAUSE))
+    return failure.kind == NOT_CANCELLED and cancelled
 
 
 @check(
-    "clicks",
-    after=(CRASH,),
-    needs=("bridge_alive", "forwards_goal"),
-    retried=("no_pending", _cancels_without_pending),
+    "clicks", after=(CRASH,), needs=NEEDS, retried=Retry("no_pending", _cancels_without_pending, "no_older_goal_seen")
 )
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
@@ -232,19 +182,17 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     newer = [goal for goal in _goals_after(record, click) if goal.id != older.id]
     cancelled = [change.id for change in record.statuses if change.status == PREEMPTED]
     if not newer:
-        return Failed("the newer goal", "no goal", click.time, NO_NEWER_GOAL, MISSING)
+        return Failed("the newer goal", "no goal", click.time, text("no_newer_goal"), MISSING)
     if older.id not in cancelled:
-        cause = (
-            "Call cancel_goal() or cancel_all_goals() before sending the newer goal; send_goal() alone does not cancel"
-        )
-        return Failed("a cancel request for the older goal", "none", click.time, cause, NOT_CANCELLED)
+        wanted = "a cancel request for the older goal"
+        return Failed(wanted, "none", click.time, text("cancel_first"), NOT_CANCELLED)
     if newer[-1].id in cancelled:
         cause = "Cancel before send_goal(), not after it"
         return Failed("a cancel request for the older goal only", "one for both", newer[-1].time, cause)
     return Passed()
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=("bridge_alive", "forwards_goal"))
+@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
@@ -253,11 +201,8 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
         return Passed()
     if not _has_client(record):
         return NotReached(_unconnected(record))
-    cause = (
-        "A bridge that starts before the server has to connect to it later: call wait_for_server() without a timeout"
-    )
-    clicked = record.marks.get("clicked", 0.0)
-    return Failed("a goal once the server is running", "no goal", clicked, cause, MISSING)
+    clicked, wanted = record.marks.get("clicked", 0.0), "a goal once the server is running"
+    return Failed(wanted, "no goal", clicked, text("waits_for_no_server"), MISSING)
 
 
 @check("clicks")
@@ -273,7 +218,7 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=("bridge_alive", "forwards_goal"))
+@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:
@@ -291,14 +236,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
         if not _distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
             cause = "The transform is wrong"
             if _distance(goal, click.x, click.y) < POSITION_TOLERANCE:
-                cause = text(
-                    "Coordinates in {} were passed on as if they were in odom: use tf2 to transform them "
-                    "from header.frame_id to odom",
-                    click.frame,
-                )
-            wanted, seen = (
-                text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y),
-                text("x {:.2f} y {:.2f}", goal.x, goal.y),
-            )
-            return Failed(wanted, seen, goal.time, cause, POSITION)
+                cause = text("not_transformed", click.frame)
+            wanted = text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y)
+            return Failed(wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, cause, POSITION)
     return Passed()

@@ -2,7 +2,8 @@
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import Feedback, Goal, Record, active_until
-from .output import EXCEPTION_LOGGED, logged
+from ..texts import text
+from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
 from .verdict import After, Failed
 
 # Kinds of failures.
@@ -33,6 +34,13 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Whether both failures are of the same kind."""
     return bool(failure.kind) and failure.kind == earlier.kind
+
+
+def logged_cause(record: Record) -> str:
+    """What the log says about why a goal ended wrongly; empty if it says nothing."""
+    if logged(record, EXCEPTION_LOGGED):
+        return text("The goal's callback raised an exception: {}", last_error(record))
+    return text("no_terminal_state" if logged(record, NO_STATE_LOGGED) else "")
 
 
 def silent(record: Record, goal: Goal) -> bool:

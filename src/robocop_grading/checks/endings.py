@@ -17,15 +17,12 @@ from ..record import (
     status_name,
 )
 from ..texts import sentences, text
-from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS
+from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
 from .limits import Limits
-from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, TWO_STATES_LOGGED, last_error, logged
+from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
-NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 TWO_STATES = "The goal got two terminal states"
-RAISED = "The goal's callback raised an exception: {}"
-SETTERS = "set_succeeded(), set_aborted() and set_preempted()"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
 AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
 
@@ -47,8 +44,8 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
         if early is not None:
             return replace(early, expected=status_name(wanted))
     cause = _wrong_state(record, goal, result.status, wanted)
-    if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):
-        cause = _unnoticed(record)
+    if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):  # odometry continued to advance
+        cause = narrow_obstacle(record) or text("collision_unnoticed")
     state = status_name(result.status)
     seen = state + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
@@ -65,26 +62,12 @@ def _stopped(record: Record, end: float, limits: Limits) -> bool:
     return any(sample.ahead <= limits.abort_farthest for sample in samples_between(record, end - 0.25, end))
 
 
-def _unnoticed(record: Record) -> str:
-    """The cause of a collision after which the goal succeeded, because odometry continued to advance."""
-    return narrow_obstacle(record) or (
-        "It was not noticed. Is the distance ahead checked in each iteration, is it that of the beams ahead, and does "
-        "the scan's callback return at once?"
-    )
-
-
 def narrow_obstacle(record: Record) -> str:
     """What a server that reacts to a wall has done wrong if the obstacle is narrow; nothing for a wide one."""
     across = [outline[1::2] for outline in record.obstacles[:1]]
     if not across or max(across[0]) - min(across[0]) > NARROW:
         return ""
-    side = "left" if sum(across[0]) > 0.0 else "right"
-    return text(
-        "A narrow obstacle a little to the {} was missed or noticed too late, although a wall is "
-        "noticed. Do the beams on both sides of straight ahead count, and does the nearest of "
-        "them decide?",
-        side,
-    )
+    return text("narrow_obstacle", "left" if sum(across[0]) > 0.0 else "right")
 
 
 def _collision(record: Record, goal: Goal, end: float) -> str:
@@ -94,26 +77,19 @@ def _collision(record: Record, goal: Goal, end: float) -> str:
 
 
 def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
-    if logged(record, EXCEPTION_LOGGED):
-        return text(RAISED, last_error(record))
-    if _no_state(record):
-        return NO_STATE
+    told = logged_cause(record)
+    if told:
+        return told
     if wanted == ABORTED and status == SUCCEEDED:
-        return "set_succeeded is called although the goal failed: call set_aborted"
+        return text("failure_as_success")
     if wanted == SUCCEEDED and status == ABORTED:
         if not record.obstacles:
-            return (
-                "set_aborted is called although there is no obstacle at all: does the server have a timeout of its "
-                "own, or is a range of inf treated as an obstacle?"
-            )
+            return text("abort_without_obstacle")
         if any(result.time < goal.time and result.status == ABORTED for result in record.results):
-            return "set_aborted is called although nothing is in the way any more"
-        return (
-            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server have "
-            "a timeout of its own?"
-        )
+            return text("abort_again")
+        return text("abort_in_the_open")
     if wanted == PREEMPTED:
-        return "Call set_preempted for a goal that is cancelled or replaced"
+        return text("preempted_expected")
     return "The server set the wrong terminal state"
 
 
@@ -124,16 +100,18 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
-    cause = text("The threshold of position_error is not {:g} m, or it is compared with another quantity", GOAL_RADIUS)
-    kind = SUCCESS
+    kind, cause = SUCCESS, text("success_too_far", GOAL_RADIUS)
     if result.time - goal.time < AT_ONCE and any(other.time < goal.time for other in record.results):
-        kind, cause = NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
+        kind, cause = NOT_RESET, text("not_reset")
     seen = text("{} {:.2f} m away", SUCCESS, nearest)
     return Failed(text("success within {:g} m", GOAL_RADIUS), seen, result.time, cause, kind, goal)
 
 
 EMPTY = "an empty message"
-RESULT = EXCEPTION, After("one_ending", lambda record, failure, _: failure.seen == EMPTY and _no_state(record))
+RESULT = (
+    EXCEPTION,
+    After("one_ending", lambda record, failure, _: failure.seen == EMPTY and logged(record, NO_STATE_LOGGED)),
+)
 
 
 @check("states", after=RESULT, needs=("reaches_goal",))
@@ -154,24 +132,12 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         return NotReached(text("the goal did not end as {}", status_name(status)))
     result = results[0]
     if result.success != success:
-        cause = "result.success contradicts the terminal state"
-        if not result.message:
-            cause = "The result is missing from the call: set_succeeded(result), set_aborted(result)"
+        cause = text("contradicting_result" if result.message else "result_missing")
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
     if not result.message:
-        cause = (
-            "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
-        )
-        if logged(record, EXCEPTION_LOGGED):
-            cause = text(RAISED, last_error(record))
-        elif _no_state(record):
-            cause = NO_STATE
+        cause = logged_cause(record) or text("no_result_message")
         return Failed("a message", EMPTY, result.time, cause, EMPTY)
     return Passed()
-
-
-def _no_state(record: Record) -> bool:
-    return logged(record, NO_STATE_LOGGED)
 
 
 @check("speeds", needs=("reaches_goal",))
@@ -188,16 +154,9 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
             judged = True
             for sample in after:
                 if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
-                    return Failed(
-                        "a robot at rest",
-                        text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w),
-                        sample.time,
-                        text(
-                            "The robot kept moving after the result ({}): publish a zero Twist at every ending, "
-                            "because the last /cmd_vel stays in force",
-                            status_name(result.status),
-                        ),
-                    )
+                    seen = text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w)
+                    cause = text("keeps_moving", status_name(result.status))
+                    return Failed("a robot at rest", seen, sample.time, cause)
     return Passed() if judged else NotReached("no goal ended")
 
 
@@ -212,10 +171,10 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
         judged = judged or bool(results)
     for line in record.lines:
         if TWO_STATES_LOGGED.search(line.text):
-            cause = text("{}, as in the handout's example after a cancel: return at once after {}", TWO_STATES, SETTERS)
+            cause = text("two_states_after_cancel")
             return Failed("one terminal state", line.text[:160], line.time, cause, TWO_STATES)
         if NO_STATE_LOGGED.search(line.text):
-            return Failed("a terminal state", "none was set", line.time, NO_STATE)
+            return Failed("a terminal state", "none was set", line.time, text("no_terminal_state"))
     for goal in record.goals:
         changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
         if len({change.status for change in changes}) > 1:

@@ -1,26 +1,15 @@
 """Checks of the feedback: its rate, and its errors against the true ones."""
 
 import math
+from functools import partial
 from typing import Callable, List, Optional, Sequence
 
 import numpy as np
 
 from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_between, wrapped
-from ..texts import text
+from ..texts import Text, text
 from .consequences import nothing_came
-from .feedback_causes import (
-    ANGLE,
-    ANGLE_CAUSES,
-    POSITION,
-    POSITION_CAUSES,
-    POSITION_UNUSED,
-    RELATIVE,
-    UNITS,
-    WORLD,
-    Hypothesis,
-    Pair,
-    likely_cause,
-)
+from .feedback_causes import ANGLE, OF_POSITION, POSITION, UNITS, Pair, likely_cause
 from .limits import Limits
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
@@ -51,15 +40,10 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         rate = count / (end - goal.time)
         if limits.feedback_low <= rate <= limits.feedback_high:
             continue
-        if not count:
-            cause = "No feedback was sent at all: is publish_feedback called in the loop?"
-        elif rate > limits.feedback_high:
-            cause = "The loop is not paced: is rate.sleep() called in each iteration?"
-        else:
-            cause = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
+        cause = "no_feedback" if not count else "not_paced" if rate > limits.feedback_high else "not_10_hz"
         wanted = text("about 10 Hz ({:g} to {:g})", limits.feedback_low, limits.feedback_high)
         seen = text("{:.1f} Hz, {} messages in {:.1f} s", rate, count, end - goal.time)
-        return Failed(wanted, seen, goal.time, cause, goal=goal)
+        return Failed(wanted, seen, goal.time, text(cause), goal=goal)
     return Passed() if judged else NotReached("no goal was active for a second")
 
 
@@ -88,22 +72,15 @@ def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: flo
     return wrong if len(wrong) > MOST_WRONG * len(pairs) or longest >= LONGEST_WRONG else []
 
 
-def _position_deviation(pair: Pair) -> float:
-    """Distance [m] of a position_error from the interval of recent true values; infinity for NaN."""
-    value, truths = pair.feedback.position_error, [errors_at(sample, pair.goal)[0] for sample in pair.samples]
+def _deviation(index: int, pair: Pair) -> float:
+    """Distance [m], [rad] of an error from the interval of recent true values; infinity for NaN."""
+    value, truths = pair.feedback.errors[index], [errors_at(sample, pair.goal)[index] for sample in pair.samples]
     if not math.isfinite(value):
         return math.inf
-    return max(0.0, min(truths) - value, value - max(truths))
-
-
-def _angle_deviation(pair: Pair) -> float:
-    """The same for an angle_error [rad], with the interval taken around the first true value."""
-    value, truths = pair.feedback.angle_error, [errors_at(sample, pair.goal)[1] for sample in pair.samples]
-    if not math.isfinite(value):
-        return math.inf
-    spread = [wrapped(truth - truths[0]) for truth in truths]
+    turned: Callable[[float], float] = wrapped if index == ANGLE else float
+    spread = [turned(truth - truths[0]) for truth in truths]  # around the first one
     middle = truths[0] + (min(spread) + max(spread)) / 2.0
-    return max(0.0, abs(wrapped(value - middle)) - (max(spread) - min(spread)) / 2.0)
+    return max(0.0, abs(turned(value - middle)) - (max(spread) - min(spread)) / 2.0)
 
 
 @check("errors", needs=("feedback_rate",))
@@ -112,15 +89,11 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     pairs = _pairs(record)
     if not pairs:
         return NotReached("there was no feedback")
-    wrong = _wrong(pairs, _position_deviation, limits.position_tolerance)
-    otherwise = "position_error is not the distance from the position in /odom to the goal"
-    if wrong:
-        return _failed(wrong, pairs, POSITION, POSITION_CAUSES, otherwise)
-    return _old(record, POSITION) or Passed()
+    return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION) or Passed()
 
 
-OF_POSITION = "of the position"
-FROM_POSITION = After("feedback_position", lambda _record, failure, _earlier: failure.kind == OF_POSITION)
+WRONG_POSITION = "of the position"
+FROM_POSITION = After("feedback_position", lambda _record, failure, _earlier: failure.kind == WRONG_POSITION)
 
 
 @check("errors", after=(FROM_POSITION,), needs=("feedback_rate",))
@@ -130,20 +103,13 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
     if not pairs:
         return NotReached("there was no feedback")
     beyond = [pair for pair in pairs if abs(pair.feedback.angle_error) > math.pi + 0.05]
-    unwrapped = [pair for pair in beyond if _angle_deviation(pair) <= limits.angle_tolerance]
+    unwrapped = [pair for pair in beyond if _deviation(ANGLE, pair) <= limits.angle_tolerance]
     if unwrapped and len(unwrapped) > 0.7 * len(beyond):  # single values in degrees may match by chance
         message = unwrapped[0].feedback
-        cause = text(
-            "angle_error is not wrapped: {:.1f} rad; the difference of two angles has to be normalized to -pi..pi",
-            message.angle_error,
-        )
-        seen = f"angle_error {message.angle_error:.2f}"
-        return Failed("an angle within +-3.14 rad", seen, message.time, cause)
-    wrong = _wrong(pairs, _angle_deviation, limits.angle_tolerance)
-    otherwise = "angle_error is not the goal's direction minus the heading, both in odom"
-    if wrong:
-        return _failed(wrong, pairs, ANGLE, ANGLE_CAUSES, otherwise)
-    return Passed() if _old(record, POSITION) else _old(record, ANGLE) or Passed()  # one mistake is counted once
+        wanted, seen = "an angle within +-3.14 rad", f"angle_error {message.angle_error:.2f}"
+        return Failed(wanted, seen, message.time, text("not_wrapped", message.angle_error))
+    old = None if _old(record, POSITION) else _old(record, ANGLE)  # one mistake is counted once
+    return _untrue(ANGLE, pairs, limits.angle_tolerance) or old or Passed()
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:
@@ -157,12 +123,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     if AGES[best] < OLD or means[best] > 0.5 * means[0]:
         return None
     name, seen = ERRORS[index], text("one of {:.2f} s ago", AGES[best])
-    cause = text(
-        "{} in the feedback is an iteration old: calculate it from the newest pose, then publish "
-        "the feedback, both in the same iteration",
-        name,
-    )
-    return Failed(text("the present {}", name), seen, record.feedback[0].time, cause)
+    return Failed(text("the present {}", name), seen, record.feedback[0].time, text("old_feedback", name))
 
 
 def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
@@ -173,22 +134,23 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
         return np.zeros((0, len(AGES)))
     values = np.array([message.errors[index] for message in own])
     truth = np.array([errors_at(sample, goal)[index] for sample in samples])
-    truth = np.unwrap(truth) if index else truth
+    truth = np.unwrap(truth) if index == ANGLE else truth
     sampled = [sample.time for sample in samples]
     times = np.array([message.time for message in own])
     then = np.array([np.interp(times - age, sampled, truth) for age in AGES]).T
-    differences = np.abs(values[:, None] - then)
-    if index:
-        differences = np.abs(np.remainder(values[:, None] - then + np.pi, 2.0 * np.pi) - np.pi)
+    differences = values[:, None] - then
+    if index == ANGLE:
+        differences = np.remainder(differences + np.pi, 2.0 * np.pi) - np.pi
     moving = np.abs(then[:, 0] - then[:, -1]) > CHANGED
-    return np.minimum(differences, MOST_DIFFERENT)[moving & np.isfinite(values)]
+    return np.minimum(np.abs(differences), MOST_DIFFERENT)[moving & np.isfinite(values)]
 
 
-def _failed(
-    wrong: Sequence[Pair], pairs: Sequence[Pair], index: int, causes: Sequence[Hypothesis], otherwise: str
-) -> Failed:
+def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:
     """The first wrong value with the likely cause of all of them, among all pairs."""
-    first, cause = wrong[0], likely_cause(index, wrong, pairs, causes, otherwise)
-    kind = OF_POSITION if cause.endswith((RELATIVE, POSITION_UNUSED, WORLD)) else ""
+    wrong = _wrong(pairs, partial(_deviation, index), tolerance)
+    if not wrong:
+        return None
+    first, cause = wrong[0], likely_cause(index, wrong, pairs)
+    kind = WRONG_POSITION if isinstance(cause, Text) and cause.name in OF_POSITION else ""
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
     return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, cause, kind)

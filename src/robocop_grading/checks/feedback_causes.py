@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Callable, Iterator, List, NamedTuple, Sequence, Tuple
+from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
@@ -25,116 +25,74 @@ class Pair(NamedTuple):
     start: Sample
 
     @property
+    def now(self) -> Sample:
+        """The newest sample."""
+        return self.samples[-1]
+
+    @property
     def truth(self) -> Tuple[float, float]:
         """Both true errors."""
-        return errors_at(self.samples[-1], self.goal)
+        return errors_at(self.now, self.goal)
+
+    @property
+    def way(self) -> Tuple[float, float]:
+        """From the robot to the goal, in odom [m]."""
+        return self.goal.x - self.now.x, self.goal.y - self.now.y
+
+    @property
+    def direction(self) -> float:
+        """The goal's direction in odom [rad]."""
+        return math.atan2(self.way[1], self.way[0])
+
+    def misread(self, yaw: float) -> Tuple[float, float]:
+        """Both errors for a goal that is taken relative to the robot, in a frame turned by `yaw`, when it was sent."""
+        there = compose(Pose2D(self.start.x, self.start.y, yaw), Pose2D(self.goal.x, self.goal.y))
+        return errors_at(self.now, replace(self.goal, x=there.x, y=there.y))
 
 
-def _deltas(s: Sample, g: Goal) -> Tuple[float, float]:
-    return g.x - s.x, g.y - s.y
-
-
-def _from_start(pair: Pair) -> Goal:
-    """The goal, if it is understood as a position in the robot's frame of when it was sent."""
-    there = compose(Pose2D(pair.start.x, pair.start.y, pair.start.yaw), Pose2D(pair.goal.x, pair.goal.y))
-    return replace(pair.goal, x=there.x, y=there.y)
-
-
-def _offset_by_start(pair: Pair) -> Goal:
-    """The same without the robot's heading."""
-    return replace(pair.goal, x=pair.start.x + pair.goal.x, y=pair.start.y + pair.goal.y)
-
-
-RELATIVE = "The goal is taken relative to the robot, where it is when the goal comes; goals are in odom"
-DIRECTION_ONCE = (
-    "The goal's direction is that from where the robot is when the goal comes, or from odom's origin: calculate it in "
-    "each iteration from the newest position"
+Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause's text; the value that it would lead to
+FROM_ORIGIN = "angle_from_origin"
+# Causes that explain both errors: the robot's or the goal's position is wrong.
+OF_POSITION = {"relative", "distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world"}
+CAUSES: Tuple[Sequence[Hypothesis], ...] = (
+    (
+        ("position_in_world", lambda p: math.hypot(p.goal.x - p.now.world_x, p.goal.y - p.now.world_y)),
+        ("distance_from_origin", lambda p: math.hypot(p.goal.x, p.goal.y)),
+        ("distance_squared", lambda p: sum(d * d for d in p.way)),
+        ("distance_x_only", lambda p: abs(p.way[0])),
+        ("distance_y_only", lambda p: abs(p.way[1])),
+        ("distance_manhattan", lambda p: sum(abs(d) for d in p.way)),
+        ("distance_sign", lambda p: -p.truth[POSITION]),
+        ("distance_zero", lambda p: 0.0),
+        ("distance_is_angle", lambda p: p.truth[ANGLE]),
+        ("relative", lambda p: p.misread(p.start.yaw)[POSITION]),
+        ("relative", lambda p: p.misread(0.0)[POSITION]),
+    ),
+    (
+        ("angle_in_degrees", lambda p: math.degrees(p.truth[ANGLE])),
+        ("angle_sign", lambda p: -p.truth[ANGLE]),
+        ("angle_without_heading", lambda p: p.direction),
+        ("heading_added", lambda p: p.direction + p.now.yaw),
+        ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
+        ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),
+        ("heading_from_z", lambda p: p.direction - math.sin(p.now.yaw / 2.0)),
+        (
+            "heading_in_world",
+            lambda p: math.atan2(p.goal.y - p.now.world_y, p.goal.x - p.now.world_x) - p.now.world_yaw,
+        ),
+        (FROM_ORIGIN, lambda p: math.atan2(p.goal.y, p.goal.x) - p.now.yaw),
+        ("angle_without_sign", lambda p: abs(p.truth[ANGLE])),
+        ("angle_zero", lambda p: 0.0),
+        ("angle_is_distance", lambda p: p.truth[POSITION]),
+        ("direction_once", lambda p: wrapped(errors_at(p.start, p.goal)[ANGLE] + p.start.yaw - p.now.yaw)),
+        ("relative", lambda p: p.misread(p.start.yaw)[ANGLE]),
+        ("relative", lambda p: p.misread(0.0)[ANGLE]),
+    ),
 )
-MISREAD: Tuple[Callable[[Pair], Goal], ...] = (_from_start, _offset_by_start)
-POSITION_UNUSED = "the robot's position is left out, or read only at the start"
-WORLD = "in the world or map frame; goals are in odom"
-Hypothesis = Tuple[str, Callable[[Sample, Goal], float]]
-POSITION_CAUSES: Tuple[Hypothesis, ...] = (
-    (
-        text("The robot's position is taken {}", WORLD),
-        lambda s, g: math.hypot(g.x - s.world_x, g.y - s.world_y),
-    ),
-    (
-        text("position_error is measured from odom's origin: {}", POSITION_UNUSED),
-        lambda s, g: math.hypot(g.x, g.y),
-    ),
-    (
-        "position_error is the squared distance: the square root is missing",
-        lambda s, g: sum(d * d for d in _deltas(s, g)),
-    ),
-    ("position_error depends on x only", lambda s, g: abs(_deltas(s, g)[0])),
-    ("position_error depends on y only", lambda s, g: abs(_deltas(s, g)[1])),
-    (
-        "position_error is |dx| + |dy| instead of the straight-line distance",
-        lambda s, g: sum(abs(d) for d in _deltas(s, g)),
-    ),
-    ("The sign of position_error is wrong", lambda s, g: -math.hypot(*_deltas(s, g))),
-    ("position_error is always zero: it is never filled in", lambda s, g: 0.0),
-    ("position_error is the angle error: the two are swapped", lambda s, g: errors_at(s, g)[1]),
-)
-ANGLE_CAUSES: Tuple[Hypothesis, ...] = (
-    ("angle_error is in degrees; the handout wants radians", lambda s, g: math.degrees(errors_at(s, g)[1])),
-    (
-        "The sign of angle_error is wrong: it has to be the goal's direction minus the heading",
-        lambda s, g: -errors_at(s, g)[1],
-    ),
-    (
-        "angle_error is the goal's direction in odom, as if the heading were 0: the heading is left out, read only at "
-        "the start, or calculated wrongly from the quaternion, whose order is x, y, z, w",
-        lambda s, g: math.atan2(_deltas(s, g)[1], _deltas(s, g)[0]),
-    ),
-    ("The heading is added instead of subtracted", lambda s, g: math.atan2(*_deltas(s, g)[::-1]) + s.yaw),
-    ("The arguments of atan2 are swapped: it is atan2(dy, dx)", lambda s, g: math.atan2(*_deltas(s, g)) - s.yaw),
-    (
-        "atan is used instead of atan2: a goal behind looks like one ahead",
-        lambda s, g: math.atan(_deltas(s, g)[1] / (_deltas(s, g)[0] or 1e-9)) - s.yaw,
-    ),
-    (
-        "The heading is orientation.z, which is a component of the quaternion and not an angle",
-        lambda s, g: math.atan2(*_deltas(s, g)[::-1]) - math.sin(s.yaw / 2.0),
-    ),
-    (
-        text("The heading is taken {}", WORLD),
-        lambda s, g: math.atan2(g.y - s.world_y, g.x - s.world_x) - s.world_yaw,
-    ),
-    (
-        text("angle_error is the goal's direction from odom's origin: {}", POSITION_UNUSED),
-        lambda s, g: math.atan2(g.y, g.x) - s.yaw,
-    ),
-    ("angle_error has no sign: left and right can't be distinguished", lambda s, g: abs(errors_at(s, g)[1])),
-    ("angle_error is always zero: it is never filled in", lambda s, g: 0.0),
-    ("angle_error is the distance: the two are swapped", lambda s, g: errors_at(s, g)[0]),
-)
+OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
-def _direction_at_start(pair: Pair) -> float:
-    """The angle_error of a server that calculates the goal's direction only when the goal comes."""
-    return wrapped(math.atan2(pair.goal.y - pair.start.y, pair.goal.x - pair.start.x) - pair.samples[-1].yaw)
-
-
-def _predictions(index: int, pairs: Sequence[Pair], causes: Sequence[Hypothesis]) -> Iterator[Tuple[str, List[float]]]:
-    """For each cause the values that it would lead to."""
-    for cause, predict in causes:
-        yield cause, [predict(pair.samples[-1], pair.goal) for pair in pairs]
-    if index == ANGLE:
-        yield DIRECTION_ONCE, [_direction_at_start(pair) for pair in pairs]
-    for misread in MISREAD:
-        yield RELATIVE, [errors_at(pair.samples[-1], misread(pair))[index] for pair in pairs]
-
-
-def _knows_position(pairs: Sequence[Pair]) -> bool:
-    """Whether position_error is right, so that the robot's position is used."""
-    return _miss(POSITION, pairs, [pair.truth[POSITION] for pair in pairs]) < FITS
-
-
-def likely_cause(
-    index: int, wrong: Sequence[Pair], pairs: Sequence[Pair], causes: Sequence[Hypothesis], otherwise: str
-) -> str:
+def likely_cause(index: int, wrong: Sequence[Pair], pairs: Sequence[Pair]) -> str:
     """The hypothesis that fits the wrong values best, if one fits these and all values.
 
     A few wrong values fit many hypotheses, which the right ones then contradict.
@@ -142,20 +100,18 @@ def likely_cause(
     values = [pair.feedback.errors[index] for pair in wrong]
     if not all(map(math.isfinite, values)):
         return text("Some values of {} are not finite", ERRORS[index])
-    if index == ANGLE and _knows_position(pairs):
-        causes = [it for it in causes if not it[0].endswith(POSITION_UNUSED)]
-    best, least = otherwise, FITS
-    for (cause, of_wrong), (_, of_all) in zip(_predictions(index, wrong, causes), _predictions(index, pairs, causes)):
-        miss = _miss(index, wrong, of_wrong)
-        if miss < least and _miss(index, pairs, of_all) < FITS:
-            best, least = cause, miss
-    cause, miss = _offset(index, pairs)
+    knows_position = _miss(POSITION, pairs, lambda pair: pair.truth[POSITION]) < FITS
+    best, least = text(OTHERWISE[index]), FITS
+    for cause, predict in CAUSES[index]:
+        miss = _miss(index, wrong, predict)
+        impossible = cause == FROM_ORIGIN and knows_position
+        if miss < least and not impossible and _miss(index, pairs, predict) < FITS:
+            best, least = text(cause), miss
+    offset, miss = _offset(index, pairs)
     if miss < least:
-        best, least = cause, miss
+        best, least = offset, miss
     if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
-        return text(
-            "{} is always {:.2f}: recalculate it in each iteration from the newest pose", ERRORS[index], values[0]
-        )
+        return text("always_the_same", ERRORS[index], values[0])
     return best
 
 
@@ -166,17 +122,16 @@ def _offset(index: int, pairs: Sequence[Pair]) -> Tuple[str, float]:
         differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
     middle = sorted(differences)[len(differences) // 2]
     spread = sorted(abs(difference - middle) for difference in differences)
-    cause = text(
-        "{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], "large" if middle > 0.0 else "small"
-    )
+    word = "large" if middle > 0.0 else "small"
+    cause = text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
     return cause, spread[9 * len(spread) // 10] if abs(middle) > OFFSET else math.inf
 
 
-def _miss(index: int, pairs: Sequence[Pair], predicted: Sequence[float]) -> float:
+def _miss(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float]) -> float:
     """The median difference between values and predictions; degrees and squares, which vary more, are scaled."""
     values = [pair.feedback.errors[index] for pair in pairs]
-    misses = sorted(
-        abs(wrapped(value - prediction) if index == ANGLE and abs(value) < 4.0 else value - prediction)
-        for value, prediction in zip(values, predicted)
-    )
-    return misses[len(misses) // 2] / (1.0 if max(abs(value) for value in values) < 7.0 else 10.0)
+    misses = [value - predict(pair) for value, pair in zip(values, pairs)]
+    if index == ANGLE:
+        misses = [wrapped(miss) if abs(value) < 4.0 else miss for value, miss in zip(values, misses)]
+    middle = sorted(abs(miss) for miss in misses)[len(misses) // 2]
+    return middle if max(abs(value) for value in values) < 7.0 else middle / 10.0

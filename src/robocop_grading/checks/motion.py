@@ -20,6 +20,7 @@ ENOUGH = 4  # fewer commands are not judged
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
 LONG_TURN = "a long turn"
 TURN = f"{HEADING_TOLERANCE:g} rad"
+NOT_DRIVING = "linear.x 0 while angle_error is beyond {}"
 
 
 class Situation(NamedTuple):
@@ -82,10 +83,8 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
     at_first = driving.index(False) if False in driving else len(driving)
     if first is None or abs(first.v) <= limits.driving or not 0 < at_first < len(driving) or any(driving[at_first:]):
         return None
-    cause = "The robot drives before the errors are known: calculate them first, and let them decide what it does"
-    angle = situations[0].angle
-    seen = text("linear.x {:.2f} at {:.2f} rad", first.v, angle)
-    return Failed(text("linear.x 0 while angle_error is beyond {}", TURN), seen, first.time, cause, MOVES_FIRST)
+    seen = text("linear.x {:.2f} at {:.2f} rad", first.v, situations[0].angle)
+    return Failed(text(NOT_DRIVING, TURN), seen, first.time, text("moves_first"), MOVES_FIRST)
 
 
 def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
@@ -98,34 +97,23 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     driving = [it for it in situations if abs(it.command.v) > limits.driving]
     if len(driving) > MOST_WRONG * len(situations):
         command, angle = driving[0]
-        wanted = text("linear.x 0 while angle_error is beyond {}", TURN)
-        cause = "The robot drives while it turns; the handout wants one or the other"
+        cause = text("drives_while_turning")
         if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
-            cause = text("The robot drives straight at {:.2f} rad: the threshold of angle_error is not {}", angle, TURN)
+            cause = text("drives_straight_at", angle, TURN)
             if command.time > aligned:
-                cause = text(
-                    "Once it has turned to the goal, the robot drives on at {:.2f} rad without turning "
-                    "again: compare angle_error with {} in each iteration, because the heading changes while "
-                    "it drives",
-                    angle,
-                    TURN,
-                )
-        return Failed(wanted, text("linear.x {:.2f} at {:.2f} rad", command.v, angle), command.time, cause)
+                cause = text("no_correction", angle, TURN)
+        seen = text("linear.x {:.2f} at {:.2f} rad", command.v, angle)
+        return Failed(text(NOT_DRIVING, TURN), seen, command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
-        cause = text("The robot never turned: angle_error is {:.2f} rad but angular.z stayed 0", angle)
+        cause = text("never_turned", angle, "angular.z stayed 0")
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
     away = [it for it in situations if it.command.w * it.angle < 0.0 and abs(it.angle) < math.pi - 0.2]
     if len(away) > 0.15 * len(situations):
         command, angle = away[0]
-        cause = text(
-            "The robot turns away from the goal: angle_error is {:.2f} rad, so angular.z needs the "
-            "same sign for the shorter turn",
-            angle,
-        )
         wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
-        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
+        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, text("turns_away", angle))
     return None
 
 
@@ -139,7 +127,7 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     commands = [command for command in record.commands if goal.time <= command.time <= end]
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
-        cause = text("The robot never turned: angle_error is {:.2f} rad but {}", angle, reason)
+        cause = text("never_turned", angle, reason)
         return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
     return None
 
@@ -167,13 +155,8 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
     backward = [it for it in driving if it.command.v < 0.0]
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
-        (backward, driving, "below 0", "The robot drives backward: linear.x has to be positive"),
-        (
-            standing,
-            aligned,
-            "0",
-            text("The robot heads for the goal but does not drive: linear.x stayed 0 within {}", TURN),
-        ),
+        (backward, driving, "below 0", text("drives_backward")),
+        (standing, aligned, "0", text("stands", TURN)),
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
             command, angle = wrong[0]
@@ -192,8 +175,8 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
     if len(driving) < ENOUGH or len(curves) <= 0.2 * len(driving):
         return None
     command, angle = curves[0]
-    cause = "The robot keeps turning while it drives: driving straight means angular.z = 0"
-    return Failed("angular.z near 0", text("angular.z {:.2f} at {:.2f} rad", command.w, angle), command.time, cause)
+    seen = text("angular.z {:.2f} at {:.2f} rad", command.w, angle)
+    return Failed("angular.z near 0", seen, command.time, text("curves"))
 
 
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
@@ -216,9 +199,7 @@ def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
             if end - reached <= LATE:
                 return None
-            cause = text(
-                "The goal goes on although the robot is within {:g} m: the threshold is another one", GOAL_RADIUS
-            )
+            cause = text("goes_on", GOAL_RADIUS)
             least = min(distance for _, distance in way)
             seen = text("success {:.2f} s later, {:.2f} m from the goal", end - reached, least)
             return Failed(text("success at {:g} m", GOAL_RADIUS), seen, reached, cause, SUCCESS_LATE, goal)
@@ -243,8 +224,8 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
     if total <= needed + 2.0:
         return None
-    cause = "angle_error is not wrapped, so that the robot takes the longer turn, or the robot oscillates"
-    return Failed(text("a turn of about {:.1f} rad", needed), f"{total:.1f} rad", goal.time, cause, LONG_TURN, goal)
+    wanted, seen = text("a turn of about {:.1f} rad", needed), f"{total:.1f} rad"
+    return Failed(wanted, seen, goal.time, text("long_turn"), LONG_TURN, goal)
 
 
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
@@ -269,5 +250,4 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     if end - goal.time <= 2.0 and moved <= 0.05:
         return None
     seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
-    cause = text("position_error is below {:g} m from the start: check it before moving", GOAL_RADIUS)
-    return Failed("success at once", seen, goal.time, cause)
+    return Failed("success at once", seen, goal.time, text("check_before_moving", GOAL_RADIUS))

@@ -30,12 +30,9 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
         if kind != ACTION_TYPE:
-            cause = text("The action's type is {}; the handout's is GoToPositionAction of aro_robocop_goto_as", kind)
+            cause = text("other_type", kind)
             return Failed(ACTION_TYPE, kind, 0.0, cause)
-        cause = (
-            "The fields of GoToPosition.action differ from the handout's, or the server was not started "
-            "(auto_start=False needs server.start())"
-        )
+        cause = text("other_fields")
         return Failed("a server that clients can connect to", "no connection", 0.0, cause)
     if record.deaths:
         death = record.deaths[0]
@@ -44,8 +41,8 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     servers = [server.lstrip("/") for server in record.servers]
     if servers:
         close = closest(name, servers) or servers[0]
-        return Failed(name, close, 0.0, text("The action server is called {}; the handout says {}", close, name))
-    cause = "No action server was created, or it was not started (server.start())"
+        return Failed(name, close, 0.0, text("other_server", close, name))
+    cause = text("no_server")
     if isinstance(no_exception(record, limits), Failed):
         cause = text("An exception while starting: {}", last_error(record))
     return Failed(name, "no action server", 0.0, cause)

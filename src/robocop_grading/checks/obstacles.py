@@ -7,10 +7,10 @@ from typing import Optional
 from ..handout import STOP_DISTANCE
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, active_until, results_of, samples_between
 from ..texts import sentences, text
-from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY
-from .endings import RAISED, narrow_obstacle, of_goals, wrong_ending
+from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY, logged_cause
+from .endings import narrow_obstacle, of_goals, wrong_ending
 from .limits import Limits
-from .output import EXCEPTION_LOGGED, last_error, logged
+from .output import EXCEPTION_LOGGED, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
@@ -36,19 +36,13 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = text("an abort at {:g} m", STOP_DISTANCE)
     if logged(record, EXCEPTION_LOGGED):
-        cause = text(RAISED, last_error(record))
-        return Failed(wanted, "an exception", end, cause, "an exception", goal)
+        return Failed(wanted, "an exception", end, logged_cause(record), "an exception", goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
-        cause = text("The threshold is not {:g} m: the goal was aborted farther from the obstacle", STOP_DISTANCE)
+        cause = text("aborted_far", STOP_DISTANCE)
         return Failed(wanted, text("an abort at {:.2f} m", min(clearances)), end, cause, TOO_EARLY, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
-        cause = text(
-            "The threshold is not {:g} m, the scan is evaluated too rarely, or the beams that count "
-            "are not those ahead",
-            STOP_DISTANCE,
-        )
-        cause = narrow_obstacle(record) or cause
+        cause = narrow_obstacle(record) or text("aborted_near", STOP_DISTANCE)
         return Failed(wanted, text("an abort at {:.2f} m", clearances[-1]), end, cause)
     return None
 
@@ -60,33 +54,26 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
     nearest = min((sample.ahead for sample in after), default=math.inf)
     if not before or before[-1] >= STOP_DISTANCE - MARGIN or nearest >= before[-1] - MARGIN:
         return None
-    cause = text(
-        "The robot drove towards an obstacle that was {:.2f} m ahead from the start: the threshold is less than {:g} "
-        "m, or the distance is not checked before the robot drives",
-        before[-1],
-        STOP_DISTANCE,
-    )
-    seen = text("{:.2f} m ahead of it", nearest)
-    return Failed(text("an abort at {:.2f} m", before[-1]), seen, goal.time, cause, MOVES_FIRST, goal)
+    wanted, seen = text("an abort at {:.2f} m", before[-1]), text("{:.2f} m ahead of it", nearest)
+    cause = text("towards_obstacle", before[-1], STOP_DISTANCE)
+    return Failed(wanted, seen, goal.time, cause, MOVES_FIRST, goal)
 
 
-def _too_early(_record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Whether a goal was aborted without an obstacle near ahead by a server that also aborts too early elsewhere."""
-    return failure.kind == STATUS_NAMES[ABORTED] and earlier.kind == TOO_EARLY
+# A goal was aborted without an obstacle near ahead by a server that also aborts too early elsewhere.
+ABORTS_EARLY = After(
+    "stops_at_obstacle", lambda _, failure, earlier: (failure.kind, earlier.kind) == (STATUS_NAMES[ABORTED], TOO_EARLY)
+)
+# A goal that had to be aborted was not, or not rightly.
+AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not None and failure.goal.ends == "ABORTED")
 
 
-def _at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether a goal that had to be aborted was not, or not rightly."""
-    return failure.goal is not None and failure.goal.ends == STATUS_NAMES[ABORTED]
-
-
-@check("distances", after=(After("stops_at_obstacle", _too_early), *ENDING))
+@check("distances", after=(ABORTS_EARLY, *ENDING))
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
     return of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
 
 
-@check("distances", after=(*ENDING, After("stops_at_obstacle", _at_wall)))
+@check("distances", after=(*ENDING, AT_WALL))
 def odd_scans(record: Record, limits: Limits) -> Verdict:
     """Ranges of inf, 0 and NaN are not obstacles, and do not hide obstacles."""
     if not record.goals:
@@ -99,9 +86,5 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     problem = replace(problem, goal=goal)
     if logged(record, EXCEPTION_LOGGED):
         return problem
-    hint = (
-        "A range of 0 or NaN is treated as an obstacle" if wanted == SUCCEEDED else "A range of 0 or NaN hides the wall"
-    )
-    return replace(
-        problem, cause=sentences(problem.cause, text("{}: only range_min < r < range_max is a valid range", hint))
-    )
+    hint = text("odd_range_as_obstacle" if wanted == SUCCEEDED else "odd_range_hides")
+    return replace(problem, cause=sentences(problem.cause, text("valid_range", hint)))

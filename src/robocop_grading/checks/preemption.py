@@ -24,7 +24,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
         return NotReached("the goal ended before it could be cancelled")
     request = record.cancels[0]
     goal = next(goal for goal in record.goals if goal.id == request.id)
-    hint = "is is_preempt_requested() called in each iteration?"
+    hint = text("check_preempt")
     return _preempted(record, goal, request.time, limits, "cancel request", hint)
 
 
@@ -34,7 +34,7 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
     if len(record.goals) < 2:
         return NotReached("the first goal ended before a newer one could be sent")
     older, newer = record.goals[:2]
-    hint = "is_preempt_requested() is true for a newer goal as well, and the loop has to end then"
+    hint = text("check_newer_goal")
     verdict = _preempted(record, older, newer.time, limits, "newer goal", hint)
     if not isinstance(verdict, Passed):
         return verdict
@@ -49,7 +49,7 @@ def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, req
         return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
-            cause = "result.success is true although the goal was not reached"
+            cause = text("success_at_preempt")
             return Failed("success False", "success True", results[0].time, cause)
         return Passed()
     return wrong_ending(record, goal, PREEMPTED, limits) or Passed()
@@ -64,12 +64,12 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
     driving = sum(abs(sample.v) >= MOVING for sample in waiting)
-    called = "is is_preempt_requested() called in each iteration"
+    called = text("check_preempt_each")
     if turning > MOSTLY * len(waiting):
-        return text("{}, when the robot has turned: {}, also while it turns?", late, called)
+        return text("noticed_after_turn", late, called)
     if driving > MOSTLY * len(waiting):
-        return text("{}, and the robot drives on until then: {}, also while it drives?", late, called)
-    return text("{}: {}, and does nothing else make the callback wait before it ends the goal?", late, called)
+        return text("noticed_after_drive", late, called)
+    return text("waits_before_ending", late, called)
 
 
 @check(
@@ -92,7 +92,5 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     if logged(record, EXCEPTION_LOGGED) or problem.kind == NOT_RESET:
         return problem
     first = status_name(results_of(record, record.goals[0])[0].status)
-    cause = text(
-        "The second goal fails after the first one ended as {}: is all state that the first goal changed reset?", first
-    )
+    cause = text("second_goal_fails", first)
     return replace(problem, cause=sentences(problem.cause, cause))

@@ -1,7 +1,7 @@
 """The verdict of a check on one record, and the table of all checks with what they depend on."""
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Union
 
 from ..record import Goal, Record
 from .limits import Limits
@@ -37,7 +37,6 @@ class Failed:
 
 Verdict = Union[Passed, NotReached, Failed]
 Judge = Callable[[Record, Limits], Verdict]
-Retry = Tuple[str, Callable[[Failed, Record, Limits], Failed]]
 When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure
 
 
@@ -57,13 +56,20 @@ class After:
     when: When = always
 
 
+class Retry(NamedTuple):
+    """Another scenario; if `when` holds for the failure and what happened there, the text of this name is the cause."""
+
+    scenario: str
+    when: Callable[[Failed, Record, Limits], bool]
+    cause: str
+
+
 @dataclass(frozen=True)
 class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
     Its failure follows from the first one in `after` that applies. If it is not reached, the first one in `needs` that
-    has failed is the reason. `retried` names another scenario, and a function that finds the cause from what happened
-    there instead.
+    has failed is the reason.
     """
 
     judge: Judge

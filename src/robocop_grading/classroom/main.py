@@ -96,7 +96,7 @@ def main() -> None:
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
         results_folder = Path(args.report) if args.report else state / "classes" / folder.name
-        texts = load_texts(Path(args.texts) if args.texts else None, share)
+        texts = load_texts(Path(args.texts) if args.texts else None)
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE, texts)
         sources = [plan.path, *([Path(args.texts)] if args.texts else [])]
         digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()

@@ -12,6 +12,7 @@ from support import ROOT
 
 from aro_robocop_goto_as.errors import PlanError
 from robocop_grading.checks import CHECKS
+from robocop_grading.checks.feedback_causes import CAUSES, OTHERWISE
 from robocop_grading.judge import Outcome, judge
 from robocop_grading.plan import load
 from robocop_grading.record import Record
@@ -20,6 +21,8 @@ from robocop_grading.texts import load as load_texts
 
 SOURCE = Path(ROOT, "src", "robocop_grading")
 FILE = Path(ROOT, "config", "grading_texts.yaml")
+LISTED = yaml.safe_load(FILE.read_text(encoding="utf-8"))
+NAMED = {name for name, told in LISTED.items() if told}  # long texts
 # Texts of one word, and strings with spaces that nobody reads.
 SHORT = {"none", "contact", "large", "small", "left", "right", "backward"}
 NOT_TOLD = {"the node did not come up", "another position", "too early", "late success", "no answer", "a long turn"}
@@ -37,7 +40,7 @@ def told_in(path):
         node.value
         for node in ast.walk(tree)
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in left_out | fixed
-        if re.search("[a-z]", node.value) and (" " in node.value.strip() or node.value in SHORT)
+        if re.search("[a-z]", node.value) and (" " in node.value.strip() or node.value in SHORT | NAMED)
     }
     words = {
         "".join(it.value for it in node.values if isinstance(it, ast.Constant))
@@ -61,20 +64,25 @@ def test_file_lists_every_text_of_checks_and_causes():
         wanted |= texts
         fixed |= others
     assert fixed == set(), "use text() instead of an f-string"
-    listed = yaml.safe_load(FILE.read_text(encoding="utf-8"))
-    assert sorted(wanted - set(listed)) == [] and sorted(set(listed) - wanted) == []
-    assert set(listed.values()) == {None}
+    assert sorted(wanted - set(LISTED)) == [] and sorted(set(LISTED) - wanted) == []
+
+
+def test_what_looks_like_the_name_of_a_text_is_one():
+    calls = re.compile(r'\btext\(\s*"(\w+)"')
+    used = [name for path in (SOURCE / "checks").glob("*.py") for name in calls.findall(path.read_text("utf-8"))]
+    assert len(used) > 50 and set(used) <= NAMED
+    assert {name for causes in CAUSES for name, _ in causes} | set(OTHERWISE) <= NAMED
 
 
 def test_translation_tells_contract_cause_and_values(tmp_path):
     lines = {
         "While angle_error is beyond 0.1 rad the robot turns towards the goal without driving.": "Er dreht sich.",
-        "The robot drives while it turns; the handout wants one or the other": "Er fährt beim Drehen",
+        "drives_while_turning": "Er fährt beim Drehen",
         "linear.x {:.2f} at {:.2f} rad": "bei {1:.1f} rad {0:.2f} m/s",
         "failed: {} Expected {}, got {}, at {:.1f} s of scenario {}": "Fehler: {0} {2} in {4}",
     }
     (tmp_path / "german.yaml").write_text(yaml.safe_dump(lines, allow_unicode=True), encoding="utf-8")
-    plan = load(PLAN, texts=load_texts(tmp_path / "german.yaml", Path(ROOT)))
+    plan = load(PLAN, texts=load_texts(tmp_path / "german.yaml"))
     grade = judge("x", plan, {"server": {"left": commanded(lambda c: replace(c, v=0.1))}}, {})
     check = next(check for check in grade.checks if check.name == "turns_to_goal")
     assert check.sentence == "Er dreht sich."
@@ -110,7 +118,7 @@ def test_text_in_text_and_sentences_are_told():
 def test_wrong_file_of_texts_is_refused_with_the_mistake(content, words, tmp_path):
     (tmp_path / "texts.yaml").write_text(content)
     with pytest.raises(PlanError, match=re.escape(words)):
-        load_texts(tmp_path / "texts.yaml", Path(ROOT))
+        load_texts(tmp_path / "texts.yaml")
 
 
 def test_record_without_anything_is_told():
