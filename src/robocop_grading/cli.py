@@ -15,11 +15,10 @@ from .hosting.places import places
 from .hosting.scratch import scratch_folder
 from .hosting.workspace import exclusive
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines
-from .plan import load
+from .plan import MIDDLE, load
 from .report.folder import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
-from .scenario_draw import MIDDLE
 from .submission import prepare_submission
 from .texts import load as load_texts
 from .viewer import choose_viewer

@@ -2,10 +2,11 @@
 
 import dataclasses
 import math
+import random
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import AbstractSet, Any, List, Mapping, Sequence, Tuple
+from typing import AbstractSet, Any, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import PlanError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose, compose3, lifted
@@ -14,7 +15,6 @@ from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, P
 
 from .checks import CHECKS
 from .checks.limits import Limits
-from .scenario_draw import MIDDLE, Draw, checked_seed
 from .texts import ENGLISH, Texts, read_yaml
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
@@ -25,6 +25,12 @@ FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "no_pending")  # fixed, not in the plan's file
 STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
+MIDDLE = 0  # the seed with which every range stands for its middle
+LARGEST_SEED = 999_999
+DRAWN = "number or a range LOW..HIGH"
+DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]
+_NUMBER = r"-?\d+(?:\.\d+)?"
+_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -140,7 +146,8 @@ def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
 
     Seed 0 takes the middle of each range.
     """
-    checked_seed(seed)
+    if not MIDDLE <= seed <= LARGEST_SEED:
+        raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {LARGEST_SEED}")
     raw, keys = read_yaml(path), {"limits", "scenarios", "checks"}
     _expect(raw, keys, str(path), keys)
     raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
@@ -173,21 +180,34 @@ def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[s
             raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
 
 
-def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6, kind: str = "a number") -> float:
+def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
+    """A value of the plan, with a number for each range LOW..HIGH in it: a drawn one, or the middle without `numbers`.
+
+    PlanError if a range is empty.
+    """
+    if isinstance(value, dict):
+        return {key: drawn(it, numbers, f"{where}: {key}") for key, it in value.items()}
+    if isinstance(value, list):
+        return [drawn(it, numbers, where) for it in value]
+    match = _RANGE.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        return value
+    low, high = map(float, match.groups())
+    if low > high:
+        raise PlanError(f"{where}: {value}: expected LOW..HIGH, with LOW not above HIGH")
+    return round((low + high) / 2.0 if numbers is None else numbers.uniform(low, high), DIGITS)
+
+
+def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6, kind: str = "number") -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-        raise PlanError(f"{where}: expected {kind} from {least:g} to {most:g}, got {value!r}")
+        raise PlanError(f"{where}: expected a {kind} from {least:g} to {most:g}, got {value!r}")
     return float(value)
 
 
-def _drawn(value: Any, where: str, draw: Draw, least: float = 0.0, most: float = 1e6) -> float:
-    """A number of a scenario, which may be given as a range."""
-    return _number(draw.number(value, where), where, least, most, "a number or a range LOW..HIGH")
-
-
-def _numbers(value: Any, count: int, where: str, draw: Draw) -> Tuple[float, ...]:
+def _numbers(value: Any, count: int, where: str) -> Tuple[float, ...]:
     if not isinstance(value, list) or len(value) != count:
         raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
-    return tuple(_drawn(number, where, draw, -FARTHEST, FARTHEST) for number in value)
+    return tuple(_number(number, where, -FARTHEST, FARTHEST, DRAWN) for number in value)
 
 
 def _list(value: Any, where: str, of: str) -> List[Any]:
@@ -200,17 +220,18 @@ def _scenario(raw: Any, where: str, seed: int) -> Scenario:
     _expect(raw, {"name", "about", "script", "obstacles", "odd_scan", "pushes"}, where, {"name", "about", "script"})
     if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
         raise PlanError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
-    where, draw = f"{where}: {raw['name']}", Draw(seed, raw["name"])
+    where, numbers = f"{where}: {raw['name']}", None if seed == MIDDLE else random.Random(f"{seed}/{raw['name']}")
+    raw = {**raw, **{key: drawn(raw[key], numbers, where) for key in ("obstacles", "script", "pushes") if key in raw}}
     obstacles = []
     for entry in _list(raw["obstacles"], f"{where}: obstacles", "boxes and cylinders") if "obstacles" in raw else []:
         _expect(entry, {"box", "cylinder"}, where)
         for kind, value in entry.items():
-            numbers = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}", draw)
-            place = numbers[: {"box": 3, "cylinder": 2}[kind]]
-            obstacles.append(Block(kind, Pose2D(*place), numbers[len(place) :]))
+            sizes = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}")
+            place = sizes[: {"box": 3, "cylinder": 2}[kind]]
+            obstacles.append(Block(kind, Pose2D(*place), sizes[len(place) :]))
             if min(obstacles[-1].sizes) <= 0.0:
                 raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
-    steps = tuple(_step(step, where, draw) for step in _list(raw["script"], f"{where}: script", "steps"))
+    steps = tuple(_step(step, where) for step in _list(raw["script"], f"{where}: script", "steps"))
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
             raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
@@ -221,11 +242,11 @@ def _scenario(raw: Any, where: str, seed: int) -> Scenario:
         steps,
         tuple(obstacles),
         bool(raw.get("odd_scan", False)),
-        tuple(Push(*_numbers(push, 4, f"{where}: pushes", draw)) for push in pushes),
+        tuple(Push(*_numbers(push, 4, f"{where}: pushes")) for push in pushes),
     )
 
 
-def _step(raw: Any, where: str, draw: Draw) -> Step:
+def _step(raw: Any, where: str) -> Step:
     _expect(raw, STEP_KEYS, where)
     if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
         raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
@@ -234,12 +255,12 @@ def _step(raw: Any, where: str, draw: Draw) -> Step:
     if raw.get("ends", "SUCCEEDED") not in ("SUCCEEDED", "ABORTED", "PREEMPTED"):
         raise PlanError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
     return Step(
-        goal=_numbers(raw["goal"], 2, f"{where}: goal", draw) if "goal" in raw else (),
+        goal=_numbers(raw["goal"], 2, f"{where}: goal") if "goal" in raw else (),
         of=raw.get("of", "odom"),
         ends=raw.get("ends", ""),
-        run=_drawn(raw.get("for", 0.0), f"{where}: for", draw),
+        run=_number(raw.get("for", 0.0), f"{where}: for", kind=DRAWN),
         cancel=bool(raw.get("cancel", False)),
-        place=_numbers(raw["place"], 3, f"{where}: place", draw) if "place" in raw else (),
+        place=_numbers(raw["place"], 3, f"{where}: place") if "place" in raw else (),
     )
 
 

@@ -167,5 +167,5 @@ def _last_lines(log: Path) -> str:
 
 def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
     """The records of a part so far, by scenario."""
-    records = [rec.read(path) for path in sorted(out.glob(f"{part}-*.json"))]
+    records = [rec.read(path) for path in sorted(out.glob(f"{part}-*.record"))]
     return {record.name: record for record in records}

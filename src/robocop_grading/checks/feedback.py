@@ -77,7 +77,7 @@ def _deviation(index: int, pair: Pair) -> float:
     value, truths = pair.feedback.errors[index], [errors_at(sample, pair.goal)[index] for sample in pair.samples]
     if not math.isfinite(value):
         return math.inf
-    turned: Callable[[float], float] = wrapped if index == ANGLE else float
+    turned: Callable[[float], float] = wrapped if index == ANGLE else lambda it: it
     spread = [turned(truth - truths[0]) for truth in truths]  # around the first one
     middle = truths[0] + (min(spread) + max(spread)) / 2.0
     return max(0.0, abs(turned(value - middle)) - (max(spread) - min(spread)) / 2.0)

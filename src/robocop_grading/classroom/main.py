@@ -21,10 +21,9 @@ from ..hosting.places import places
 from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive
 from ..judge import printable_lines
-from ..plan import Plan, load
+from ..plan import LARGEST_SEED, MIDDLE, Plan, load
 from ..report.folder import make_report_folder
 from ..sandbox.bubblewrap import expect_private
-from ..scenario_draw import LARGEST_SEED, MIDDLE
 from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack
 from .overview import page

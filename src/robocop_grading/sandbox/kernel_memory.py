@@ -19,23 +19,8 @@ ENTRY = 2048  # bytes of an empty file, some 1500 measured with Linux 6.18
 
 
 def total(tree: Sequence["psutil.Process"]) -> int:
-    """Bytes of memfds, sockets and entries of folders in memory."""
-    return _memfds(tree) + _sockets(tree) + _entries(tree)
-
-
-def _memfds(tree: Sequence["psutil.Process"]) -> int:
-    """Bytes of files that exist in memory only (memfd): not part of any RSS or PSS unless they are mapped.
-
-    Read from /proc, as psutil's open_files lists only files that have a path.
-    """
-    sizes = {}
-    for process in tree:
-        with contextlib.suppress(OSError):  # the process has ended, or is another user's
-            for entry in os.scandir(f"/proc/{process.pid}/fd"):
-                if os.readlink(entry.path).startswith("/memfd:"):
-                    status = os.stat(entry.path)
-                    sizes[status.st_ino] = status.st_blocks * 512
-    return sum(sizes.values())
+    """Bytes of sockets and of entries of folders in memory."""
+    return _sockets(tree) + _entries(tree)
 
 
 def network_of(pid: object = "self") -> int:

@@ -1,7 +1,8 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that arrives from it."""
 
 import os
-from typing import Any, Callable, Dict, List, Set
+from collections import defaultdict
+from typing import Any, Callable, DefaultDict, Dict, List, Set
 from urllib.parse import urlparse
 
 import rosgraph
@@ -38,7 +39,7 @@ class Run:
         self.job, self.plan, self.stage = job, job.plan, stage
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
-        self.parts: Dict[str, List[Any]] = {}
+        self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
         self.subscribers = {  # by topic
@@ -58,7 +59,7 @@ class Run:
 
     def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at the start of the site of this index."""
-        self.parts = {part: [] for part in rec.PARTS}
+        self.parts = defaultdict(list)
         self.marks = {}
         self.stage.bag.open(str(self.job.out / f"{self.job.part}-{name}.bag"))
         self.stage.command(STANDSTILL)
@@ -71,7 +72,7 @@ class Run:
             raise GraderLostError("the ROS master was ended while the submission ran")
         parts: Dict[str, Any] = {part: tuple(entries) for part, entries in self.parts.items()}
         record = Record(name, self.job.part, marks=self.marks, **parts, **more)
-        rec.write(record, self.job.out / f"{self.job.part}-{name}.json")
+        rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 
     def add(self, part: str, entry: Any) -> None:

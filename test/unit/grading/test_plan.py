@@ -1,16 +1,22 @@
-"""The grading plan: points, limits, and mistakes in the file."""
+"""The grading plan: points, limits, numbers drawn from ranges, and mistakes in the file."""
 
 import dataclasses
+import random
 import re
 from pathlib import Path
 
 import pytest
 import yaml
 from grading_records import LIMITS, PLAN
+from hypothesis import given
+from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
-from robocop_grading.plan import load, world_of
+from robocop_grading.plan import LARGEST_SEED, drawn, load, world_of
+
+SEEDS = st.integers(1, LARGEST_SEED)
+NUMBERS = st.floats(-100.0, 100.0).map(lambda number: round(number, 3))
 
 
 def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
@@ -90,3 +96,40 @@ def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, er
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
     with pytest.raises((PlanError, ParameterError), match=error):
         load(tmp_path / "plan.yaml")
+
+
+@given(SEEDS, st.tuples(NUMBERS, NUMBERS).map(sorted))
+def test_drawn_number_is_within_its_range_and_repeatable(seed: int, limits: "list[float]") -> None:
+    low, high = limits
+    text = f"{low:.3f}..{high:.3f}"
+    number = drawn(text, random.Random(f"{seed}"), "here")
+    assert low <= number <= high
+    assert number == drawn(text, random.Random(f"{seed}"), "here")
+
+
+@given(st.one_of(NUMBERS, st.text().filter(lambda text: ".." not in text), st.none()))
+def test_what_is_no_range_stays_as_it_is(value: object) -> None:
+    assert drawn(value, random.Random(3), "here") == value
+
+
+def test_seed_zero_takes_the_middle() -> None:
+    assert drawn(["-0.5..1.5"], None, "here") == [0.5]
+
+
+def test_empty_range_is_refused_with_its_place() -> None:
+    with pytest.raises(PlanError, match=r"left: goal: 2\.\.1: expected LOW\.\.HIGH"):
+        drawn({"goal": ["2..1"]}, random.Random(1), "left")
+
+
+@pytest.mark.parametrize("seed", [1, 2, LARGEST_SEED])
+def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
+    middle, chosen = load(PLAN), load(PLAN, seed)
+    assert chosen == load(PLAN, seed)
+    for before, after in zip(middle.scenarios, chosen.scenarios):
+        assert (before.steps, before.obstacles) != (after.steps, after.obstacles), before.name
+
+
+@pytest.mark.parametrize("seed", [-1, LARGEST_SEED + 1])
+def test_seed_out_of_bounds_is_refused(seed: int) -> None:
+    with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {LARGEST_SEED}"):
+        load(PLAN, seed)

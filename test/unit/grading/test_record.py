@@ -8,5 +8,5 @@ from robocop_grading import record as rec
 
 
 def test_record_is_unchanged_by_writing_and_reading(tmp_path: Path) -> None:
-    rec.write(RIGHT, tmp_path / "r.json")
-    assert rec.read(tmp_path / "r.json") == RIGHT
+    rec.write(RIGHT, tmp_path / "a.record")
+    assert rec.read(tmp_path / "a.record") == RIGHT

@@ -10,7 +10,7 @@ from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.main import class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.hosting.workspace import exclusive
-from robocop_grading.scenario_draw import LARGEST_SEED
+from robocop_grading.plan import LARGEST_SEED
 
 
 @pytest.mark.parametrize("used", [0, 7])
