@@ -4,7 +4,6 @@ Data flows in this order; only session/ and agent/ use ROS:
 
     submission        path -> the scripts to grade, built in a sandbox (sandbox/)
     plan              config/grading.yaml -> scenarios, limits, points
-    job               what a session is to do: one part of a hand-in, in all scenarios or some
     session/          runs the scenarios with the hand-in's node, in the ordinary simulation -> records
     agent/            in the node's process: keeps it in simulated time, and says when its turn is over
     record            the recording of one scenario

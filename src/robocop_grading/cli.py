@@ -11,12 +11,11 @@ from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableErr
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
 from .grader import Grader
-from .hosting.places import places
 from .hosting.scratch import scratch_folder
-from .hosting.workspace import exclusive
+from .hosting.workspace import exclusive, places
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines
 from .plan import MIDDLE, load
-from .report.folder import make_report_folder
+from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
 from .submission import prepare_submission

@@ -8,10 +8,11 @@ import pickle
 import signal
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, List, Tuple, Union
+from typing import Dict, List, Tuple, Type, TypeVar, Union
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
 
+T = TypeVar("T")
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 STATUS_NAMES = tuple(
     "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
@@ -171,18 +172,18 @@ def status_name(status: int) -> str:
     return STATUS_NAMES[status] if 0 <= status < len(STATUS_NAMES) else f"status {status}"
 
 
-def write(record: Record, path: Path) -> None:
-    """Write a record to a file that only processes of the grader can write to."""
+def write(value: object, path: Path) -> None:
+    """Write a record or a job to a file that only processes of the grader can write to."""
     new = path.with_suffix(".new")  # renamed, so that a reader never sees half a file
-    new.write_bytes(pickle.dumps(record))
+    new.write_bytes(pickle.dumps(value))
     new.replace(path)
 
 
-def read(path: Path) -> Record:
-    """Read a record that `write` wrote."""
-    record = pickle.loads(path.read_bytes())
-    assert isinstance(record, Record)
-    return record
+def read(kind: Type[T], path: Path) -> T:
+    """Read a value of this class that `write` wrote."""
+    value = pickle.loads(path.read_bytes())
+    assert isinstance(value, kind)
+    return value
 
 
 def results_of(record: Record, goal: Goal) -> List[Result]:

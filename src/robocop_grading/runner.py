@@ -9,14 +9,13 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import PIPE
-from typing import Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
-from .job import Job
 from .plan import Plan
 from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
@@ -33,6 +32,20 @@ Progress = Callable[[str, str], None]  # part, scenario
 BUDGET = 3600.0
 END_TIMEOUT = 600.0  # [s, wall] for a session that has said all; it needs milliseconds
 LOG_LINES = 15
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a session is to do: the scenarios of one part of a hand-in that the plan's checks examine."""
+
+    part: str
+    command: Tuple[str, ...]  # of the node, in the sandbox
+    environment: Mapping[str, str]
+    folder: Path  # the node's
+    out: Path  # for records and bags
+    plan: Plan
+    parameters: Mapping[str, Any]  # on the parameter server
+    viewer: Optional[Viewer] = None
 
 
 @dataclass(frozen=True)
@@ -81,17 +94,11 @@ class Runner:
         else:
             command = self.sandbox.node_command(command, node_environment, [*submission.reads, AGENT], home)
             node_environment = OWN_ENVIRONMENT
-        job = Job(
-            script.part,
-            tuple(command),
-            node_environment,
-            home,
-            out,
-            self.plan,
-            dict(submission.parameters),
-            self.viewer,
+        parameters, file = dict(submission.parameters), out / f"{script.part}.job"
+        rec.write(
+            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, self.viewer), file
         )
-        session = [sys.executable, "-m", SESSION, str(job.write())]
+        session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
             session = [*memory_group.prefix(), *self.sandbox.probe_command(session)]
         return self.supervise(session, environment, out, script.part)
@@ -167,5 +174,5 @@ def _last_lines(log: Path) -> str:
 
 def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
     """The records of a part so far, by scenario."""
-    records = [rec.read(path) for path in sorted(out.glob(f"{part}-*.record"))]
+    records = [rec.read(rec.Record, path) for path in sorted(out.glob(f"{part}-*.record"))]
     return {record.name: record for record in records}

@@ -15,14 +15,13 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Set
 
 import yaml
 
-from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.errors import GradingError, RobocopError
 
 from .advice import advice, next_todo
 from .hosting import tree, workspace
-from .hosting.compat import compat_environment
 from .hosting.files import read_bytes, read_text, read_xml
 from .hosting.package import NODES, Package, find_package
-from .hosting.workspace import Environment
+from .hosting.workspace import Environment, compat_environment, places
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
 from .skeleton import make
@@ -256,3 +255,16 @@ def _first_line(text: str) -> str:
     """The first line of roslaunch's output, without colours."""
     line = next((line for line in text.splitlines() if line.strip()), "no reason given")
     return re.sub("\x1b[^m]*m", "", line)[:MOST_SHOWN]
+
+
+def main() -> None:
+    """Build what the first grading would build: the lab's action and compat/. Exit status 1 if that fails."""
+    try:
+        state, share = places()
+        lab_environment(share, state)
+    except RobocopError as error:
+        sys.exit(f"robocop setup: {error}")
+
+
+if __name__ == "__main__":
+    main()

@@ -10,7 +10,7 @@ import yaml
 from aro_robocop_goto_as.errors import HostingError, PlanError
 
 from .hosting.files import read_bytes
-from .hosting.places import places
+from .hosting.workspace import places
 
 FILE = "config/grading_texts.yaml"  # of this package
 

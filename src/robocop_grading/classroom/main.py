@@ -17,12 +17,11 @@ from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
 from ..cli import INTERRUPTED, TEXTS_HELP
-from ..hosting.places import places
 from ..hosting.scratch import scratch_folder
-from ..hosting.workspace import exclusive
+from ..hosting.workspace import exclusive, places
 from ..judge import printable_lines
 from ..plan import LARGEST_SEED, MIDDLE, Plan, load
-from ..report.folder import make_report_folder
+from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private
 from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack

@@ -5,7 +5,7 @@ from typing import Any, Counter, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from ..judge import alike
 from ..plan import PARTS, Plan
-from ..report.html import render
+from ..report.write import render
 from .results import NOT_HANDED_IN, Result
 
 REFRESH = 5.0  # [s] while grading is in progress ...

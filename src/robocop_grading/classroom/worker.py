@@ -12,8 +12,8 @@ from typing import Dict, Optional, Union
 from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
 
 from ..grader import Grader
-from ..hosting.places import places
 from ..hosting.tree import temporary_folder
+from ..hosting.workspace import places
 from ..judge import Grade
 from ..plan import Plan
 from ..report.write import write

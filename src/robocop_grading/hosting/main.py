@@ -16,11 +16,9 @@ from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
 from . import tree
-from .compat import compat_environment
 from .package import Package, arguments_of, find_package
-from .places import places
 from .scratch import scratch_folder
-from .workspace import Environment, build
+from .workspace import Environment, build, compat_environment, places
 
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 

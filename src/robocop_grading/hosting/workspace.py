@@ -10,7 +10,7 @@ import zlib
 from pathlib import Path
 from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.errors import HostingError, InstallationError
 from aro_robocop_goto_as.process import child
 
 from . import tree
@@ -20,6 +20,7 @@ Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # .
 
 # Variables that catkin's setup files extend, one workspace on top of another.
 CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
+COMPAT = ("aro_sim", "gazebo_msgs")
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
 LOG_LINES = 25  # of a failed build's log that are shown
@@ -139,3 +140,21 @@ def exclusive(folder: Path) -> Iterator[None]:
             print(f"waiting for another process that uses {folder}", file=sys.stderr, flush=True)
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield
+
+
+def compat_environment(share: Path, state: Path) -> Environment:
+    """The environment with the lab's aro_sim and Gazebo's message types, on which hosted packages are built.
+
+    They are built from `share`/compat, this package's, in `state`/compat.
+    """
+    folder, sources = state / "compat", {name: share / "compat" / name for name in COMPAT}
+    underlay = base_environment()
+    return build_once(folder, checksums(share / "compat"), underlay, lambda: build(sources, folder, underlay))
+
+
+def places() -> Tuple[Path, Path]:
+    """The folder of everything that is built, and this package's folder; InstallationError without ./robocop."""
+    try:
+        return Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
+    except KeyError as error:
+        raise InstallationError(f"{error.args[0]} is not set; use ./robocop COMMAND instead of rosrun") from error

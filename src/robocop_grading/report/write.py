@@ -2,22 +2,38 @@
 
 import dataclasses
 import json
+import os
 import shlex
+import tempfile
 from pathlib import Path
-from typing import Any, Dict, Iterator, Sequence
+from typing import Any, Dict, Iterator, Optional, Sequence
+from urllib.parse import quote
 from xml.etree import ElementTree
 
+import jinja2
+
+from aro_robocop_goto_as.errors import GradingSetupError
+
 from ..checks import CHECKS
-from ..judge import CheckResult, Grade, Outcome, Records, printable_lines
+from ..judge import CheckResult, Grade, Outcome, Records, printable, printable_lines
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
-from .html import render
 from .plots import svg
-from .services import as_classroom, as_gradescope
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
 MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖"}  # of outcomes in the summary
 MOST_LINES = 60  # of a node's output in the report
+
+
+def make_report_folder(folder: Path) -> Path:
+    """Create the folder unless it exists; GradingSetupError if it can't be created or written to."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise GradingSetupError(f"the report can't be written to {folder}: {error.strerror}") from error
+    return folder
 
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
@@ -128,3 +144,86 @@ def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str,
             "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
             "anchor": f"{check.part}-{check.name}",
         }
+
+
+# -- in the formats of GitHub Classroom and Gradescope --
+
+
+def as_classroom(grade: Grade) -> Dict[str, object]:
+    """The result of one runner as GitHub's action classroom-resources/autograding-grading-reporter reads it."""
+    return {
+        "version": 1,
+        "status": "pass" if grade.all_right else "fail",
+        "max_score": grade.points_available,
+        "tests": [_test(check) for check in grade.checks if check.points or not check.extra],
+    }
+
+
+def _test(check: CheckResult) -> Dict[str, object]:
+    passed = check.outcome is Outcome.PASSED
+    return {
+        "name": check.sentence,
+        "status": "pass" if passed else "fail",
+        "score": check.points,
+        "message": "" if passed else printable(check.words),
+        "test_code": check.name,
+        "filename": "",
+        "line_no": 0,
+        "duration": 0,
+    }
+
+
+def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
+    """The content of results.json: gradescope-autograders.readthedocs.io, section "Autograder output"."""
+    tests = []
+    for check in grade.checks:
+        passed = check.outcome is Outcome.PASSED
+        test: Dict[str, object] = {
+            "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
+            "number": f"{check.part}.{check.name}",
+            "output": printable_lines(check.words),
+        }
+        if passed or not check.extra:  # an extra check that did not pass is shown without points, neither green nor red
+            test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available
+            test["status"] = "passed" if passed else "failed"
+        tests.append(test)
+    output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
+    return {"score": grade.points, "output": "\n".join(output), "tests": tests}
+
+
+# -- pages made from templates/ --
+
+
+def _points(points: Optional[float]) -> str:
+    return "–" if points is None else f"{points:g}"
+
+
+def _css(outcome: str) -> str:
+    """The CSS class of an outcome."""
+    return outcome.split()[0]
+
+
+def _quoted(name: str) -> str:
+    """A file's name as part of a URL, whatever bytes it consists of."""
+    return quote(os.fsencode(name))
+
+
+def _shown(value: Any) -> Any:
+    """A value as it goes into a page: text that is not markup of ours without control characters."""
+    return printable_lines(value) if type(value) is str else value
+
+
+_PAGES = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+    autoescape=True,
+    finalize=_shown,
+    undefined=jinja2.StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+_PAGES.filters.update(css=_css, one_line=printable, points=_points, printable=printable_lines, quoted=_quoted)
+
+
+def render(template: str, **values: Any) -> str:
+    """The page made from a template; all values are escaped unless the template marks them safe."""
+    return _PAGES.get_template(template).render(**values)

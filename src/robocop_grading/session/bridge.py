@@ -21,8 +21,8 @@ from aro_robocop_goto_as.ros import graph
 
 from .. import record as rec
 from ..handout import ACTION
-from ..job import Job
 from ..plan import BRIDGE_SCENARIOS
+from ..runner import Job
 from .ros_internals import goal_senders, has_client
 from .run import TICK, Run
 from .stage import Stage

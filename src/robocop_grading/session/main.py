@@ -4,6 +4,7 @@ import contextlib
 import os
 import sys
 import time
+from pathlib import Path
 from urllib.parse import urlparse
 
 import rosgraph
@@ -13,7 +14,8 @@ from aro_robocop_goto_as.errors import GraderLostError, NoTimeError, WatchError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
-from ..job import Job
+from ..record import read
+from ..runner import Job
 from . import ros_internals
 from .bridge import BridgeRun
 from .run import NODE_LOST, Run
@@ -47,7 +49,7 @@ def _start_master() -> None:
 
 def main() -> None:
     """Usage: main JOB, with a free port in ROS_MASTER_URI."""
-    job = Job.read(sys.argv[1])
+    job = read(Job, Path(sys.argv[1]))
     ros_internals.install()
     _start_master()
     rospy.set_param("/use_sim_time", True)

@@ -19,8 +19,8 @@ from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from .. import record as rec
 from ..handout import ACTION
-from ..job import Job
 from ..record import Record
+from ..runner import Job
 from ..sandbox import memory_group
 from ..sandbox.guard import exceeded_memory
 from .display import is_shown

@@ -14,9 +14,9 @@ from aro_robocop_goto_as.ros import graph, markers
 
 from .. import record as rec
 from ..handout import ACTION
-from ..job import Job
 from ..plan import START, Push, Scenario, Step
 from ..record import Record
+from ..runner import Job
 from .run import TICK, Run
 from .stage import Stage
 

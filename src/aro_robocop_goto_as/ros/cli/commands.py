@@ -215,7 +215,7 @@ def setup(parts: List[str]) -> None:
     if program.is_dry_run():
         return
     if "grade" in parts:  # what the first grading would build: a container would repeat it at each start
-        prebuild = program.module("robocop_grading.prebuild")
+        prebuild = program.module("robocop_grading.submission")
         subprocess.run([program.SCRIPT, "_start", *prebuild], check=True)
     say(f"ready in {program.state()}; ./robocop run starts the lab")
 

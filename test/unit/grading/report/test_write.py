@@ -2,10 +2,12 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from grading_records import PLAN, RIGHT
 
+from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.judge import judge
 from robocop_grading.plan import load
 from robocop_grading.report import write as report
@@ -35,3 +37,15 @@ def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
     report.write(judge("anna", load(PLAN), records, {}), load(PLAN), records, tmp_path, kept)
     (command,) = re.findall(r"\./robocop replay ([^<]+)</code>", (tmp_path / "report.html").read_text())
     assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")
+
+
+def test_folder_is_created_with_its_parents(tmp_path):
+    assert report.make_report_folder(tmp_path / "a" / "b").is_dir()
+    assert report.make_report_folder(tmp_path / "a" / "b").is_dir(), "it may exist"
+
+
+def test_folder_that_can_not_be_created_is_refused_with_its_name(tmp_path):
+    (tmp_path / "file").write_text("")
+    for folder in (Path("/proc/x"), tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(GradingSetupError, match=f"^the report can't be written to {folder}: "):
+            report.make_report_folder(folder)
