@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
-from .checks import CHECKS, Failed, NotReached, Passed
+from .checks import CHECKS, Failed, NotReached, Passed, Verdict
 from .plan import CheckPlan, Plan
 from .record import Record
 from .texts import Texts, sentences, text
@@ -217,34 +217,23 @@ def _reason(name: str, failed: Mapping[str, CheckResult], records: Mapping[str, 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
     """A check fails if it fails in one scenario, and passes if it passes in at least one."""
-    passed, why, examined = False, "", ""
+    judged, retried = CHECKS[check.name], CHECKS[check.name].retried
+    contract = judged.contract
+    result = CheckResult(check.name, check.part, contract, Outcome.NOT_REACHED, 0.0, check.points, check.extra)
     for name in check.scenarios:
-        if name not in records:
-            if problem:
-                failure = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
-                return _result(check, Outcome.FAILED, name, failure)
-            why = why or NOT_STARTED
-            continue
-        verdict = CHECKS[check.name](records[name], plan.limits)
-        examined = examined or name
+        verdict: Verdict = NotReached(NOT_STARTED)
+        if name in records:
+            verdict = judged(records[name], plan.limits)
+            result = replace(result, scenario=result.scenario or name)
+        elif problem:
+            verdict = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
         if isinstance(verdict, Failed):
-            retried = CHECKS[check.name].retried
-            if retried is not None and retried.scenario in records:
+            if retried is not None and retried.scenario in records and name in records:
                 if retried.when(verdict, records[retried.scenario], plan.limits):
                     verdict = replace(verdict, cause=text(retried.cause))
-            return _result(check, Outcome.FAILED, name, verdict)
-        passed = passed or isinstance(verdict, Passed)
-        if isinstance(verdict, NotReached):
-            why = why or verdict.why
-    if passed:
-        return _result(check, Outcome.PASSED, examined)
-    return _result(check, Outcome.NOT_REACHED, examined, why=why)
-
-
-def _result(
-    check: CheckPlan, outcome: Outcome, scenario: str, failure: Optional[Failed] = None, why: str = ""
-) -> CheckResult:
-    points, contract = check.points if outcome is Outcome.PASSED else 0.0, CHECKS[check.name].contract
-    return CheckResult(
-        check.name, check.part, contract, outcome, points, check.points, check.extra, scenario, failure, why
-    )
+            return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
+        if isinstance(verdict, Passed):
+            result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")
+        elif result.outcome is Outcome.NOT_REACHED:
+            result = replace(result, why=result.why or verdict.why)
+    return result

@@ -154,7 +154,9 @@ class Runner:
                 killed = f"the {part} was killed in scenario {record.name}"
         excused = memory_group.kernel_kills() > kills
         if not problem and status != 0:
-            problem = f"the run was cut short during {scenario} (status {status}): {_last_lines(log)}"
+            end = log.read_text(errors="replace").splitlines()[-LOG_LINES:]
+            last = " | ".join(line.strip() for line in end)[-600:]
+            problem = f"the run was cut short during {scenario} (status {status}): {last}"
             if status in rec.KILLED:
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
         return Recorded(records, problem, killed, excused)
@@ -165,11 +167,6 @@ def _read(process: "child.Child[bytes]", lines: "queue.Queue[Optional[str]]") ->
     for line in process.stdout:
         lines.put(line.decode(errors="replace").strip())
     lines.put(None)
-
-
-def _last_lines(log: Path) -> str:
-    lines = log.read_text(errors="replace").splitlines()
-    return " | ".join(line.strip() for line in lines[-LOG_LINES:])[-600:]
 
 
 def records_in(out: Path, part: str) -> Dict[str, rec.Record]:

@@ -226,7 +226,9 @@ def _parameters(package: Package, copy: Path, environment: Environment, run: wor
     command = [program, "--dump-params", str(path)]
     status, output, errors = workspace.output_of(run, command, environment, MAX_PARAMETERS)
     if status != 0 or not output.strip():  # roslaunch exits with 0 for a file that it can't load
-        raise GradingError(f"{path.name}: roslaunch can't read it: {_first_line(errors)}")
+        line = next((line for line in errors.splitlines() if line.strip()), "no reason given")
+        words = re.sub("\x1b[^m]*m", "", line)[:MOST_SHOWN]  # without colours
+        raise GradingError(f"{path.name}: roslaunch can't read it: {words}")
     try:
         parameters = yaml.load(output.decode(errors="replace"), _PlainLoader) or {}
     except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that does not exist
@@ -249,12 +251,6 @@ def _is_settable(value: Any, depth: int = 0) -> bool:
     if isinstance(value, int):  # includes bool
         return -(2**31) <= value < 2**31
     return isinstance(value, (float, str))
-
-
-def _first_line(text: str) -> str:
-    """The first line of roslaunch's output, without colours."""
-    line = next((line for line in text.splitlines() if line.strip()), "no reason given")
-    return re.sub("\x1b[^m]*m", "", line)[:MOST_SHOWN]
 
 
 def main() -> None:

@@ -49,18 +49,15 @@ def choose_viewer(sandbox: Optional[Sandbox]) -> Viewer:
     command = [sys.executable, "-IS", x_display.__file__]
     if sandbox is not None:
         command = sandbox.probe_command(command)  # without a network: the display of ssh -X does not answer
-    if os.environ.get("DISPLAY") and shutil.which("rviz") is not None and _succeeds(command):
-        return Viewer()
+    if os.environ.get("DISPLAY") and shutil.which("rviz") is not None:
+        if subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True).returncode == 0:
+            return Viewer()
     host = access.default_host()
     # From elsewhere, as from outside a container, only the usual port may be reachable.
     ports = (WebParams.web_port, 0) if access.is_loopback(host) else (WebParams.web_port,)
     listening = _listen(host, ports)
     port = listening.getsockname()[1]
     return Viewer(listening.detach(), port, access.url(host, port))
-
-
-def _succeeds(command: Sequence[str]) -> bool:
-    return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True).returncode == 0
 
 
 def _listen(host: str, ports: Sequence[int]) -> socket.socket:

@@ -49,14 +49,14 @@ def topics(ports: Set[int]) -> Dict[str, Any]:
     manager = get_topic_manager()
     published = [[name, topic.data_class._md5sum] for name, topic in list(manager.pubs.items())]
     subscribed = [
-        [name, topic.data_class._md5sum, [_port(link) for link in topic.connections if _peer(link) in ports]]
+        [
+            name,
+            topic.data_class._md5sum,
+            [_port(link) for link in topic.connections if (link.dest_address or (0, 0))[1] in ports],
+        ]
         for name, topic in list(manager.subs.items())
     ]
     return {"node": get_caller_id(), "published": published, "subscribed": subscribed}
-
-
-def _peer(link: Any) -> int:
-    return int((link.dest_address or (0, 0))[1])
 
 
 def _port(link: Any) -> int:

@@ -39,7 +39,9 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
-    if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not _stopped(record, result.time, limits):
+    at_end = samples_between(record, result.time - 0.25, result.time)
+    stopped = any(sample.ahead <= limits.abort_farthest for sample in at_end)  # where an obstacle has to end the goal
+    if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not stopped:
         early = success_too_far(record, goal, limits)
         if early is not None:
             return replace(early, expected=status_name(wanted))
@@ -55,11 +57,6 @@ def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Ver
     """The first problem that a goal has."""
     found = next(filter(None, map(problem, record.goals)), None)
     return found or (Passed() if record.goals else NotReached("no goal was sent"))
-
-
-def _stopped(record: Record, end: float, limits: Limits) -> bool:
-    """Whether the goal ended where an obstacle has to end it."""
-    return any(sample.ahead <= limits.abort_farthest for sample in samples_between(record, end - 0.25, end))
 
 
 def narrow_obstacle(record: Record) -> str:

@@ -11,7 +11,10 @@ from .output import UNCAUGHT, last_error
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
 START = After("action_server", lambda record, *_: record.name == "start")
-OWN_DEATH = After("no_exception", lambda record, *_: not any(map(_is_explained, record.deaths)))
+# Nothing other than an exception ended the node.
+OWN_DEATH = After(
+    "no_exception", lambda record, *_: not any(death.reason or death.is_unexplained for death in record.deaths)
+)
 
 
 def closest(name: str, others: Sequence[str]) -> str:
@@ -46,11 +49,6 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if isinstance(no_exception(record, limits), Failed):
         cause = text("An exception while starting: {}", last_error(record))
     return Failed(name, "no action server", 0.0, cause)
-
-
-def _is_explained(death: Death) -> bool:
-    """Whether something other than an exception ended the node."""
-    return bool(death.reason) or death.is_unexplained
 
 
 def _reason(death: Death, record: Record) -> str:

@@ -6,7 +6,7 @@ import os
 import shlex
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, Iterator, Optional, Sequence
+from typing import Any, Dict, Iterator, Sequence
 from urllib.parse import quote
 from xml.etree import ElementTree
 
@@ -194,20 +194,6 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
 # -- pages made from templates/ --
 
 
-def _points(points: Optional[float]) -> str:
-    return "–" if points is None else f"{points:g}"
-
-
-def _css(outcome: str) -> str:
-    """The CSS class of an outcome."""
-    return outcome.split()[0]
-
-
-def _quoted(name: str) -> str:
-    """A file's name as part of a URL, whatever bytes it consists of."""
-    return quote(os.fsencode(name))
-
-
 def _shown(value: Any) -> Any:
     """A value as it goes into a page: text that is not markup of ours without control characters."""
     return printable_lines(value) if type(value) is str else value
@@ -221,7 +207,13 @@ _PAGES = jinja2.Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-_PAGES.filters.update(css=_css, one_line=printable, points=_points, printable=printable_lines, quoted=_quoted)
+_PAGES.filters.update(
+    css=lambda outcome: outcome.split()[0],  # the class of an outcome
+    one_line=printable,
+    points=lambda points: "–" if points is None else f"{points:g}",
+    printable=printable_lines,
+    quoted=lambda name: quote(os.fsencode(name)),  # a file's name, whatever bytes it consists of, as part of a URL
+)
 
 
 def render(template: str, **values: Any) -> str:

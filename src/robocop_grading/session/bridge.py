@@ -173,15 +173,12 @@ class BridgeRun(Run):
         """The bridge starts and gets a click while there is no server."""
         self.begin("no_server", 0)
         self.launch()
-        self.wait_for(self._is_connected, START_TIMEOUT)
+        self.wait_for(lambda: any(it.get_num_connections() for it in (self.clicks, self.cancels)), START_TIMEOUT)
         self.settle(1.0)
         if self.clicks.get_num_connections():
             self._send_click("odom", 0.5, 0.1)
         self.settle(3.0)
         self.finish("no_server", up=not self.death_recorded)
-
-    def _is_connected(self) -> bool:
-        return bool(self.clicks.get_num_connections() or self.cancels.get_num_connections())
 
     def _click(self) -> None:
         """The server is there; a click, then time passes while the goal is active."""
