@@ -15,5 +15,5 @@ Data flows in this order; only session/ and agent/ use ROS:
     classroom/        robocop grade-class: many submissions on dask workers
     hosting/          other people's packages, built; also for robocop sim --with
 
-handout holds the handout's names and figures, checks.limits the tolerances around them.
+handout holds the handout's names and figures, and the tolerances around them.
 """

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 
 from .checks import CHECKS
-from .checks.limits import Limits
+from .handout import Limits
 from .texts import ENGLISH, Texts, read_yaml
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar

@@ -19,8 +19,8 @@ from aro_robocop_goto_as.errors import GradingError, RobocopError
 
 from .advice import advice, next_todo
 from .hosting import tree, workspace
-from .hosting.files import read_bytes, read_text, read_xml
 from .hosting.package import NODES, Package, find_package
+from .hosting.tree import read_bytes, read_text, read_xml
 from .hosting.workspace import Environment, compat_environment, places
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in

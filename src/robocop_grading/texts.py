@@ -9,7 +9,7 @@ import yaml
 
 from aro_robocop_goto_as.errors import HostingError, PlanError
 
-from .hosting.files import read_bytes
+from .hosting.tree import read_bytes
 from .hosting.workspace import places
 
 FILE = "config/grading_texts.yaml"  # of this package

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 from browser import chromium
 
-from robocop_grading.classroom.overview import SHOWN, page
-from robocop_grading.classroom.results import Check, Result
+from robocop_grading.classroom.results import SHOWN, Check, Result, page
 from robocop_grading.plan import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")

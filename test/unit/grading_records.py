@@ -8,7 +8,7 @@ from typing import Any, List
 from support import ROOT
 
 from robocop_grading import record as rec
-from robocop_grading.checks.limits import Limits
+from robocop_grading.handout import Limits
 from robocop_grading.record import Record
 
 PLAN = Path(ROOT, "config", "grading.yaml")

@@ -4,11 +4,10 @@ import math
 import re
 from typing import List, NamedTuple, Optional, Set
 
-from ..handout import ACTION
+from ..handout import ACTION, Limits
 from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
 from ..texts import text
 from .consequences import alike
-from .limits import Limits
 from .node_lifetime import closest, no_exception, stays_alive
 from .verdict import After, Failed, NotReached, Passed, Retry, Verdict, check
 

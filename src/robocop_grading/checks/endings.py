@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Callable, Optional
 
-from ..handout import GOAL_RADIUS
+from ..handout import GOAL_RADIUS, Limits
 from ..record import (
     ABORTED,
     PREEMPTED,
@@ -18,7 +18,6 @@ from ..record import (
 )
 from ..texts import sentences, text
 from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
-from .limits import Limits
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 

@@ -6,11 +6,11 @@ from typing import Callable, List, Optional, Sequence
 
 import numpy as np
 
+from ..handout import Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_between, wrapped
 from ..texts import Text, text
 from .consequences import nothing_came
 from .feedback_causes import ANGLE, OF_POSITION, POSITION, UNITS, Pair, likely_cause
-from .limits import Limits
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording

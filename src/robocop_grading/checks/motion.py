@@ -4,12 +4,11 @@ import math
 from dataclasses import replace
 from typing import Iterator, List, NamedTuple, Optional, Sequence
 
-from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
+from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
 from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
 from ..texts import text
 from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
-from .limits import Limits
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it

@@ -3,10 +3,9 @@
 import difflib
 from typing import Sequence
 
-from ..handout import ACTION, ACTION_TYPE
+from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
 from ..texts import text
-from .limits import Limits
 from .output import UNCAUGHT, last_error
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 

@@ -4,12 +4,11 @@ import math
 from dataclasses import replace
 from typing import Optional
 
-from ..handout import STOP_DISTANCE
+from ..handout import STOP_DISTANCE, Limits
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, active_until, results_of, samples_between
 from ..texts import sentences, text
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY, logged_cause
 from .endings import narrow_obstacle, of_goals, wrong_ending
-from .limits import Limits
 from .output import EXCEPTION_LOGGED, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 

@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
+from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, samples_between, status_name
 from ..texts import sentences, text
 from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
-from .limits import Limits
 from .output import EXCEPTION_LOGGED, logged
 from .verdict import After, Failed, NotReached, Passed, Verdict, check
 
@@ -24,8 +24,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
         return NotReached("the goal ended before it could be cancelled")
     request = record.cancels[0]
     goal = next(goal for goal in record.goals if goal.id == request.id)
-    hint = text("check_preempt")
-    return _preempted(record, goal, request.time, limits, "cancel request", hint)
+    return _preempted(record, goal, request.time, limits, "cancel request", text("check_preempt"))
 
 
 @check("states", after=PREEMPTION, needs=("reaches_goal", "stays_alive"))
@@ -34,8 +33,7 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
     if len(record.goals) < 2:
         return NotReached("the first goal ended before a newer one could be sent")
     older, newer = record.goals[:2]
-    hint = text("check_newer_goal")
-    verdict = _preempted(record, older, newer.time, limits, "newer goal", hint)
+    verdict = _preempted(record, older, newer.time, limits, "newer goal", text("check_newer_goal"))
     if not isinstance(verdict, Passed):
         return verdict
     return wrong_ending(record, newer, SUCCEEDED, limits) or Passed()
@@ -49,8 +47,7 @@ def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, req
         return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
-            cause = text("success_at_preempt")
-            return Failed("success False", "success True", results[0].time, cause)
+            return Failed("success False", "success True", results[0].time, text("success_at_preempt"))
         return Passed()
     return wrong_ending(record, goal, PREEMPTED, limits) or Passed()
 
@@ -64,12 +61,9 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
     driving = sum(abs(sample.v) >= MOVING for sample in waiting)
-    called = text("check_preempt_each")
     if turning > MOSTLY * len(waiting):
-        return text("noticed_after_turn", late, called)
-    if driving > MOSTLY * len(waiting):
-        return text("noticed_after_drive", late, called)
-    return text("waits_before_ending", late, called)
+        return text("noticed_after_turn", late)
+    return text("noticed_after_drive" if driving > MOSTLY * len(waiting) else "waits_before_ending", late)
 
 
 @check(
@@ -92,5 +86,4 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     if logged(record, EXCEPTION_LOGGED) or problem.kind == NOT_RESET:
         return problem
     first = status_name(results_of(record, record.goals[0])[0].status)
-    cause = text("second_goal_fails", first)
-    return replace(problem, cause=sentences(problem.cause, cause))
+    return replace(problem, cause=sentences(problem.cause, text("second_goal_fails", first)))

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Union
 
+from ..handout import Limits
 from ..record import Goal, Record
-from .limits import Limits
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,7 @@ from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private
 from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack
-from .overview import page
-from .results import Result, Results, one_line, seed_of, table, write_atomically
+from .results import Result, Results, one_line, page, seed_of, table, write_atomically
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"

@@ -1,5 +1,6 @@
-"""Stores the results of a class, one folder per hand-in, so that an interrupted run can be continued."""
+"""The results of a class: a folder per hand-in, so that an interrupted run can be continued, a table, an overview."""
 
+import collections
 import contextlib
 import csv
 import functools
@@ -10,11 +11,12 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..hosting import tree
-from ..judge import printable
+from ..judge import alike, printable
 from ..plan import PARTS, Plan
+from ..report.write import render
 from .hand_ins import HandIn
 from .worker import Done
 
@@ -24,6 +26,11 @@ FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 MOST_CELL = 2_000  # characters of a cell
 BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
 NOT_HANDED_IN = "not handed in"
+REFRESH = 5.0  # [s] while grading is in progress ...
+REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
+SHOWN = 200  # hand-ins until one asks for more
+MOST_CAUSES = 3
+SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: "–"}
 
 
 @dataclass(frozen=True)
@@ -162,3 +169,43 @@ def write_atomically(path: Path, text: str) -> None:
     new = path.with_name(f".{path.name}.new")
     new.write_text(text, encoding="utf-8", errors="replace")
     os.replace(new, path)
+
+
+def page(title: str, results: Sequence[Result], plan: Plan, waiting: Mapping[str, str], running: bool) -> str:
+    """The overview; `waiting` maps the names that have no result yet to the reason."""
+    return render(
+        "overview.html",
+        title=title,
+        results=results,
+        plan=plan,
+        parts=PARTS,
+        waiting=waiting,
+        running=running,
+        refresh=round(REFRESH + REFRESH_EACH * len(results)),
+        shown=SHOWN,
+        symbols=SYMBOLS,
+        cells={outcome: f"<td class={outcome.split()[0]}>{symbol}" for outcome, symbol in SYMBOLS.items()},
+        checks=list(_checks(results, plan)),
+    )
+
+
+def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
+    """For each check the number of each outcome and the most frequent causes of failures."""
+    counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
+    causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
+    for result in results:
+        for line in result.checks:
+            if line.cause:
+                causes[line.name][line.cause] += 1
+    for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
+        tried = len(results) - outcomes[NOT_HANDED_IN]
+        yield {"name": check.name, "outcomes": outcomes, "tried": tried, "causes": _most_frequent(causes[check.name])}
+
+
+def _most_frequent(causes: Mapping[str, int]) -> List[Tuple[str, int]]:
+    """Causes with their counts; causes that differ only in numbers are counted together."""
+    groups: Dict[str, Tuple[str, int]] = {}  # by what is alike: the first of them, and how many there are
+    for cause, count in causes.items():
+        first, before = groups.get(alike(cause), (cause, 0))
+        groups[alike(cause)] = first, before + count
+    return sorted(groups.values(), key=lambda group: -group[1])[:MOST_CAUSES]

@@ -10,7 +10,7 @@ from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.ros.names import BRIDGE, SERVER
 
 from . import tree
-from .files import read_xml
+from .tree import read_xml
 
 NODES = (
     ("robocop_goto_as.py", SERVER),  # the handout's scripts and their node names

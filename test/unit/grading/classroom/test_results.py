@@ -1,4 +1,4 @@
-"""Results of a class are stored, and listed in a table."""
+"""Results of a class are stored, and listed in a table and on a page, which counts outcomes and causes."""
 
 import csv
 import io
@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robocop_grading.classroom.hand_ins import HandIn
-from robocop_grading.classroom.results import Result, Results, table
+from robocop_grading.classroom.results import Result, Results, page, table
 
 
 def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
@@ -67,3 +67,13 @@ def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
     (row,) = read(table([], PLAN, {"dora": "could not be graded: a worker died"}))
     assert (row["name"], row["points"], row["problem"]) == ("dora", "", "could not be graded: a worker died")
     assert row["of"] == "8.0" and not row["cancel"]
+
+
+def test_the_overview_counts_checks_and_causes_and_escapes_them():
+    html = page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True)
+    assert "3 of 4 graded, in progress" in html and "http-equiv='refresh'" in html
+    assert "2 × &lt;cause&gt; at 1.5" in html and "<cause>" not in html and "<1>" not in html
+    assert "0 of 2" in html, "of the two that handed in a server"
+    assert "dora" in html
+    assert "interrupted" in page("class", RESULTS, PLAN, {"dora": "waiting"}, running=False)
+    assert "http" not in page("class", RESULTS, PLAN, {}, running=False)
