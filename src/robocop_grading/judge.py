@@ -172,16 +172,17 @@ def alike(text: str) -> str:
 
 def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> List[CheckResult]:
     """One part's results with the failure that each one follows from, or is blocked by, if it has not its own cause."""
-    failed = {result.name: result for result in results if result.failure is not None}
+    failed = {result.name: (result.failure, result.scenario) for result in results if result.failure is not None}
+    causes = {name: alike(failure.cause) for name, (failure, _) in failed.items()}
     reasons = {name: _reason(name, failed, records) for name in failed}
     first: Dict[str, str] = {}  # by cause
     for name, reason in reasons.items():
         if reason == name:
-            first.setdefault(alike(_cause(failed[name])), name)
+            first.setdefault(causes[name], name)
     explained = []
     for result in results:
         if result.failure is not None:
-            reason = first[alike(_cause(failed[reasons[result.name]]))]
+            reason = first[causes[reasons[result.name]]]
             if reason != result.name:
                 cause = text('This follows from another failed check: "{}"', CHECKS[reason].contract)
                 if result.failure.seen == INCOMPLETE:
@@ -190,25 +191,19 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> 
         elif result.outcome is Outcome.NOT_REACHED:
             needs = (FIRST,) if result.why == NOT_STARTED else CHECKS[result.name].needs
             blocking = next((name for name in needs if name in failed), "")
-            result = replace(result, follows=blocking and first[alike(_cause(failed[reasons[blocking]]))])
+            result = replace(result, follows=blocking and first[causes[reasons[blocking]]])
         explained.append(result)
     return explained
 
 
-def _cause(result: CheckResult) -> str:
-    return "" if result.failure is None else result.failure.cause
-
-
-def _reason(name: str, failed: Mapping[str, CheckResult], records: Mapping[str, Record]) -> str:
+def _reason(name: str, failed: Mapping[str, Tuple[Failed, str]], records: Mapping[str, Record]) -> str:
     """The check with whose failure it begins."""
     chain = [name]
     while True:
-        failure, record = failed[chain[-1]].failure, records.get(failed[chain[-1]].scenario)
+        failure, scenario = failed[chain[-1]]
         for after in CHECKS[chain[-1]].after:
-            earlier = failed[after.check].failure if after.check in failed else None
-            if after.check in chain or failure is None or earlier is None or record is None:
-                continue
-            if after.when(record, failure, earlier):
+            possible = after.check in failed and after.check not in chain and scenario in records
+            if possible and after.when(records[scenario], failure, failed[after.check][0]):
                 chain.append(after.check)
                 break
         else:

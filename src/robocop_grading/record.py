@@ -148,7 +148,7 @@ class Record:
 
     name: str
     part: str  # server or bridge
-    up: bool = True  # the node made all the connections it has to make
+    up: bool = True  # the server made all the connections it has to make
     servers: Tuple[str, ...] = ()  # names of the action servers that were found
     types: Tuple[str, ...] = ()  # of these servers, in the same order
     unpublished: Tuple[str, ...] = ()  # topics that the node subscribes to and nobody publishes

@@ -21,16 +21,6 @@ MOST_OTHERS = 0.2  # share of commands that may not match, as those at the end o
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
 
 
-def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether a goal ended wrongly in a scenario in which an exception was logged."""
-    return bool(failure.kind) and logged(record, EXCEPTION_LOGGED)
-
-
-def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether a goal did not end because the node did."""
-    return failure.kind == NO_RESULT and bool(record.deaths)
-
-
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Whether both failures are of the same kind."""
     return bool(failure.kind) and failure.kind == earlier.kind
@@ -95,20 +85,17 @@ def _fits(own: Feedback, v: float, w: float) -> bool:
     return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
-def delayed(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Whether a goal ended too late or not at all, though the robot did what the server's own feedback called for."""
-    return failure.kind in (NO_RESULT, SUCCESS_LATE) and misled(record, failure, earlier)
-
-
-EXCEPTION = After("no_exception", raised)
+# A goal ended wrongly in a scenario in which an exception was logged.
+EXCEPTION = After("no_exception", lambda record, failure, _: bool(failure.kind) and logged(record, EXCEPTION_LOGGED))
 AT_FIRST = After("already_there", lambda _record, failure, _earlier: failure.kind == MOVES_FIRST)
 MISLED = After("feedback_angle", misled)
 # What every goal's ending depends on.
 ENDING = (
     EXCEPTION,
-    After("stays_alive", died),
+    After("stays_alive", lambda record, failure, _: failure.kind == NO_RESULT and bool(record.deaths)),
     After("feedback_position", believed),
-    After("feedback_position", delayed),
+    # It ended too late or not at all, though the robot did what the server's own feedback called for.
+    After("feedback_position", lambda *it: it[1].kind in (NO_RESULT, SUCCESS_LATE) and misled(*it)),
     MISLED,
     After("turns_to_goal", stuck),
     After("drives_straight", stuck),

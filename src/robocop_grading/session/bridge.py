@@ -178,13 +178,13 @@ class BridgeRun(Run):
         if self.clicks.get_num_connections():
             self._send_click("odom", 0.5, 0.1)
         self.settle(3.0)
-        self.finish("no_server", up=not self.death_recorded)
+        self.finish("no_server")
 
     def _click(self) -> None:
         """The server is there; a click, then time passes while the goal is active."""
         self.begin("click", 0)
         self._serve()
-        up = self.wait_for(self._server_is_connected, CONNECT_TIMEOUT)
+        self.wait_for(lambda: self.clicks.get_num_connections() > 0 and has_client(self.server), CONNECT_TIMEOUT)
         self.settle(2.0)  # a click that the bridge has kept may come now
         self._finish_goals()
         self.settle(0.5)
@@ -196,7 +196,7 @@ class BridgeRun(Run):
             self.tick()
         self.marks["watching"] = self.stage.now
         self._watch_reports(self.plan.limits.status_span)
-        self.finish("click", up=up and not self.death_recorded, **self.names(graph.action_clients()))
+        self.finish("click", **self.names(graph.action_clients()))
 
     def _watch_reports(self, seconds: float) -> None:
         """Let time pass, and record what is published on topics that appear meanwhile."""
@@ -208,9 +208,6 @@ class BridgeRun(Run):
             subscriber.unregister()
         self.reports.clear()
 
-    def _server_is_connected(self) -> bool:
-        return bool(self.clicks.get_num_connections() > 0 and has_client(self.server))
-
     def _replace(self) -> None:
         """A second click while the first one's goal is active."""
         first = list(self.parts["goals"])
@@ -220,7 +217,7 @@ class BridgeRun(Run):
         self.marks["clicked"] = self.stage.now
         self._send_click("odom", -0.6, 0.9)
         self.settle(2.0)
-        self.finish("replace", up=not self.death_recorded)
+        self.finish("replace")
 
     def _frame(self) -> None:
         """Clicks in other frames, after the robot has moved, where map differs from odom."""
@@ -235,7 +232,7 @@ class BridgeRun(Run):
             self.settle(0.5)
             self._finish_goals()
             self.settle(0.5)
-        self.finish("frame", up=not self.death_recorded)
+        self.finish("frame")
 
     def _no_pending(self) -> None:
         """A click and a second one, whose goals are accepted at once, so that the bridge's timer finds them ACTIVE."""
@@ -249,7 +246,7 @@ class BridgeRun(Run):
         self._send_click("odom", -0.6, 0.9)
         self.settle(1.0)
         self._finish_goals()
-        self.finish("no_pending", up=not self.death_recorded)
+        self.finish("no_pending")
 
 
 def _text(text: str, message: Any) -> str:
