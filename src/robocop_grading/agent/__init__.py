@@ -11,3 +11,22 @@
 It imports nothing but the standard library, so that it runs in any environment that the hand-in was built in. A hand-in
 that deceives it harms only itself: points come from what the grader sees on topics.
 """
+
+import sys
+from typing import Set
+
+SWITCH = 5e-4  # [s] after which a busy loop lets another thread run, such as the one that answers the grader
+
+
+def install(descriptor: int, ports: Set[int]) -> None:
+    """Take over the process's time before anything of the hand-in runs, and start to answer the grader."""
+    from . import channel, clock, files, locks, ros, scheduler, threads
+
+    sys.setswitchinterval(SWITCH)
+    locks.install()
+    clock.install()
+    files.install()
+    threads.register_main()
+    threads.install()
+    ros.install(ports)
+    scheduler.start_new_thread(channel.Channel(descriptor, ports).serve, ())

@@ -19,7 +19,7 @@ def load() -> Any:
     assert spec is not None and spec.loader is not None
     module = sys.modules[NAME] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return importlib.import_module(f"{NAME}.start")
+    return module
 
 
 def run(script: str) -> None:
@@ -38,8 +38,7 @@ def main() -> None:
     descriptor, *ports = map(int, sys.argv[1].split(","))
     os.set_inheritable(descriptor, False)
     del sys.path[0]
-    start = load()
-    start.install(descriptor, set(ports))
+    load().install(descriptor, set(ports))
     sys.path.insert(0, "")
     script, sys.argv = sys.argv[2], sys.argv[2:]
     try:

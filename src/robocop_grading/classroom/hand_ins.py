@@ -138,9 +138,12 @@ def _at_most(source: "IO[bytes]", most: int) -> bytes:
 
 
 def unpack(hand_in: HandIn, folder: Path) -> Path:
-    """Unpack to an empty folder; the path of the hand-in in it."""
+    """Unpack to an empty folder; the path of the hand-in in it. SubmissionError if that is not possible."""
     # Packed by pack(), from checked names. Python 3.14's default would refuse some links and change modes.
     options: Dict[str, Any] = {"filter": "fully_trusted"} if hasattr(tarfile, "data_filter") else {}
-    with tarfile.open(fileobj=io.BytesIO(hand_in.packed)) as archive:
-        archive.extractall(folder, **options)
+    try:
+        with tarfile.open(fileobj=io.BytesIO(hand_in.packed)) as archive:
+            archive.extractall(folder, **options)
+    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
+        raise SubmissionError(f"can't be unpacked: {error}") from error
     return folder / hand_in.name

@@ -3,7 +3,6 @@
 import dataclasses
 import os
 import socket
-import tarfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -68,7 +67,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
             sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
             if task.hand_in.problem:
                 raise SubmissionError(task.hand_in.problem)
-            path = _unpacked(task.hand_in, top / "hand_in")
+            path = unpack(task.hand_in, top / "hand_in")
             submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
             submission = dataclasses.replace(submission, name=name)
             Grader(Runner(task.plan, state, sandbox), scratch=top).grade(submission, folder)
@@ -99,13 +98,6 @@ def _scratch() -> Optional[Path]:
         return Path(get_worker().local_directory)
     except ValueError:  # not a dask worker
         return None
-
-
-def _unpacked(hand_in: HandIn, folder: Path) -> Path:
-    try:
-        return unpack(hand_in, folder)
-    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
-        raise SubmissionError(f"can't be unpacked: {error}") from error
 
 
 def ready(unsafe: bool) -> str:

@@ -7,7 +7,7 @@ there, has to fail whether or not it is watched; one that waits for a subscriber
 
 import os
 from pathlib import Path
-from typing import List, Mapping, Optional, Sequence
+from typing import List, Optional, Sequence
 
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.web.access import SOCKET_VARIABLE
@@ -63,32 +63,24 @@ class Display:
         """Start the programs; they subscribe some time later."""
         self._start(["rosrun", "robot_state_publisher", "robot_state_publisher"], "frames")
         if self.is_page:
-            descriptor, port = self._viewer.page_socket, self._viewer.port
-            arguments = [f"web_port:={port}", "web_frame:=odom", "view_only:=true"]
-            command = ["rosrun", "aro_robocop_goto_as", "robocop_web.py", *arguments]
-            self._start(command, "page", {**os.environ, SOCKET_VARIABLE: str(descriptor)}, [descriptor])
+            arguments = [f"web_port:={self._viewer.port}", "web_frame:=odom", "view_only:=true"]
+            self._start(["rosrun", "aro_robocop_goto_as", "robocop_web.py", *arguments], "page")
             self._guard = Guard(self._processes[-1].pid, memory=PAGE_MEMORY)
         else:
             restarted = f"{self._share}/launch/restart_after_crash"
             self._start([restarted, "rosrun", "rviz", "rviz", "-d", f"{self._share}/rviz/grading_watch.rviz"], "rviz")
 
-    def _start(
-        self,
-        command: Sequence[str],
-        name: str,
-        environment: Optional[Mapping[str, str]] = None,
-        descriptors: Sequence[int] = (),
-    ) -> None:
+    def _start(self, command: Sequence[str], name: str) -> None:
         """Start a node in the probe's session, which the grader ends as a whole."""
         renamed = [f"{old}:={new}" for old, new in RENAMED.items()]
         with open(self._log, "ab") as log:
             process = child.start(
                 [*command, *renamed, f"__ns:={NAMESPACE}", f"__name:={name}"],
-                environment=environment,
+                environment={**os.environ, SOCKET_VARIABLE: str(self._viewer.page_socket)},
                 stdout=log,
                 stderr=log,
                 start_new_session=False,
-                pass_fds=descriptors,
+                pass_fds=self._viewer.descriptors,
             )
         self._processes.append(process)
 
@@ -100,11 +92,10 @@ class Display:
     @property
     def end(self) -> str:
         """How RViz or the page has ended, with the end of the log; empty while it runs."""
-        status = self._processes[-1].poll()
-        if status is None:
+        if self.runs:
             return ""
         lines = self._log.read_text(errors="replace").splitlines()[-LOG_LINES:]
-        return f"{self.name} ended (status {status}): {' | '.join(line.strip() for line in lines)}"
+        return f"{self.name} ended (status {self._processes[-1].poll()}): {' | '.join(map(str.strip, lines))}"
 
     def close(self) -> None:
         """End the programs."""
