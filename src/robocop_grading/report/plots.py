@@ -3,7 +3,7 @@
 import io
 import math
 import re
-from typing import Callable, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Sequence, Tuple
 
 import matplotlib
 import numpy as np
@@ -92,16 +92,13 @@ def over_time(
         axes.plot(times, values, color=colour, label=name, drawstyle="steps-post" if stepped else "default")
     for level in levels:
         axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
-        axes.annotate(
-            f"{level:g}".replace("-", "−"),
-            (1.0, level),
-            xycoords=("axes fraction", "data"),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            color=GREY,
-        )
+        place = {"xycoords": ("axes fraction", "data"), "va": "center"}
+        _label(axes, f"{level:g}".replace("-", "−"), (1.0, level), (3, 0), color=GREY, **place)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=len(curves))
+
+
+def _label(axes: Axes, words: str, at: Tuple[float, float], offset: Tuple[float, float], **style: Any) -> None:
+    axes.annotate(words, at, xytext=offset, textcoords="offset points", **style)
 
 
 def _finish(all_axes: Sequence[Axes], at: Sequence[float]) -> None:
@@ -141,14 +138,7 @@ def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> Non
     for goal in record.goals:
         if _near(goal.x, goal.y):
             axes.add_patch(Circle((goal.x, goal.y), GOAL_RADIUS, fill=False, edgecolor=GREEN, linewidth=1.5))
-            axes.annotate(
-                f"goal {_name(goal)}",
-                (goal.x, goal.y),
-                xytext=(8, 6),
-                textcoords="offset points",
-                color=GREEN,
-                parse_math=False,
-            )
+            _label(axes, f"goal {_name(goal)}", (goal.x, goal.y), (8, 6), color=GREEN, parse_math=False)
     for number, leg in enumerate(_legs(record.samples)):
         colour, name = (BLUE, "robot") if number == 0 else (GREY, "placed elsewhere")
         axes.plot([sample.x for sample in leg], [sample.y for sample in leg], color=colour, label=name if leg else None)
@@ -240,16 +230,8 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
                 linewidth=0,
             )
             if name != "sent":
-                axes.annotate(
-                    name,
-                    (start, row),
-                    xytext=(3, 0),
-                    textcoords="offset points",
-                    va="center",
-                    fontsize=7.5,
-                    color="black" if terminal else "white",
-                    annotation_clip=False,
-                )
+                colour = "black" if terminal else "white"
+                _label(axes, name, (start, row), (3, 0), va="center", fontsize=7.5, color=colour, annotation_clip=False)
     axes.set_yticks(range(len(goals)), [_name(goal) for goal in goals], parse_math=False)
     axes.set_ylim(max(1, len(goals)) - 0.5, -0.5)
     axes.grid(False, axis="y")

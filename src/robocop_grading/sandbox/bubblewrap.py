@@ -79,11 +79,6 @@ class Sandbox:
         place: Sequence[str],
     ) -> List[str]:
         """Command line that starts in a writable folder, for which `place` has bubblewrap's options."""
-        inside = ["--chdir", str(folder), "--", *_restrictions(environment, cpu_time), *command]
-        mounts = [*_mounts("--ro-bind", [*self.reads, *reads]), *place, *SEALED]
-        return [*self._isolation([*reads, folder]), *mounts, *inside]
-
-    def _isolation(self, visible: Sequence[Path]) -> List[str]:
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
         wrap += ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
         if os.geteuid() == 0:
@@ -91,11 +86,12 @@ class Sandbox:
             wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
         # Shared memory made from /dev/zero belongs to nobody, see syscall_filter.py; /dev/full can be read likewise.
         wrap += ["--proc", "/proc", "--dev", "/dev", "--dev-bind", "/dev/full", "/dev/zero"]
-        for place in ("/tmp", "/dev/shm"):
-            wrap += _writable(place)
-        for parent in _parents([*map(Path, SYSTEM), *self.reads, *visible]):
+        wrap += [*_writable("/tmp"), *_writable("/dev/shm")]
+        for parent in _parents([*map(Path, SYSTEM), *self.reads, *reads, folder]):
             wrap += ["--perms", "0755", "--dir", str(parent)]
-        return [*wrap, *_mounts("--ro-bind-try", map(Path, SYSTEM))]
+        wrap += [*_mounts("--ro-bind-try", map(Path, SYSTEM)), *_mounts("--ro-bind", [*self.reads, *reads])]
+        wrap += [*place, *SEALED, "--chdir", str(folder), "--"]
+        return [*wrap, *_restrictions(environment, cpu_time), *command]
 
 
 def expect_private(path: Path) -> None:
