@@ -212,8 +212,7 @@ def _reason(name: str, failed: Mapping[str, Tuple[Failed, str]], records: Mappin
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
     """A check fails if it fails in one scenario, and passes if it passes in at least one."""
-    judged, retried = CHECKS[check.name], CHECKS[check.name].retried
-    contract = judged.contract
+    judged, contract = CHECKS[check.name], CHECKS[check.name].contract
     result = CheckResult(check.name, check.part, contract, Outcome.NOT_REACHED, 0.0, check.points, check.extra)
     for name in check.scenarios:
         verdict: Verdict = NotReached(NOT_STARTED)
@@ -223,9 +222,9 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         elif problem:
             verdict = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
         if isinstance(verdict, Failed):
-            if retried is not None and retried.scenario in records and name in records:
-                if retried.when(verdict, records[retried.scenario], plan.limits):
-                    verdict = replace(verdict, cause=text(retried.cause))
+            retried, again = judged.retried, records.get(judged.retried.scenario) if judged.retried else None
+            if retried and again and name in records and retried.when(verdict, again, plan.limits):
+                verdict = replace(verdict, cause=text(retried.cause))
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
         if isinstance(verdict, Passed):
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")

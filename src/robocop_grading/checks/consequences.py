@@ -30,7 +30,7 @@ def logged_cause(record: Record) -> str:
     """What the log says about why a goal ended wrongly; empty if it says nothing."""
     if logged(record, EXCEPTION_LOGGED):
         return text("The goal's callback raised an exception: {}", last_error(record))
-    return text("no_terminal_state" if logged(record, NO_STATE_LOGGED) else "")
+    return text("no_terminal_state") if logged(record, NO_STATE_LOGGED) else ""
 
 
 def silent(record: Record, goal: Goal) -> bool:
@@ -85,6 +85,11 @@ def _fits(own: Feedback, v: float, w: float) -> bool:
     return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
+def delayed(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Whether a goal ended too late or not at all, though the robot did what the server's own feedback called for."""
+    return failure.kind in (NO_RESULT, SUCCESS_LATE) and misled(record, failure, earlier)
+
+
 # A goal ended wrongly in a scenario in which an exception was logged.
 EXCEPTION = After("no_exception", lambda record, failure, _: bool(failure.kind) and logged(record, EXCEPTION_LOGGED))
 AT_FIRST = After("already_there", lambda _record, failure, _earlier: failure.kind == MOVES_FIRST)
@@ -94,8 +99,7 @@ ENDING = (
     EXCEPTION,
     After("stays_alive", lambda record, failure, _: failure.kind == NO_RESULT and bool(record.deaths)),
     After("feedback_position", believed),
-    # It ended too late or not at all, though the robot did what the server's own feedback called for.
-    After("feedback_position", lambda *it: it[1].kind in (NO_RESULT, SUCCESS_LATE) and misled(*it)),
+    After("feedback_position", delayed),
     MISLED,
     After("turns_to_goal", stuck),
     After("drives_straight", stuck),
