@@ -17,8 +17,9 @@ _EXTENSIONS = (".sdf", ".world", *_MAP_EXTENSIONS)
 
 # The grammar of Stage's worldfiles (player-stage-manual.readthedocs.io): properties and blocks instead of XML.
 _STAGE = re.compile(
-    rb"\A(?!(\xef\xbb\xbf)?\s*<)(?s:.*?)^[ \t]*"
-    rb"(define\s+\w+\s+\w+|include\s+\"|(floorplan|window|model|position)\s*\()",
+    rb"\A(?!(\xef\xbb\xbf)?\s*<)(?s:.*?)(\A\xef\xbb\xbf|^)[ \t]*"
+    rb"(define\s+\w+\s+\w+|include\s+\"|(floorplan|window|model|position|ranger)\s*\(|\w+\s*\(\s*\w+\s+[\"\[\d]|"
+    rb"(interval_(sim|real)|paused|quit_?time|resolution|show_clock(_interval)?|speedup|threads)\s+[\d.-])",
     re.M,
 )
 _HEAD = 1 << 16  # bytes in which that is looked for

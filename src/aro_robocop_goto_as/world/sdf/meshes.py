@@ -50,6 +50,8 @@ def _read_collada(content: bytes, path: str) -> np.ndarray:
         for part in geometry.original.primitives:
             faces = part.triangleset() if isinstance(part, polylist.Polylist) else part
             if isinstance(faces, triangleset.TriangleSet) and faces.vertex is not None:
+                if (faces.vertex_index < 0).any():  # numpy would count from the end
+                    raise WorldError(f"{path}: a triangle has a vertex below 0, expected 0 or more")
                 triangles.append(faces.vertex[faces.vertex_index] @ turn.T + shift)
     return np.concatenate(triangles) * unit
 

@@ -68,7 +68,8 @@ def locate(uri: str, file: str) -> str:
 def locate_model(uri: str, file: str) -> str:
     """The SDF file of a model: the file that locate finds, or the SDF file in the directory that it finds.
 
-    In a directory, model.config names the file; the newest supported SDF version is preferred. Default: model.sdf.
+    In a directory, model.config names the file; the newest supported SDF version is preferred. Default: model.sdf, also
+    where model.config can't be read.
     """
     location = locate(uri, file)
     if os.path.isfile(location):
@@ -82,13 +83,13 @@ def locate_model(uri: str, file: str) -> str:
 
 def _sdf_name(path: str) -> str:
     """The name of the SDF file that a model.config lists for the newest supported version."""
-    listed = [
-        entry
-        for entry in xml.parse(path, lenient=True).iterchildren("sdf")
-        if entry.get("version", "1.4") in xml.VERSIONS
-    ]
+    try:
+        entries = xml.parse(path, lenient=True).findall("sdf")
+    except WorldError:  # only this name is needed of the file, so its errors are no errors of the world
+        return _DEFAULT
+    listed = [entry for entry in entries if entry.get("version", "1.4") in xml.VERSIONS]
     newest = max(listed, key=lambda entry: str(entry.get("version", "")), default=None)
-    return _DEFAULT if newest is None else xml.text_of(newest)
+    return (_DEFAULT if newest is None else xml.text_of(newest)) or _DEFAULT
 
 
 def _from_variable(variable: str, path: str) -> Iterator[Candidate]:

@@ -5,6 +5,7 @@ end of the file rather than from the face, and lines that are indented or separa
 index 0 as the last vertex, refuses comments after a face and bytes that are not UTF-8, and its errors name no line.
 """
 
+import codecs
 import re
 from typing import List, Tuple
 
@@ -42,6 +43,8 @@ def _lines(content: bytes) -> List[Tuple[int, bytes]]:
     """The file's lines with their numbers, without comments; a backslash at the end continues a line."""
     lines: List[Tuple[int, bytes]] = []
     continued = False
+    if content.startswith(codecs.BOM_UTF8):
+        content = content[len(codecs.BOM_UTF8) :]
     for number, line in enumerate(content.splitlines(), 1):
         line = line.partition(b"#")[0].rstrip()
         if continued:
