@@ -62,7 +62,7 @@ class GoalServer(actionlib.ActionServer):
 
     def internal_cancel_callback(self, goal_id: Any) -> None:
         """Queue a cancel; a callback."""
-        self._arrived.append(partial(super().internal_cancel_callback, goal_id))
+        self._arrived.append(partial(self._take_cancel, goal_id))
 
     def has_request(self) -> bool:
         """Whether there is something to receive, or a goal to accept."""
@@ -91,6 +91,16 @@ class GoalServer(actionlib.ActionServer):
         if self.last_cancel > rospy.get_rostime():
             self.last_cancel = rospy.Time()
         super().internal_goal_callback(goal)
+
+    def _take_cancel(self, goal_id: Any) -> None:
+        # Of ended goals, and of cancels whose goal has not come, there is nothing to cancel. actionlib would log an
+        # error for each of the latter, at each cancel of all goals: a flood of cancels took minutes.
+        known = self.status_list
+        unfinished = [tracker for tracker in known if tracker.status.status in UNFINISHED]
+        is_new = all(tracker.status.goal_id.id != goal_id.id for tracker in known)
+        self.status_list = list(unfinished)
+        super().internal_cancel_callback(goal_id)
+        self.status_list = known + (self.status_list[len(unfinished) :] if is_new else [])
 
     def _forget_oldest(self) -> None:
         if len(self.status_list) > 2 * ENDED_KEPT:

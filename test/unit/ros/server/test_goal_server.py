@@ -3,12 +3,14 @@
 import socket
 from typing import Callable
 
+import pytest
 import rospy
-from aro_robocop_goto_as.msg import GoToPositionActionResult
+from actionlib_msgs.msg import GoalID
+from aro_robocop_goto_as.msg import GoToPositionActionResult, GoToPositionResult
 from subscriber_links import Link
 
 from aro_robocop_goto_as.ros.rospy_internals import lengthen_queue
-from aro_robocop_goto_as.ros.server.goal_server import RESULTS_KEPT
+from aro_robocop_goto_as.ros.server.goal_server import ENDED_KEPT, RESULTS_KEPT, GoalServer
 
 
 def test_subscriber_that_falls_behind_gets_the_result_of_every_goal(connect: Callable[..., Link]) -> None:
@@ -33,3 +35,23 @@ def test_subscriber_that_falls_behind_gets_the_result_of_every_goal(connect: Cal
             assert missing == []
     finally:
         results.unregister()
+
+
+def test_cancels_of_goals_that_have_not_come_are_kept_and_left_alone_by_a_cancel_of_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    errors = []
+    monkeypatch.setattr(rospy, "logerr", lambda *text: errors.append(text))
+    monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(1))
+    server = GoalServer(GoToPositionResult())
+    server.started = True
+    monkeypatch.setattr(server, "publish_status", lambda: None)
+    for number in range(ENDED_KEPT):
+        server.internal_cancel_callback(GoalID(rospy.Time(), f"unknown {number}"))
+        server.internal_cancel_callback(GoalID())
+        server.internal_cancel_callback(GoalID(rospy.Time(2), f"unknown {number}"))
+    server.receive()
+    assert [tracker.status.goal_id.id for tracker in server.status_list] == [
+        f"unknown {number}" for number in range(ENDED_KEPT)
+    ]
+    assert errors == []
