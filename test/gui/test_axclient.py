@@ -68,7 +68,7 @@ def test_goal_sent_from_axclient_is_reached(tmp_path):
         assert result["result"]["success"] is True
         assert result["result"]["message"].startswith("REACHED")
         assert "/axclient" in result["status"]["goal_id"]["id"]
-        assert "goal accepted: x {:.2f} y {:.2f}".format(*GOAL) in (tmp_path / "roslaunch.log").read_text()
+        assert "goal accepted: x {:.2f} y {:.2f} in odom".format(*GOAL) in (tmp_path / "roslaunch.log").read_text()
         robot = ros.latest("/odom")["pose"]["pose"]["position"]
         assert math.hypot(robot["x"] - GOAL[0], robot["y"] - GOAL[1]) < TOLERANCE
         wait_for(lambda: rows(desktop.pixels(window), GOAL_SUCCEEDED), "axclient shows that the goal succeeded")

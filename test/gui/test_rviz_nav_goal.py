@@ -11,7 +11,7 @@ SUCCEEDED = 3  # actionlib_msgs/GoalStatus
 TOLERANCE = 0.1  # [m] config/goto_as.yaml, position_tolerance
 ODOMETRY_ERROR = 0.02  # [m] of wheel encoders on the 0.7 m to the goal
 SIMULATOR, SERVER, BRIDGE = "/robocop_sim", "/aro_robocop_goto_as_node", "/robocop_rviz_goto_ac_node"
-SEEN = [(SIMULATOR, topic) for topic in ("/tf", "/tf_static", "/scan", "/odom", "/robocop_sim/world")] + [
+SEEN = [(SIMULATOR, topic) for topic in ("/tf", "/tf_static", "/scan", "/robocop_sim/world")] + [
     (SERVER, "/aro_robocop_goto_as_node/markers")
 ]  # the topics that RViz displays, with their publishers
 

@@ -39,6 +39,7 @@ ORDER = {
     "compiled": "errors",
     "param_loading": "errors suggestions",
     "reading": "errors",
+    "trail": "geometry",
     "goto_params": "param_loading",
     "params": "goto_params param_loading robot.model_names sensors.camera sensors.scan_profiles",
     "process": "errors",
@@ -54,9 +55,9 @@ ORDER = {
     "ros": "compiled errors geometry param_loading params process robot ros.names sensors sensors.scan_profiles "
     "simulation world",
     "ros.sim": "errors geometry params robot ros ros.names sensors sensors.camera simulation world",
-    "ros.server": "errors geometry goto goto_params params ros ros.names simulation",
+    "ros.server": "errors geometry goto goto_params params ros ros.names simulation trail",
     "ros.client": "errors geometry params ros ros.names suggestions",
-    "ros.web": "bootstrap errors geometry param_loading params ros ros.client ros.names web",
+    "ros.web": "bootstrap errors geometry param_loading params ros ros.client ros.names trail web",
     "ros.cli": "bootstrap errors geometry limits param_loading params process robot.model_names ros ros.client "
     "ros.names suggestions web world",
     "bench": "compiled errors geometry param_loading params process ros ros.sim simulation",

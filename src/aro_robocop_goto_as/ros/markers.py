@@ -1,17 +1,21 @@
 """Building blocks for RViz markers."""
 
 import math
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
 import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
+from ..geometry import Vector3
+
 TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 TEXT_SIZE, TEXT_HEIGHT = 0.14, 0.9  # [m] of a capital letter; above the floor, so that it stands beside the robot
 ROBOT_COLOR = ColorRGBA(0.35, 0.78, 0.98, 1.0)
 GOAL_COLOR = ColorRGBA(0.9, 0.2, 0.7, 0.9)
+REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
+TRAIL_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.8)
 LINE_WIDTH = 0.02  # [m]
 RING_RADIUS, RING_WIDTH = 0.25, 0.03  # [m] around the largest of the robots, a waffle
 SEGMENTS = 24  # of an arc; enough to look round
@@ -46,6 +50,20 @@ def robot_ring(frame: str) -> Marker:
     ring = circle("robot_ring", RING_RADIUS, 0.0, 0.0, frame, ROBOT_COLOR)
     ring.scale.x = RING_WIDTH
     return ring
+
+
+def trail(points: Sequence[Vector3], frame: str) -> Marker:
+    """The line [m] along which a robot has driven; without points, the one that was drawn before is removed."""
+    made = marker("trail", Marker.LINE_STRIP, frame, TRAIL_COLOR)
+    made.action = Marker.ADD if len(points) > 1 else Marker.DELETE
+    made.scale.x = LINE_WIDTH
+    made.points = [Point(*point) for point in points]
+    return made
+
+
+def goal_color(is_unfinished: bool, is_reached: bool) -> ColorRGBA:
+    """Green when the goal was reached, grey when it ended otherwise."""
+    return GOAL_COLOR if is_unfinished else REACHED if is_reached else NOT_REACHED
 
 
 def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GOAL_COLOR) -> Tuple[Marker, Marker]:

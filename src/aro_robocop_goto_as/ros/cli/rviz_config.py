@@ -59,7 +59,7 @@ def adapted(seen: Observed) -> str:
     # A robot that has a name is one of the world's markers.
     shown = {"Map": "/map" in seen.topics, "Robot": seen.description and not seen.robot}
     if not seen.odom_tf:  # either the world or the robot can be shown, and not what is between them
-        hidden = ("Robot", "Scan") if in_world else ("World", "Trail", "Map", "Frame map")
+        hidden = ("Robot", "Scan") if in_world else ("World", "Map", "Frame map")
         shown.update(dict.fromkeys(hidden, False))
     for name, is_shown in shown.items():
         displays[name]["Enabled"] = is_shown

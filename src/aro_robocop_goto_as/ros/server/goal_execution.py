@@ -89,7 +89,7 @@ class GoalExecution:
         self, p: GotoParams, decision: Decision, clearance: float, elapsed: float, idle: float
     ) -> Optional[Ending]:
         """The ending that follows from this decision, the time without progress or the time since the start."""
-        where = f"{decision.errors.position:.3f} m from the {self._place()} after {elapsed:.1f} s"
+        where = f"{decision.errors.position:.3f} m from the goal {self.where()} after {elapsed:.1f} s"
         if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)
         if isinstance(decision, End):
@@ -104,11 +104,12 @@ class GoalExecution:
     def stopped_early(self, outcome: Outcome, reason: str) -> Ending:
         """The ending of a goal that a client or a shutdown stops."""
         elapsed = 0.0 if self._started is None else max(0.0, rospy.get_rostime().to_sec() - self._started)
-        return Ending(outcome, f"{self._place()} stopped after {elapsed:.1f} s: {reason}")
+        return Ending(outcome, f"goal {self.where()} stopped after {elapsed:.1f} s: {reason}")
 
-    def _place(self) -> str:
+    def where(self) -> str:
+        """The goal's position in words, with its frame, the one of odometry, once that is known."""
         x, y, odom = self.goal.x, self.goal.y, self._inputs.odom
-        return "goal " + (f"x {x:.2f} y {y:.2f}" if odom is None else place(x, y, odom.message.header.frame_id))
+        return f"x {x:.2f} y {y:.2f}" if odom is None else place(x, y, odom.message.header.frame_id)
 
 
 def describe(decision: Decision) -> str:

@@ -17,6 +17,7 @@ from ...errors import RobocopError
 from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...goto_params import GotoParams
+from ...trail import Trail
 from .. import convert, param_server
 from ..names import SERVER
 from ..node_main import node
@@ -49,7 +50,7 @@ class GotoNode:
         self.execution: Optional[GoalExecution] = None  # of the current goal
         self.newest: Optional[GoalExecution] = None  # for RViz, in which it stays until the next one
         self.command: Optional[Twist2D] = None  # published since the last answer to a lockstep simulator
-        self.state = "idle"  # for RViz
+        self.state, self.trail = "idle", Trail()  # for RViz
         self.stopping = threading.Event()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
@@ -120,7 +121,7 @@ class GotoNode:
             self._end(refusal)
             return
         self.execution = self.newest = execution
-        rospy.loginfo("goal accepted: x %.2f y %.2f", execution.goal.x, execution.goal.y)
+        rospy.loginfo("goal accepted: %s", execution.where())
         if execution.z != 0.0:
             rospy.loginfo_once("ignoring goal z = %g m", execution.z)
 
@@ -191,11 +192,15 @@ class GotoNode:
             time.sleep(SEND_TIME)
 
     def _publish_markers(self) -> None:
+        odom = self.inputs.odom
+        if odom is not None:
+            position = odom.message.pose.pose.position
+            self.trail.add(odom.stamp_ns / 1e9, position.x, position.y)
         if not self.markers.get_num_connections():
             return
         robot = rospy.get_namespace().strip("/")
         state = f"{robot}: {self.state}" if robot else self.state  # its text may stand beside another robot
-        self.markers.publish(server_markers(self.tuning.params, self.inputs, self.newest, state))
+        self.markers.publish(server_markers(self.tuning.params, self.inputs, self.newest, state, self.trail.points))
 
 
 def main() -> None:

@@ -1,12 +1,13 @@
-"""Server state -> RViz markers: the newest goal and its tolerance, the safety cone, the robot with its state."""
+"""Server state -> RViz markers: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
 
 import textwrap
-from typing import Optional
+from typing import Optional, Sequence
 
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ...geometry import Vector3
 from ...goto import Outcome
 from ...goto_params import GotoParams
 from .. import markers
@@ -15,7 +16,6 @@ from .inputs import Inputs
 
 FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
-REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
 TEXT_WIDTH = 26  # characters per line
 NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the obstacle distance
 
@@ -40,15 +40,10 @@ def _safety_cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marke
     return cone
 
 
-def _goal_color(outcome: Optional[Outcome]) -> ColorRGBA:
-    """Green when the goal was reached, grey when it ended otherwise."""
-    if outcome is None:
-        return markers.GOAL_COLOR
-    return REACHED if outcome is Outcome.REACHED else NOT_REACHED
-
-
-def server_markers(p: GotoParams, inputs: Inputs, newest: Optional[GoalExecution], state: str) -> MarkerArray:
-    """All of the server's markers; without a goal until the first one."""
+def server_markers(
+    p: GotoParams, inputs: Inputs, newest: Optional[GoalExecution], state: str, trail: Sequence[Vector3]
+) -> MarkerArray:
+    """All of the server's markers; without a goal until the first one. The trail is in odom [m]."""
     made, scan, odom = [], inputs.scan, inputs.odom
     if scan is not None and scan.message.header.frame_id:
         made.append(_safety_cone(p, inputs.clearance(), scan.message.header.frame_id))
@@ -56,7 +51,9 @@ def server_markers(p: GotoParams, inputs: Inputs, newest: Optional[GoalExecution
         base, frame = odom.message.child_frame_id, odom.message.header.frame_id
         made.append(markers.robot_ring(base))
         made.append(markers.text("state", textwrap.fill(state.partition(";")[0], TEXT_WIDTH), base))
+        made.append(markers.trail(trail, frame))
         if newest is not None:
-            x, y, color = newest.goal.x, newest.goal.y, _goal_color(newest.outcome)
+            color = markers.goal_color(newest.outcome is None, newest.outcome is Outcome.REACHED)
+            x, y = newest.goal.x, newest.goal.y
             made += markers.goal(p.position_tolerance, x, y, frame, color)
     return MarkerArray(made)

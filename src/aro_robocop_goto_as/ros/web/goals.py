@@ -3,8 +3,9 @@
 import time
 from typing import Any, List, Optional, Set, Tuple
 
-from actionlib_msgs.msg import GoalID, GoalStatusArray
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from aro_robocop_goto_as.srv import SetPose
@@ -14,17 +15,19 @@ from ...web.elements import Html, add_button
 from ...web.goal_history import Ended, GoalHistory
 from ...web.pick import floor_point
 from ...web.state import PageState
-from .. import convert
-from ..client.sent_goal import STATES
+from .. import convert, markers, names
+from ..client.sent_goal import STATES, UNFINISHED
 from ..covariances import diagonal
 from ..names import ACTION, absolute
 from .inbox import Inbox
+from .marker_shapes import MarkerStore
 from .part import Context, Part
 from .requests import Requests
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
 POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.5 m and 15 degrees, squared
 FEEDBACK_AGE = 1.0  # [s, wall] after which a goal without feedback counts as ended
+TOLERANCE = 0.1  # [m] at which the handout counts a goal as reached
 STATUS_AGE = 3.0  # [s, wall] without a server's status, sent five times a second, after which it counts as gone
 
 
@@ -43,7 +46,8 @@ class Goals(Part):
         self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
         add_button(gui, "Cancel goal", "x", lambda: cancel(context.requests), live)
         self._history_html: Optional[Html] = None
-        self._status: Optional[Tuple[float, GoalStatusArray]] = None  # when it was received [s, wall], and the message
+        self._answered: Optional[float] = None  # [s, wall] when the server's status was received
+        self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
         self._history = GoalHistory()
         self._results = Inbox()
@@ -65,7 +69,7 @@ class Goals(Part):
         pose.header.frame_id = frame  # with time zero, which means the newest transforms
         pose.pose.position.x, pose.pose.position.y = point
         pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)
-        where = f"({point[0]:.2f}, {point[1]:.2f}) in {frame}"
+        where = names.place(*point, frame)
         if not place:  # a 2D Nav Goal, which the bridge makes a goal of
             requests.publish(f"goal {where}", "move_base_simple/goal", pose, ": is the bridge running?")
         elif state.simulated:
@@ -78,7 +82,7 @@ class Goals(Part):
             requests.publish(f"pose {where}", "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._feedback = self._status = None
+        self._feedback = self._answered = self._newest = None
         inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
 
@@ -94,7 +98,8 @@ class Goals(Part):
         self._feedback = (at, message.feedback)
 
     def _on_status(self, at: float, message: GoalStatusArray) -> None:
-        self._status = (at, message)
+        self._answered = at
+        self._newest = max(message.status_list, key=lambda entry: entry.goal_id.stamp, default=self._newest)
 
     def _on_goal(self, _: float, message: GoToPositionActionGoal) -> None:
         self._history.sent(message.goal_id.id, message.goal.position.x, message.goal.position.y)
@@ -110,9 +115,10 @@ class Goals(Part):
         self._results.deliver()
         if self._feedback is not None and time.monotonic() - self._feedback[0] >= FEEDBACK_AGE:
             self._feedback = None
-        if self._status is not None and time.monotonic() - self._status[0] >= STATUS_AGE and not state.recorded:
-            self._status = None
-        self.context.state.change(executing=self._feedback is not None, answering=self._status is not None)
+        if self._answered is not None and time.monotonic() - self._answered >= STATUS_AGE and not state.recorded:
+            self._answered = self._newest = None
+        self.context.state.change(executing=self._feedback is not None, answering=self._answered is not None)
+        self._draw_goal(state.selected)
         rows = self._goal_rows(state.selected)
         if self._feedback is not None:
             feedback = self._feedback[1]
@@ -125,13 +131,20 @@ class Goals(Part):
 
     def _goal_rows(self, robot: str) -> List[Tuple[str, str]]:
         """The newest goal's state, as actionlib names it, and its position."""
-        known = self._status[1].status_list if self._status is not None else ()
-        if not known:
+        if self._newest is None:
             return []
-        newest = max(known, key=lambda entry: entry.goal_id.stamp)
-        goal = self._history.position(newest.goal_id.id)
+        goal = self._history.position(self._newest.goal_id.id)
         where = "" if goal is None else f" {self.context.place(robot, *goal)}"
-        return [("goal", f"{STATES.get(newest.status, '')}{where}")]
+        return [("goal", f"{STATES.get(self._newest.status, '')}{where}")]
+
+    def _draw_goal(self, robot: str) -> None:
+        """Draw the newest goal, unless the server publishes markers, as this package's does with its own tolerance."""
+        drawn, newest = MarkerStore(), self._newest
+        goal = None if newest is None else self._history.position(newest.goal_id.id)
+        if newest is not None and goal is not None and not self.context.scene.draws("server"):
+            color = markers.goal_color(STATES.get(newest.status) in UNFINISHED, newest.status == GoalStatus.SUCCEEDED)
+            drawn.apply(MarkerArray(markers.goal(TOLERANCE, *goal, self.context.frame_of(robot, "odom"), color)))
+        self.context.scene.show("goal", drawn.placed(self.context.locate))
 
     def _ended(self, ended: Ended, several: bool) -> Tuple[bool, str]:
         goal = "goal" if ended.goal is None else self.context.place(ended.robot, *ended.goal)
@@ -140,4 +153,4 @@ class Goals(Part):
 
     def forget(self) -> None:
         self._results.clear()
-        self._history, self._feedback, self._status = GoalHistory(), None, None
+        self._history, self._feedback, self._answered, self._newest = GoalHistory(), None, None, None

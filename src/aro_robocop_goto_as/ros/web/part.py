@@ -7,6 +7,7 @@ from ...geometry import Pose3D, compose3
 from ...web.frames import FrameTree
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
+from .. import names
 from .inbox import Inbox
 from .requests import Requests
 
@@ -31,9 +32,9 @@ class Context:
         odom = self.frame_of(robot, "odom")
         fixed_from_odom = self.frames.lookup(self.fixed_frame, odom)
         if fixed_from_odom is None:
-            return f"({x:.2f}, {y:.2f}) in {odom}"
+            return names.place(x, y, odom)
         x, y, _ = compose3(fixed_from_odom, Pose3D((x, y, 0.0))).position
-        return f"({x:.2f}, {y:.2f}) in {self.fixed_frame}"
+        return names.place(x, y, self.fixed_frame)
 
     def frame_of(self, robot: str, link: str) -> str:
         """A link's frame, which has the robot's name as a prefix if there are several robots."""

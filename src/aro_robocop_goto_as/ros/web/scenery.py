@@ -17,6 +17,7 @@ from .marker_shapes import MarkerStore, to_pose
 from .part import Context, Part
 
 DRAWN_BY_MODEL = ("robots", "noses")  # markers of the simulator that stand for robots whose model is drawn
+DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
 SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
 
@@ -54,7 +55,7 @@ class Scenery(Part):
     def show(self, state: PageState) -> None:
         scene, locate = self.context.scene, self.context.locate
         scene.show("world", self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ()))
-        scene.show("server", self._server.placed(locate))
+        scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
         pose = None if self._scan is None else locate(self._scan.header.frame_id)
         if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was received
             rows: Any = scan_points(self._scan).tolist()

@@ -6,10 +6,11 @@ from dataclasses import replace
 from typing import Optional
 
 import numpy as np
+from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
 from ...geometry import Pose3D, Vector3
-from ...web import trail
+from ...trail import Trail
 from ...web.elements import set_visible
 from ...web.page import set_theme
 from ...web.shapes import FRAME, LINE, Group, Shape
@@ -21,7 +22,7 @@ from .part import Context, Part
 
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
-TRAIL = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
+TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 CROWDED = 0.06  # [m] between two frames; nearer ones hide each other's names
 STILL = 0.005  # [m] that the robot may move before the cameras follow
 
@@ -34,40 +35,43 @@ class View(Part):
         gui, state = context.server.gui, context.state.now
         self._follow = gui.add_checkbox("Follow the robot", False)
         self._frames = gui.add_checkbox("Frames", False)
-        self._trail = gui.add_checkbox("Trail", state.live or state.recorded)
+        self._with_trail = gui.add_checkbox("Trail", state.live or state.recorded)
         self._dark = gui.add_checkbox("Dark colours", False)
         self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
         self._dark.on_update(lambda _: set_theme(context.server, self._dark.value))
         set_theme(context.server, self._dark.value)
         self._message: Optional[Image] = None  # that is not shown yet
         self._image_at = 0.0  # [s, wall]
-        self._points: trail.Trail = ()
-        self._of = ("", "")  # robot and frame of the trail
+        self._trail, self._odom = Trail(), ""  # and its frame
         self._followed: Optional[Vector3] = None
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        self.forget()
         self._message = None
         set_visible(self._image, False)
+        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
         inbox.subscribe(absolute(robot, CAMERA), Image, self._on_image)
+
+    def _on_odometry(self, _: float, message: Odometry) -> None:
+        position = message.pose.pose.position
+        self._odom = message.header.frame_id
+        self._trail.add(message.header.stamp.to_sec(), position.x, position.y)
 
     def _on_image(self, _: float, message: Image) -> None:
         self._message = message
 
     def show(self, state: PageState) -> None:
-        self._show_trail(state)
+        self._show_trail()
         self._show_frames()
         self._show_image()
         self._move_cameras(state.pose)
 
-    def _show_trail(self, state: PageState) -> None:
-        of = (state.selected, state.root)
-        if of != self._of or not self._trail.value:
-            self._of = of
-            self.forget()
-        elif state.pose is not None:
-            self._points = trail.extended(self._points, *state.pose.position[:2])
-        line = replace(TRAIL, points=self._points)
-        self.context.scene.show("trail", {"trail": (line, Pose3D())} if len(self._points) > 1 else {})
+    def _show_trail(self) -> None:
+        group: Group = {}
+        points, pose = self._trail.points, self.context.locate(self._odom)
+        if self._with_trail.value and len(points) > 1 and pose is not None:
+            group["trail"] = (replace(TRAIL_LINE, points=points), pose)
+        self.context.scene.show("trail", group)
 
     def _show_frames(self) -> None:
         group: Group = {}
@@ -102,4 +106,4 @@ class View(Part):
                     client.camera.position = client.camera.position + moved
 
     def forget(self) -> None:
-        self._points = ()
+        self._trail = Trail()

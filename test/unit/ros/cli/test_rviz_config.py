@@ -74,14 +74,14 @@ def test_file_that_is_opened_by_hand_shows_a_room_and_no_image():
 def test_map_and_image_are_ticked_only_if_they_are_published():
     assert {"Map", "Image"}.isdisjoint(displays())
     shown = displays(topics={"/map": "nav_msgs/OccupancyGrid", **CAMERA})
-    assert {"Map", "Image", "World", "Robot", "Scan", "Trail", "Server"} < set(shown)
+    assert {"Map", "Image", "World", "Robot", "Scan", "Server"} < set(shown)
     assert shown["Image"]["Image Topic"] == "camera/rgb/image_raw"
 
 
 def test_robot_with_a_name_is_a_marker_and_its_topics_are_in_the_namespace_where_rviz_runs():
     shown = displays(robot="red", obstacles=np.zeros((0, 2)))
     assert "Robot" not in shown and "Robot" not in displays(description=False)
-    assert [shown["Scan"]["Topic"], shown["Trail"]["Topic"]] == ["scan", "odom"]
+    assert shown["Scan"]["Topic"] == "scan"
     assert shown["Frame red/odom"]["Reference Frame"] == "red/odom"
     tools = config(robot="red")["Visualization Manager"]["Tools"]
     assert [tool["Topic"] for tool in tools if "Topic" in tool] == ["initialpose", "move_base_simple/goal"]
@@ -92,7 +92,7 @@ def test_without_the_transform_between_them_either_the_world_or_the_robot_is_sho
     assert "World" in world and {"Robot", "Scan"}.isdisjoint(world)
     robot = displays(odom_tf=False, frame="base_footprint")
     assert {"Robot", "Scan", "Frame base_footprint"} < set(robot)
-    assert {"World", "Trail", "Frame map", "Frame odom"}.isdisjoint(robot)
+    assert {"World", "Frame map", "Frame odom"}.isdisjoint(robot)
 
 
 def test_camera_is_fitted_to_the_world_in_frames_that_do_not_move_with_the_robot():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
+from visualization_msgs.msg import Marker
 
 from aro_robocop_goto_as.goto import Goal, Outcome
 from aro_robocop_goto_as.params import GotoParams
@@ -13,8 +14,6 @@ from aro_robocop_goto_as.ros.server.server_markers import (
     BLOCKED,
     FREE,
     NEAR,
-    NOT_REACHED,
-    REACHED,
     UNKNOWN,
     cone_color,
     server_markers,
@@ -25,18 +24,18 @@ ODOM.header.frame_id, SCAN.header.frame_id = "odom", "base_scan"
 INPUTS = SimpleNamespace(odom=SimpleNamespace(message=ODOM), scan=SimpleNamespace(message=SCAN), clearance=lambda: 1.0)
 
 
-def shown(goal):
+def shown(goal, trail=()):
     """The markers by namespace."""
-    return {marker.ns: marker for marker in server_markers(GotoParams(), INPUTS, goal, "idle").markers}
+    return {marker.ns: marker for marker in server_markers(GotoParams(), INPUTS, goal, "idle", trail).markers}
 
 
 def test_there_is_no_goal_before_the_first_one():
-    assert set(shown(None)) == {"safety_cone", "robot_ring", "state"}
+    assert set(shown(None)) == {"safety_cone", "robot_ring", "state", "trail"}
 
 
 @pytest.mark.parametrize(
     "outcome, color",
-    [(None, markers.GOAL_COLOR), (Outcome.REACHED, REACHED), (Outcome.OBSTACLE, NOT_REACHED)],
+    [(None, markers.GOAL_COLOR), (Outcome.REACHED, markers.REACHED), (Outcome.OBSTACLE, markers.NOT_REACHED)],
 )
 def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
     made = shown(SimpleNamespace(goal=Goal(1.0, -2.0), outcome=outcome))
@@ -49,3 +48,9 @@ def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
 @pytest.mark.parametrize("clearance, color", [(None, UNKNOWN), (0.29, BLOCKED), (0.31, NEAR), (0.61, FREE)])
 def test_sector_ahead_says_by_its_colour_how_near_an_obstacle_is(clearance, color):
     assert cone_color(clearance, 0.3) == color
+
+
+def test_trail_is_a_line_in_odom_which_is_removed_when_it_starts_again():
+    line = shown(None, ((0.0, 0.0, 0.01), (0.1, 0.0, 0.01)))["trail"]
+    assert (line.action, line.header.frame_id, line.points[1].x) == (Marker.ADD, "odom", 0.1)
+    assert shown(None, ((0.0, 0.0, 0.01),))["trail"].action == Marker.DELETE

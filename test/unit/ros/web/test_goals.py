@@ -7,6 +7,7 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 
 from aro_robocop_goto_as.geometry import Pose2D, lifted
+from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web import goals
 from aro_robocop_goto_as.ros.web.part import Context
 from aro_robocop_goto_as.web.frames import FrameTree
@@ -25,7 +26,7 @@ def test_a_click_sends_a_2d_nav_goal():
     part, context = made()
     part._on_click(CLICK)
     what, topic, pose, _ = context.requests.publish.call_args[0]
-    assert (what, topic, pose.header.frame_id) == ("goal (1.00, 2.00) in map", "move_base_simple/goal", "map")
+    assert (what, topic, pose.header.frame_id) == ("goal x 1.00 y 2.00 in map", "move_base_simple/goal", "map")
     assert (pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w) == (1.0, 2.0, 1.0)
 
 
@@ -82,11 +83,41 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
     part._on_status(goals.time.monotonic(), GoalStatusArray(status_list=[status]))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
+    assert part._goal_rows("red") == [("goal", "ACTIVE x 1.00 y 0.00 in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20) in map")]
+    assert part._goal_rows("red") == [("goal", "ACTIVE x 0.30 y 0.20 in map")]
     part.show(context.state.now)
     assert context.state.now.answering
     part._on_status(goals.time.monotonic() - goals.STATUS_AGE, GoalStatusArray())
     part.show(context.state.now)
     assert not context.state.now.answering
+
+
+def drawn(part, context):
+    """The goal's shapes by name."""
+    part.show(context.state.now)
+    group = next(call[0][1] for call in reversed(context.scene.show.call_args_list) if call[0][0] == "goal")
+    return {name: (shape.color, pose.position) for (name, _), (shape, pose) in group.items()}
+
+
+@pytest.mark.parametrize(
+    "status, color",
+    [
+        (GoalStatus.ACTIVE, markers.GOAL_COLOR),
+        (GoalStatus.SUCCEEDED, markers.REACHED),
+        (GoalStatus.ABORTED, markers.NOT_REACHED),
+    ],
+)
+def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status_is_no_longer_reported(status, color):
+    part, context = made(root="red/odom")
+    context.frames.update("red/odom", "red/base_footprint", lifted(Pose2D(0.0, 0.0, 0.0)))
+    context.scene.draws.return_value = False
+    goal = GoToPositionActionGoal()
+    goal.goal_id.id, goal.goal.position.x = "goal", 1.0
+    part._on_goal(0.0, goal)
+    part._on_status(goals.time.monotonic(), GoalStatusArray(status_list=[GoalStatus(goal.goal_id, status, "")]))
+    part._on_status(goals.time.monotonic(), GoalStatusArray())
+    rgb = tuple(round(255 * value) for value in (color.r, color.g, color.b))
+    assert drawn(part, context) == {"goal_circle": (rgb, (1.0, 0.0, 0.0)), "goal_pin": (rgb, (1.0, 0.0, 0.2))}
+    context.scene.draws.return_value = True  # the server's markers
+    assert drawn(part, context) == {}

@@ -1,0 +1,33 @@
+"""Where a robot has been: a polyline with a limited number of points."""
+
+import math
+from typing import Optional, Tuple
+
+from .geometry import Vector3
+
+SPACING = 0.05  # [m] between two points
+LONGEST = 600  # points, 30 m
+HEIGHT = 0.012  # [m] above the floor
+# A robot that moves farther between two poses was placed there, as by a reset.
+FASTEST, SLACK = 2.0, 0.05  # [m/s] above the speed of a TurtleBot; [m] for noise
+
+
+class Trail:
+    """The trail of one robot, by its odometry."""
+
+    def __init__(self) -> None:
+        self.points: Tuple[Vector3, ...] = ()  # [m] in the frame of the odometry
+        self._newest: Optional[Tuple[float, Vector3]] = None  # time [s] and position
+
+    def add(self, time: float, x: float, y: float) -> None:
+        """Continue to a position [m] at a time [s]; start again if the robot was placed there or time was set back."""
+        if not math.isfinite(x + y):
+            return
+        point = (x, y, HEIGHT)
+        if self._newest is not None:
+            before, position = self._newest
+            if time < before or math.dist(position, point) > SLACK + FASTEST * (time - before):
+                self.points = ()
+        self._newest = (time, point)
+        if not self.points or math.dist(self.points[-1], point) >= SPACING:
+            self.points = (*self.points[1 - LONGEST :], point)
