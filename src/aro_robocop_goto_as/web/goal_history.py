@@ -31,12 +31,17 @@ class GoalHistory:
             del self._goals[oldest]
 
     def position(self, goal_id: str) -> Optional[Tuple[float, float]]:
-        """A goal's position [m] in the server's frame, if it was seen and is not too old."""
+        """A goal's position [m] in the server's frame, if it was seen and is not too old.
+
+        A goal without an id, as of `rostopic pub`, gets one from its server: the first that is asked for and unknown.
+        """
+        if goal_id not in self._goals and "" in self._goals:
+            self._goals[goal_id] = self._goals.pop("")
         return self._goals.get(goal_id)
 
     def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
         """A result was received."""
-        self._ended.appendleft(Ended(robot, state, message, self._goals.get(goal_id)))
+        self._ended.appendleft(Ended(robot, state, message, self.position(goal_id)))
 
     def latest(self) -> List[Ended]:
         """The last goals, the newest first."""

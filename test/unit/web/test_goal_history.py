@@ -15,3 +15,15 @@ def test_the_history_holds_the_last_goals_with_their_positions() -> None:
     for _ in range(3 * REMEMBERED):
         history.ended("", "x", "ABORTED", "")
     assert len(history.latest()) == REMEMBERED
+
+
+def test_a_goal_without_an_id_is_recognised_by_the_one_that_its_server_gives_it():
+    history = GoalHistory()
+    history.sent("named", 1.0, 0.0)
+    history.sent("", 2.0, 0.0)
+    assert history.position("named") == (1.0, 0.0)
+    assert history.position("first") == (2.0, 0.0)
+    history.sent("", 3.0, 0.0)
+    history.ended("", "first", "PREEMPTED", "")
+    history.ended("", "second", "SUCCEEDED", "")
+    assert [ended.goal for ended in history.latest()] == [(3.0, 0.0), (2.0, 0.0)]
