@@ -84,3 +84,18 @@ def test_an_interrupt_ends_every_process_of_the_bench(tmp_path):
         output, errors = bench.communicate(timeout=DEADLINE)
     assert (bench.returncode, output) == (130, ""), errors
     assert running(tmp_path) == []
+
+
+@pytest.mark.slow
+def test_an_interrupted_bench_prints_what_was_measured_until_then(tmp_path):
+    bench = start(tmp_path, "--json", "--seconds", "0.1", "--repeats", "100000", "--cases", "kinematic:1")
+    for line in bench.stderr:
+        if ", 2 of " in line:
+            break
+    bench.send_signal(signal.SIGINT)
+    output, errors = bench.communicate(timeout=DEADLINE)
+    assert bench.returncode == 130, errors
+    report = json.loads(output)
+    assert report["conditions"][-1].startswith("Interrupted")
+    assert [len(case["this"]["figures"]["factor"]) for case in report["cases"]] == [1]
+    assert running(tmp_path) == []

@@ -13,7 +13,7 @@ from .baseline import measure_baseline
 from .checkout import Checkout, other_checkout, this_checkout
 from .measure import simulate
 from .processes import own_ros
-from .report import Measured
+from .report import Measured, Row
 from .worlds import world_of
 
 USUAL, QUICK = (5.0, 3), (1.5, 1)  # [s] a measurement, repeats
@@ -52,14 +52,11 @@ def _arguments(argv: List[str]) -> argparse.Namespace:
     return args
 
 
-def _measure(
-    wanted: Sequence[cases.Case], checkouts: Sequence[Checkout], seconds: float, repeats: int
-) -> List[List[Measured]]:
+def _measure(results: Sequence[Row], checkouts: Sequence[Checkout], seconds: float, repeats: int) -> None:
     """Measure every case in each checkout, alternating, so that other load affects all of them alike.
 
     A case that fails is not repeated. A single checkout is compared with its baseline.
     """
-    results = [[Measured(case, one.name if len(checkouts) > 1 else "") for one in checkouts] for case in wanted]
     with own_ros() as directory:
         for repeat, row in itertools.product(range(repeats), results):
             for measured, checkout in list(zip(row, checkouts))[:: -1 if repeat % 2 else 1]:
@@ -75,14 +72,14 @@ def _measure(
                 except RobocopError as error:
                     measured.error = str(error)
                     print(f"robocop bench: {measured.notes()[0]}", file=sys.stderr)
-    return results
 
 
 def main() -> None:
-    """Entry point; a signal ends everything that was started."""
+    """Entry point; a signal ends everything that was started, and what was measured until then is printed."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
     args = _arguments(sys.argv[1:])
+    results: List[Row] = []
     try:
         wanted = cases.parse_cases(args.cases)
         where = report.conditions(args.seconds, args.repeats)
@@ -90,12 +87,18 @@ def main() -> None:
         if args.against is not None:
             checkouts.insert(0, other_checkout(args.against))
             wanted += [] if args.cases else cases.lockstep_cases()
-        results = _measure(wanted, checkouts, args.seconds, args.repeats)
+        results = [[Measured(case, one.name if len(checkouts) > 1 else "") for one in checkouts] for case in wanted]
+        _measure(results, checkouts, args.seconds, args.repeats)
+        status = 1 if any(measured.error for row in results for measured in row) else 0
     except BenchError as error:
         print(f"robocop bench: {error}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         print("robocop bench: interrupted; all processes are ended", file=sys.stderr)
-        sys.exit(130)
+        status = 130
+        results = [row for row in results if any(measured.figures or measured.error for measured in row)]
+        if not results:
+            sys.exit(status)
+        where.append("Interrupted: some cases are missing or have fewer repeats.")
     print((report.as_json if args.json else report.table)(results, where))
-    sys.exit(1 if any(measured.error for row in results for measured in row) else 0)
+    sys.exit(status)

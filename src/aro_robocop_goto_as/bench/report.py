@@ -90,7 +90,7 @@ def conditions(seconds: float, repeats: int) -> List[str]:
 
 def ratios(row: Row) -> Figures:
     """This / other: repeats are compared in pairs, as they were measured one after the other; {} for one checkout."""
-    if len(row) == 1 or any(measured.error for measured in row):
+    if len(row) == 1 or any(measured.error or not measured.figures for measured in row):
         return {}
     other, this = (measured.figures for measured in row)
     return {name: [new / old for new, old in zip(this[name], other[name])] for name in COMPARED}

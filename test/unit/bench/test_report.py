@@ -61,6 +61,11 @@ def test_repeats_of_two_checkouts_are_compared_in_pairs():
     assert "baseline" not in rows[0] and rows[2]["lost"] == "-"
 
 
+def test_a_case_that_was_interrupted_before_the_second_checkout_has_no_ratios():
+    text = report.table([[measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [], "this")]], WHERE)
+    assert [row["factor"] for row in rows_of(text)] == ["100", "-", "-"]
+
+
 def test_failed_case_has_a_row_without_figures_and_a_reason():
     broken = measured("wheels:50", [(100.0, 0.02)], "other", error="the simulator ended with status 1: no")
     text = report.table(
