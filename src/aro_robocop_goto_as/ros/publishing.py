@@ -62,6 +62,14 @@ def resume() -> None:
         topic.resume()
 
 
+def push() -> None:
+    """Have the kernel send now what it keeps for messages that were to follow; the thread that publishes calls it."""
+    for topic in list(_publishers):
+        for outlet in topic.outlets:
+            with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
+                outlet.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+
 def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
     """Limits how long a write to a new subscriber may block, and sends small messages at once.
 

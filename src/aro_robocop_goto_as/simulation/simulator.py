@@ -1,7 +1,7 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
 import functools
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -161,6 +161,11 @@ class Simulator:
                 measures.append(functools.partial(measure, due[name]))
         self._plans[names] = _Plan(Due(CLOCK in names, CONTROL in names, due), measures, due.get(observations.IMU, ()))
         return self._plans[names]
+
+    def sensors_at_control_ticks(self) -> FrozenSet[str]:
+        """The sensors that are due on each control tick."""
+        rates = _rates(self.p)
+        return frozenset(name for name, rate in rates.items() if rate and rate % rates[CONTROL] == 0)
 
     # -- sensors --
 

@@ -62,7 +62,9 @@ def test_repeats_of_two_checkouts_are_compared_in_pairs():
 
 
 def test_a_case_that_was_interrupted_before_the_second_checkout_has_no_ratios():
-    text = report.table([[measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [], "this")]], WHERE)
+    text = report.table(
+        [[measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [], "this")]], WHERE
+    )
     assert [row["factor"] for row in rows_of(text)] == ["100", "-", "-"]
 
 

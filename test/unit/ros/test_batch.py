@@ -11,6 +11,7 @@ import pytest
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
+from aro_robocop_goto_as.ros import publishing
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
@@ -316,6 +317,29 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
     reading.join(10.0)
     assert stalled.outlet.stands_still and not slow.outlet.stands_still
     assert b"".join(received) == bytes(message.data)
+
+
+def test_messages_that_the_kernel_keeps_arrive_with_the_next_one_or_with_a_push(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        near = socket.create_connection(server.getsockname())
+        reader, _ = server.accept()
+    outlet = Outlet(Connection(), near)
+    impl = SimpleNamespace(is_latch=False)
+    topic: Any = SimpleNamespace(outlets=(outlet,), impl=impl)
+    monkeypatch.setattr(publishing, "_publishers", [topic])
+    message = counted(10)
+    batch = Batch([(topic, message)])
+    with near, reader:
+        for more in (True, True, False, True):
+            batch.send(0, more)
+        publishing.push()
+        data = b""
+        while len(data) < 4 * message.size:
+            data += reader.recv(4 * message.size)
+    numbers = [struct.unpack_from("<I", data, 4 + message.size * number)[0] for number in range(4)]
+    assert numbers == [1, 2, 3, 4]
 
 
 def test_empty_batch_sends_nothing() -> None:

@@ -69,9 +69,13 @@ class SimNode:
     def _pace(self) -> None:
         """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
         jobs, time, simulator = self._simulation.jobs, self._simulation.time_control, self._simulator
+        if len(jobs):
+            self._topics.push()
         jobs.run_queued()
         self._publish_changes()
         wait = time.hold(simulator.steps)
+        if wait > 0.0:
+            self._topics.push()
         if 0.0 < wait < SHORT:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
             jobs.sleep(wait)
             time.pacer.waited(wait)
@@ -136,7 +140,10 @@ class SimNode:
             self._world.publish_moving(self._simulator)
         if observed.due.clock and self._gazebo is not None:
             self._gazebo.publish(self._simulator)
-        self._topics.publish(observed, observed.due.clock)
+        time, steps = self._simulation.time_control, self._simulator.steps
+        on_the_way = self._simulation.controllers.in_lockstep and not observed.due.control
+        unheld = time.pacer.factor == 0.0 and time.steps_left(steps) > 0
+        self._topics.publish(observed, observed.due.clock, on_the_way and unheld)
 
     def _publish_changes(self) -> None:
         """Publish anew what has changed other than by a step."""

@@ -8,7 +8,7 @@ from ...simulation.observations import SCAN, TF, Due, Observations, Subscription
 from ...simulation.simulator import Simulator
 from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
-from ..publishing import publisher
+from ..publishing import publisher, push
 from ..rospy_internals import set_latched
 from .robot_topics import RobotTopics
 from .transform_topics import TransformTopics
@@ -29,6 +29,8 @@ class StepTopics:
         self._subscriptions: Subscriptions = {}
         self._batches: Dict[Tuple[Due, int, bool], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
+        self._sensors_at_ticks = simulator.sensors_at_control_ticks()
+        self._kept = False  # whether messages may be kept by the kernel
 
     def _on_change(self) -> None:
         """A subscriber has connected or disconnected. Called from rospy's threads."""
@@ -49,20 +51,34 @@ class StepTopics:
             self._subscriptions = subscriptions
         return self._subscriptions
 
-    def publish(self, observed: Observations, clock: bool) -> None:
-        """All measurements of one step; then the clock, if wanted, so that a tick's data is there when it ticks."""
+    def publish(self, observed: Observations, clock: bool, on_the_way: bool = False) -> None:
+        """All measurements of one step; then the clock, if wanted, so that a tick's data is there when it ticks.
+
+        On the way to a control tick the messages may be kept until the tick's are sent, if the same topics have some
+        then, or until push().
+        """
         key = observed.due, observed.scans.shape[1], clock
         if key not in self._batches:
             self._batches[key] = self._unpacked(observed.due), self._batch(observed.due, clock)
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
-        batch.send(observed.stamp_ns)
+        more = on_the_way and self._sensors_at_ticks.issuperset(observed.due.sensors)
+        if not more and not observed.due.control:  # a control tick's messages take with them what is kept
+            self.push()
+        self._kept = more
+        batch.send(observed.stamp_ns, more)
 
     def publish_clock(self, stamp_ns: int) -> None:
         """Simulated time [ns] alone."""
         self.subscriptions()
         self._clock_alone.send(stamp_ns)
+
+    def push(self) -> None:
+        """Send what is kept until the next control tick, as others are about to see or to change the simulation."""
+        if self._kept:
+            self._kept = False
+            push()
 
     def count(self) -> None:
         """Update rospy's statistics."""

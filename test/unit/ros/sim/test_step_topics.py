@@ -1,0 +1,59 @@
+"""StepTopics: in lockstep, messages on the way to a control tick are kept until that is sent, or until they matter."""
+
+from types import SimpleNamespace
+from typing import Any, List, Tuple
+
+import numpy as np
+import pytest
+
+from aro_robocop_goto_as.ros.sim import step_topics
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, Due
+
+ALWAYS = frozenset({ODOM, SCAN})  # due on each control tick
+Calls = List[Tuple[Any, ...]]
+
+
+@pytest.fixture(name="calls")
+def _calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
+    made: Calls = []
+    monkeypatch.setattr(step_topics, "push", lambda: made.append(("push",)))
+    return made
+
+
+def publish(topics: StepTopics, calls: Calls, sensor: str, control: bool, on_the_way: bool) -> None:
+    """A step with one sensor and the clock."""
+    observed: Any = SimpleNamespace(due=Due(True, control, {sensor: [0]}), scans=np.zeros((1, 3)), stamp_ns=0)
+    batch: Any = SimpleNamespace(send=lambda _stamp, more: calls.append((sensor, more)))
+    topics._batches = {(observed.due, 3, True): ([], batch)}
+    topics.publish(observed, True, on_the_way)
+
+
+def topics_of_no_robots() -> StepTopics:
+    """Without publishers, which need a ROS master."""
+    topics = object.__new__(StepTopics)
+    topics._sensors_at_ticks, topics._kept = ALWAYS, False
+    return topics
+
+
+def test_messages_on_the_way_are_kept_and_those_of_the_tick_are_not(calls: Calls) -> None:
+    topics = topics_of_no_robots()
+    publish(topics, calls, ODOM, control=False, on_the_way=True)
+    publish(topics, calls, ODOM, control=True, on_the_way=False)
+    topics.push()
+    assert calls == [(ODOM, True), (ODOM, False)]
+
+
+def test_what_is_kept_is_sent_before_a_step_with_a_sensor_that_is_not_due_on_each_tick(calls: Calls) -> None:
+    topics = topics_of_no_robots()
+    publish(topics, calls, ODOM, control=False, on_the_way=True)
+    publish(topics, calls, JOINTS, control=False, on_the_way=True)
+    assert calls == [(ODOM, True), ("push",), (JOINTS, False)]
+
+
+def test_what_is_kept_is_pushed_once(calls: Calls) -> None:
+    topics = topics_of_no_robots()
+    publish(topics, calls, SCAN, control=False, on_the_way=True)
+    topics.push()
+    topics.push()
+    assert calls == [(SCAN, True), ("push",)]
