@@ -7,6 +7,7 @@ OpenGL add warnings of their own.
 import argparse
 import os
 import time
+from dataclasses import replace
 from typing import List, Optional, Tuple
 
 import numpy as np
@@ -38,8 +39,9 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--frame", default="map", help="RViz's Fixed Frame (default map)")
     parser.add_argument("--config", default="", help="a configuration file of your own; empty: made for the system")
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
+    parser.add_argument("--trail", action="store_true", help="of odometry: no server is there that publishes one")
     options, rest = parser.parse_known_args(arguments)
-    config = options.config or _written(adapted(observe(options.frame, options.wait)))
+    config = options.config or _written(adapted(replace(observe(options.frame, options.wait), server=not options.trail)))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
     again = str(SHARE / "launch" / "restart_after_crash")
     log = os.environ.get(RVIZ_LOG)

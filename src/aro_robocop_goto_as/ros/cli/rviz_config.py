@@ -41,6 +41,7 @@ class Observed:
     topics: Dict[str, str] = field(default_factory=dict)  # name -> type
     description: bool = True  # whether there is a model of the robot
     odom_tf: bool = True  # whether odom -> base_footprint is published
+    server: bool = True  # whether the package's own server is there, whose markers have a trail that a reset removes
     obstacles: Optional[np.ndarray] = None  # (n, 2) [m] corners in map; None without a simulator
     start: Tuple[float, float] = (0.0, 0.0)  # [m] of the robot in map
     screen: Tuple[int, int] = (1280, 860)  # [pixel] width, height
@@ -57,9 +58,9 @@ def adapted(seen: Observed) -> str:
     odom = f"{seen.robot}/odom".lstrip("/")
 
     # A robot that has a name is one of the world's markers.
-    shown = {"Map": "/map" in seen.topics, "Robot": seen.description and not seen.robot}
+    shown = {"Map": "/map" in seen.topics, "Robot": seen.description and not seen.robot, "Trail": not seen.server}
     if not seen.odom_tf:  # either the world or the robot can be shown, and not what is between them
-        hidden = ("Robot", "Scan") if in_world else ("World", "Map", "Frame map")
+        hidden = ("Robot", "Scan") if in_world else ("World", "Trail", "Map", "Frame map")
         shown.update(dict.fromkeys(hidden, False))
     for name, is_shown in shown.items():
         displays[name]["Enabled"] = is_shown

@@ -71,6 +71,11 @@ def test_file_that_is_opened_by_hand_shows_a_room_and_no_image():
     assert template["Views"]["Current"]["Target Frame"] == view()["Target Frame"] == "<Fixed Frame>"
 
 
+def test_trail_is_that_of_odometry_only_where_no_server_publishes_one():
+    assert "Trail" not in displays()
+    assert displays(server=False)["Trail"]["Class"] == "rviz/Odometry"
+
+
 def test_map_and_image_are_ticked_only_if_they_are_published():
     assert {"Map", "Image"}.isdisjoint(displays())
     shown = displays(topics={"/map": "nav_msgs/OccupancyGrid", **CAMERA})
