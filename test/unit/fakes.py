@@ -5,8 +5,8 @@ from typing import AbstractSet, Callable, List, Set, Tuple
 
 from support import ORIGIN, kept, model_named, world_named
 
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Job, Queue
 from aro_robocop_goto_as.simulation.observations import Observations

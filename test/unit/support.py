@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import SENSORS, Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator

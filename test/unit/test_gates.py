@@ -41,31 +41,33 @@ ORDER = {
     "reading": "errors",
     "trail": "geometry",
     "goto_params": "param_loading",
-    "params": "goto_params param_loading robot.model_names sensors.camera sensors.scan_profiles",
+    "bridge_params": "param_loading",
+    "web_params": "param_loading",
+    "sim_params": "param_loading robot.model_names sensors.camera sensors.scan_profiles",
     "process": "errors",
     "bootstrap": "errors process ros.names",
     "world": "errors geometry reading suggestions",
-    "robot": "compiled errors geometry param_loading params reading robot.model_names world",
+    "robot": "compiled errors geometry param_loading sim_params reading robot.model_names world",
     "raycast": "compiled errors geometry robot world",
     "physics": "compiled errors geometry raycast robot world",
-    "sensors": "compiled geometry params physics raycast robot sensors.camera sensors.scan_profiles world",
+    "sensors": "compiled geometry sim_params physics raycast robot sensors.camera sensors.scan_profiles world",
     "goto": "geometry goto_params",
     "web": "errors geometry ros.names world",
-    "simulation": "errors geometry params physics raycast robot sensors sensors.camera sensors.scan_profiles world",
-    "ros": "compiled errors geometry param_loading params process robot ros.names sensors sensors.scan_profiles "
+    "simulation": "errors geometry sim_params physics raycast robot sensors sensors.camera sensors.scan_profiles world",
+    "ros": "compiled errors geometry param_loading sim_params process robot ros.names sensors sensors.scan_profiles "
     "simulation world",
-    "ros.sim": "errors geometry params robot ros ros.names sensors sensors.camera simulation world",
-    "ros.server": "errors geometry goto goto_params params ros ros.names simulation trail",
-    "ros.client": "errors geometry params ros ros.names suggestions",
-    "ros.web": "bootstrap errors geometry param_loading params ros ros.client ros.names trail web",
-    "ros.cli": "bootstrap errors geometry limits param_loading params process robot.model_names ros ros.client "
-    "ros.names suggestions web world",
-    "bench": "compiled errors geometry param_loading params process ros ros.sim simulation",
+    "ros.sim": "errors geometry sim_params robot ros ros.names sensors sensors.camera simulation world",
+    "ros.server": "errors geometry goto goto_params sim_params ros ros.names simulation trail",
+    "ros.client": "bridge_params errors geometry ros ros.names suggestions",
+    "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
+    "ros.cli": "bootstrap errors geometry limits param_loading sim_params process robot.model_names ros ros.client "
+    "ros.names suggestions web web_params world",
+    "bench": "compiled errors geometry param_loading sim_params process ros ros.sim simulation",
     f"{GRADER}.agent": "",
     f"{GRADER}.hosting": "errors process ros.cli ros.names",
-    GRADER: f"errors geometry {GRADER}.hosting param_loading params process web world",
+    GRADER: f"errors geometry {GRADER}.hosting param_loading process sim_params web web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.hosting process",
-    f"{GRADER}.session": "errors geometry goto params process robot ros ros.names ros.sim simulation web world "
+    f"{GRADER}.session": "errors geometry goto sim_params process robot ros ros.names ros.sim simulation web world "
     f"{GRADER}",
 }
 # Modules whose rosdep key differs from their name.

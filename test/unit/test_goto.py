@@ -22,7 +22,7 @@ from aro_robocop_goto_as.goto import (
     limit_acceleration,
     track_progress,
 )
-from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.goto_params import GotoParams
 
 P = GotoParams()
 near = st.floats(-20.0, 20.0)

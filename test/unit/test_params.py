@@ -9,11 +9,14 @@ import pytest
 import yaml
 from support import ROOT
 
-from aro_robocop_goto_as import params
+from aro_robocop_goto_as.bridge_params import BridgeParams
 from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.param_loading import declared, from_dict
-from aro_robocop_goto_as.params import BridgeParams, GotoParams, SimParams
+from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.web_params import WebParams
 
+BY_NAME: Dict[str, Any] = {cls.__name__: cls for cls in (SimParams, GotoParams, BridgeParams, WebParams)}
 CONFIGS = [("sim.yaml", SimParams), ("goto_as.yaml", GotoParams), ("rviz_goto_ac.yaml", BridgeParams)]
 with open(os.path.join(ROOT, "test", "unit", "data", "parameters_at_45233a1.json")) as recorded:
     RECORDED = json.load(recorded)
@@ -49,7 +52,7 @@ def test_names_defaults_bounds_and_choices_are_those_that_were_recorded(name: st
     found = {
         key: [str(spec.default), *(spec.metadata.get(what) for what in ("low", "high"))]
         + [list(spec.metadata.get("choices", ()))]
-        for key, spec in declared(getattr(params, name)).items()
+        for key, spec in declared(BY_NAME[name]).items()
         if key not in ADDED.get(name, ())
     }
     assert found == RECORDED["declared"][name]
@@ -63,7 +66,7 @@ def test_values_are_refused_in_the_words_that_were_recorded(name: str) -> None:
             text = text.replace(old, new)
         expected.append((raw, text))
         with pytest.raises(ParameterError) as refusal:
-            from_dict(getattr(params, name), raw, "/robocop_sim")
+            from_dict(BY_NAME[name], raw, "/robocop_sim")
         found.append((raw, str(refusal.value)))
     assert found == expected
 

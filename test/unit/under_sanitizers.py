@@ -15,7 +15,6 @@ from support import model_named
 
 from aro_robocop_goto_as import compiled
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.params import ImuParams, OdometryParams
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.grid_index import Tiles
@@ -40,6 +39,7 @@ from aro_robocop_goto_as.ros.packed import (
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.sim_params import ImuParams, OdometryParams
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 

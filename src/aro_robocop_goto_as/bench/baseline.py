@@ -11,8 +11,8 @@ from sensor_msgs.msg import LaserScan
 
 from ..geometry import Twist2D
 from ..param_loading import from_dict
-from ..params import SimParams
 from ..ros.sim.factory import build_simulator
+from ..sim_params import SimParams
 from ..simulation.observations import ODOM, SCAN
 from ..simulation.schedule import due
 from .cases import ANGULAR, LINEAR, ODOM_RATE, SCAN_RATE, SCAN_SAMPLES, Case

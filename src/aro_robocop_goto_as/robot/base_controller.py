@@ -5,7 +5,7 @@ from typing import NamedTuple, Optional
 
 from ..errors import CommandError
 from ..geometry import Twist2D
-from ..params import LimitParams
+from ..sim_params import LimitParams
 from .model import ModelFigures
 
 

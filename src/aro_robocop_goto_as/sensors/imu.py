@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
-from ..params import ImuParams
 from ..robot.model import BodyState
+from ..sim_params import ImuParams
 
 # Parts of a sample (10,): the orientation of imu_link in the world (x, y, z, w), angular velocity [rad/s] and specific
 # force [m/s^2] in imu_link.

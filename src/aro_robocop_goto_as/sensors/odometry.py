@@ -7,8 +7,8 @@ import numpy as np
 
 from ..compiled import address, members
 from ..geometry import Pose2D
-from ..params import OdometryParams
 from ..robot.fleet import Fleet, library
+from ..sim_params import OdometryParams
 
 
 class _OdometersStruct(ctypes.Structure):

@@ -3,9 +3,9 @@
 from typing import Callable, Dict, Optional, Sequence
 
 from ..geometry import Pose3D, compose3
-from ..params import CameraParams
 from ..robot.model import RobotModel
 from ..sensors.camera import CameraImage, CameraSpec, ImageRenderer
+from ..sim_params import CameraParams
 from ..world.model import World
 
 MakeRenderer = Callable[[World, Sequence[RobotModel]], ImageRenderer]

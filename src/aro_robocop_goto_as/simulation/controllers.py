@@ -5,7 +5,7 @@ from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Tupl
 
 from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
-from ..params import LockstepParams
+from ..sim_params import LockstepParams
 from .jobs import Clock
 from .lockstep import ControllerId, Lockstep
 from .simulator import Simulator

@@ -2,11 +2,11 @@
 
 from typing import Sequence
 
-from ..params import EngineParams, SimParams
 from ..physics.engine import Engine
 from ..robot.base_controller import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
+from ..sim_params import EngineParams, SimParams
 from ..world.model import World
 from .simulator import Simulator
 

@@ -2,9 +2,9 @@
 
 from typing import Callable, List
 
-from ..params import RobotParams
 from ..raycast.free_places import free_place, free_places
 from ..robot.model import RobotModel, RobotSpec
+from ..sim_params import RobotParams
 from ..world.model import World
 from ..world.spawn import parse_count, parse_robots, parse_spawn
 

@@ -12,7 +12,7 @@ import enum
 from typing import Callable, Optional, Set
 
 from ..geometry import Pose2D
-from ..params import SimParams
+from ..sim_params import SimParams
 from ..world.model import World
 from .controllers import Controllers
 from .jobs import Clock, Jobs, WallClock

@@ -6,7 +6,6 @@ from typing import Callable, Dict, FrozenSet, List, NamedTuple, Optional, Sequen
 import numpy as np
 
 from ..geometry import Pose2D, Twist2D, compose, compose3, inverse
-from ..params import SimParams
 from ..physics.engine import Engine
 from ..raycast.occupancy import occupancy_of
 from ..raycast.scanners import Scanners
@@ -15,6 +14,7 @@ from ..sensors import imu, magnetometer
 from ..sensors.lidar import Lidar
 from ..sensors.noise_streams import NoiseStreams
 from ..sensors.odometry import Odometers
+from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from . import observations
 from .cameras import Cameras, MakeRenderer

@@ -3,7 +3,7 @@
 from concurrent.futures import Future
 from typing import Optional
 
-from ..params import TimeParams
+from ..sim_params import TimeParams
 from .jobs import Clock
 from .pacer import Pacer
 

@@ -8,11 +8,11 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.params import FrameNames
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
 from aro_robocop_goto_as.ros.sim.transform_topics import TransformTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
+from aro_robocop_goto_as.sim_params import FrameNames
 from aro_robocop_goto_as.simulation.observations import ODOM, SCAN, TF, Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator
 

@@ -12,12 +12,12 @@ from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.goto import clearance_ahead
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, TF, Observations, Subscriptions
 from aro_robocop_goto_as.simulation.simulation import Simulation

@@ -15,13 +15,13 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.errors import WatchError
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.ros import convert, markers
 from aro_robocop_goto_as.ros.publishing import publisher
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, Observations
 
 from .. import record as rec

@@ -10,7 +10,7 @@ from aro_robocop_goto_as.bench import cases
 from aro_robocop_goto_as.bench.cases import Case, parse_cases
 from aro_robocop_goto_as.errors import BenchError
 from aro_robocop_goto_as.param_loading import from_dict
-from aro_robocop_goto_as.params import SimParams
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import Plane
 

@@ -13,9 +13,9 @@ from support import model_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.base_controller import Limits, accepted, limits_from
 from aro_robocop_goto_as.robot.fleet import Fleet, library
+from aro_robocop_goto_as.sim_params import SimParams
 
 LIMITS = Limits(max_v=0.22, max_w=2.84, max_dv=2.5, max_dw=3.2, timeout=0.5)
 DT = 1.0 / 240.0

@@ -10,10 +10,10 @@ from support import lean, model_named, world_named
 
 from aro_robocop_goto_as.errors import RobocopError, RobotModelError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.raycast.scanners import circles_at
 from aro_robocop_goto_as.robot.catalog import load_figures
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.simulator import Simulator
 

@@ -9,11 +9,11 @@ import pytest
 from support import ROOT, analytic_distances, drive, everything, model_named, world_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.robot.urdf import load_robot
 from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, points_of
 from aro_robocop_goto_as.sensors.camera_renderer import CameraRenderer
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import Box, Obstacle, World

@@ -3,7 +3,7 @@
 import pytest
 from fakes import FakeClock
 
-from aro_robocop_goto_as.params import TimeParams
+from aro_robocop_goto_as.sim_params import TimeParams
 from aro_robocop_goto_as.simulation.time_control import LONGEST_HOLD, PAUSED_PERIOD, TimeControl
 
 

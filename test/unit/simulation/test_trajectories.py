@@ -9,8 +9,8 @@ import pytest
 from support import ROOT, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 
 B, W, T = "burger", "waffle", "turtlebot2"

@@ -10,9 +10,9 @@ from support import drive, model_named
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.raycast.free_places import free_place
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import SCAN
 from aro_robocop_goto_as.world.edit import requested_model, with_model, without_model

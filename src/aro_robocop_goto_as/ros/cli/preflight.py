@@ -5,8 +5,8 @@ from typing import Any, Dict
 
 from ...geometry import Pose2D
 from ...param_loading import from_dict
-from ...params import SimParams
 from ...robot.model_names import urdf_of
+from ...sim_params import SimParams
 from ...world.load import RANDOM, find_world
 from ...world.spawn import parse_count, parse_robots, parse_spawn
 from ..share import share

@@ -13,8 +13,8 @@ from std_msgs.msg import String
 
 from aro_robocop_goto_as.msg import GoToPositionAction
 
+from ...bridge_params import BridgeParams
 from ...errors import FrameError
-from ...params import BridgeParams
 from .. import param_server
 from ..names import ACTION, BRIDGE, place
 from ..node_main import node

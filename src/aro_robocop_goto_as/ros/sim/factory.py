@@ -7,8 +7,8 @@ import rospkg
 import rospy
 
 from ...errors import PlaceError, WorldError
-from ...params import SimParams
 from ...robot.catalog import load_model
+from ...sim_params import SimParams
 from ...simulation.factory import make_simulator
 from ...simulation.robots import robots_from
 from ...simulation.room import require_room

@@ -6,8 +6,8 @@ from typing import AbstractSet, Any, Callable, Sequence
 import rospy
 
 from ...errors import ParameterError
-from ...params import SimParams
 from ...robot.model import RobotSpec
+from ...sim_params import SimParams
 from ...simulation.observations import Observations
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
@@ -16,9 +16,10 @@ from ..names import SIMULATOR
 from ..node_main import node
 from ..publishing import resume
 from .factory import build_simulator
+from .lockstep_warnings import warn_of
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
-from .status import StatusTopics, controller_name
+from .status import StatusTopics
 from .step_topics import StepTopics
 from .time_services import TimeServices
 from .world_services import WorldServices
@@ -90,20 +91,7 @@ class SimNode:
         controllers = self._simulation.controllers
         controllers.begin_tick(self._answering)
         self._hold(lambda: controllers.hold(self._connected))
-        report = controllers.end_tick()
-        robots = self._simulator.robots
-        for controller in report.gone:
-            rospy.logwarn("lockstep: %s disconnected; the robot is stopped", controller_name(controller, robots))
-        if report.late:
-            names = ", ".join(controller_name(controller, robots) for controller in report.late)
-            text = "lockstep: no answer from %s within %g s; simulated time continues without it"
-            rospy.logwarn(text, names, controllers.timeout)
-        for controller, rate in report.slower:
-            name, control_rate = controller_name(controller, robots), self._simulator.p.rates.control_rate
-            text = (
-                "lockstep: %s runs at %g Hz, control_rate is %g Hz: it is waited for only at its own ticks from now on"
-            )
-            rospy.logwarn(text, name, rate, control_rate)
+        warn_of(controllers.end_tick(), self._simulator, controllers.timeout)
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""

@@ -9,7 +9,7 @@ from aro_robocop_goto_as.srv import SetPose
 
 from ...errors import FrameError, PlaceError
 from ...geometry import Pose2D, compose
-from ...params import FrameNames
+from ...sim_params import FrameNames
 from ...simulation.simulation import Simulation
 from .. import convert
 from ..names import prefixed

@@ -11,13 +11,13 @@ import yaml
 
 from ...errors import ParameterError, RobocopError
 from ...param_loading import from_dict
-from ...params import WebParams
 from ...web import access
 from ...web.frames import FrameTree
 from ...web.page import set_up
 from ...web.report import failures
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
+from ...web_params import WebParams
 from ..names import WEB
 from ..node_main import node
 from .goals import Goals

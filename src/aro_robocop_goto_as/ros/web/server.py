@@ -7,8 +7,8 @@ import socket
 from typing import Any
 
 from ...errors import WebError
-from ...params import WebParams
 from ...web import access
+from ...web_params import WebParams
 from .viser_internals import checked_requests
 
 

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Point
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.goto import Outcome
-from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.ros.server.goal_execution import GoalExecution
 from aro_robocop_goto_as.ros.server.inputs import Inputs
 from aro_robocop_goto_as.ros.server.tuning import Tuning

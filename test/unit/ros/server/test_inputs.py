@@ -9,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.goto import Outcome
-from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.ros.server.inputs import FIRST_MESSAGE, Inputs
 
 

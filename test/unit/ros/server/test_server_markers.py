@@ -8,7 +8,7 @@ from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import Marker
 
 from aro_robocop_goto_as.goto import Goal, Outcome
-from aro_robocop_goto_as.params import GotoParams
+from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.server.server_markers import (
     BLOCKED,

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from map_files import room, write_map
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import Slice
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.world.grid_map.walls import outline
 from aro_robocop_goto_as.world.load import load_world

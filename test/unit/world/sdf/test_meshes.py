@@ -7,10 +7,10 @@ from bullet_rays import bullet_engine, bullet_rays
 from sdf_files import mesh_world, only_obstacle, raised_by, world_file
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.params import SimParams
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import Slice
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Mesh

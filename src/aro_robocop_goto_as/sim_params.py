@@ -1,6 +1,6 @@
-"""The parameters of each node: frozen dataclasses that hold every default, and that param_loading fills.
+"""Parameters of the simulator: frozen dataclasses that hold every default, and that param_loading fills.
 
-The simulator's are grouped by the component that reads them. A field's name is the name of the ROS parameter, whatever
+They are grouped by the component that reads them. A field's name is the name of the ROS parameter, whatever
 the group; config/sim.yaml documents each one with its unit and source. A default of None means "not given": ROS
 parameters can't hold a null, so the key is simply left out.
 """
@@ -8,7 +8,6 @@ parameters can't hold a null, so the key is simply left out.
 from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Mapping, Optional
 
-from .goto_params import GotoParams as GotoParams
 from .param_loading import frame_problems, from_dict, group, parameter, positive
 from .robot.model_names import DEFAULT_MODEL
 from .sensors import camera
@@ -269,39 +268,3 @@ class SimParams:
             )
             if high <= low
         ]
-
-
-@dataclass(frozen=True)
-class BridgeParams:
-    """Parameters of robocop_rviz_goto_ac; config/rviz_goto_ac.yaml documents each one."""
-
-    goal_frame: str = "odom"
-    default_frame: str = "map"
-    transform_timeout: float = parameter(1.0, low=0.0)
-    status_period: float = positive(2.0)
-    cancel_timeout: float = positive(2.0)
-    ignore_goal_frame: bool = False
-
-    def conflicts(self) -> List[str]:
-        """Frame names that tf2 would refuse, in words; empty when there are none."""
-        return frame_problems("goal_frame", self.goal_frame) + frame_problems("default_frame", self.default_frame)
-
-
-@dataclass(frozen=True)
-class WebParams:
-    """Arguments of robocop_web, given as NAME:=VALUE; docs/web.md documents each one."""
-
-    web_host: str = "127.0.0.1"
-    web_port: int = parameter(8080, low=1, high=65535)
-    web_frame: str = "map"
-    web_origins: str = ""
-    web_linear_velocity: float = positive(0.2, high=100.0)
-    web_angular_velocity: float = positive(1.0, high=100.0)
-    replay: str = ""
-    replay_speed: float = parameter(1.0, low=0.1, high=10.0)
-    replay_waits: bool = True
-    view_only: bool = False
-
-    def conflicts(self) -> List[str]:
-        """A frame name that tf2 would refuse, in words; empty when there is none."""
-        return frame_problems("web_frame", self.web_frame)
