@@ -61,13 +61,6 @@ def inverse(a_from_b: Pose2D) -> Pose2D:
     )
 
 
-def arc(yaw: float, distance: float, turn: float) -> Tuple[float, float]:
-    """Displacement (x, y) [m] along an arc of length `distance` [m] from heading `yaw` [rad] to `yaw + turn`."""
-    half = turn / 2.0
-    chord = distance * (math.sin(half) / half if half else 1.0)
-    return chord * math.cos(yaw + half), chord * math.sin(yaw + half)
-
-
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     """The unit quaternion x, y, z, w of fixed-axis roll, pitch, yaw [rad], as in SDF and URDF."""
     cr, sr = math.cos(roll / 2.0), math.sin(roll / 2.0)

@@ -14,7 +14,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Trigger
 from system import DEADLINE, SIMULATOR, Violation, connections_from, is_connected, publisher, wait_for
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, arc, wrap_angle
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D, wrap_angle
 from aro_robocop_goto_as.ros.convert import to_quaternion
 
 REST = 1.0  # [s] simulated, within which a robot is at rest after its goal
@@ -203,8 +203,10 @@ class MessageStage:
 
         Moves, publishes odometry and scan, lets the clock reach the tick, and waits for the answer.
         """
-        dx, dy = arc(self.pose.yaw, self.twist.v * length, self.twist.w * length)
-        self.pose = Pose2D(self.pose.x + dx, self.pose.y + dy, wrap_angle(self.pose.yaw + self.twist.w * length))
+        (x, y, yaw), half = self.pose, self.twist.w * length / 2.0
+        chord = self.twist.v * length * (math.sin(half) / half if half else 1.0)
+        x, y = x + chord * math.cos(yaw + half), y + chord * math.sin(yaw + half)
+        self.pose = Pose2D(x, y, wrap_angle(yaw + 2.0 * half))
         self.now_ns += round(length / TICK) * 10**8
         for topic, message in (
             (self._odom, self.change_odom(self._odometry())),

@@ -19,7 +19,7 @@ from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.raycast.scene import ScanPlane, Scene
-from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.base_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.covariances import imu_covariances

@@ -11,7 +11,7 @@ from sensor_msgs.msg import LaserScan
 
 from ..geometry import Twist2D
 from ..param_loading import from_dict
-from ..ros.sim.factory import build_simulator
+from ..ros.sim.loading import load_simulator
 from ..sim_params import SimParams
 from ..simulation.observations import ODOM, SCAN
 from ..simulation.schedule import due
@@ -45,7 +45,7 @@ def measure_baseline(case: Case, world: str, seconds: float) -> Dict[str, float]
     stepping = sending = 0.0
     steps = messages = 0
     with contextlib.ExitStack() as stack:
-        simulator = build_simulator(from_dict(SimParams, case.params(0.0, world), case.name))
+        simulator = load_simulator(from_dict(SimParams, case.params(0.0, world), case.name))
         stack.callback(simulator.close)
         client = stack.enter_context(Client())
         links = [stack.enter_context(connection(client, topic)) for topic in case.topics()]

@@ -9,7 +9,7 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .base_controller import Limits, accepted
+from .base_limits import Limits, clamped
 from .model import Pair, RobotModel
 
 VERSION = 1  # of the structures that the library's functions take, as in fleet.h
@@ -89,7 +89,7 @@ class Fleet:
 
         CommandError on NaN or infinity leaves the previous command in force.
         """
-        self.commands[robot] = accepted(command, Limits(*self.limits[robot].tolist()))
+        self.commands[robot] = clamped(command, Limits(*self.limits[robot].tolist()))
         self.commanded_at[robot] = now
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:

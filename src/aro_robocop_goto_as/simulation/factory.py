@@ -3,7 +3,7 @@
 from typing import Sequence
 
 from ..physics.engine import Engine
-from ..robot.base_controller import limits_from
+from ..robot.base_limits import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import EngineParams, SimParams

@@ -55,7 +55,7 @@ class Simulator:
         self.rate = p.rates.physics_rate  # [Hz]
         self.lidar = Lidar(p.scan.lidar())
         self.engine = engine
-        self.fleet = engine.fleet  # as of the latest read()
+        self.fleet = engine.fleet  # up to date after engine.update_fleet()
         self._noise = NoiseStreams()
         models = [robot.model for robot in self.robots]
         self._scanners = Scanners(models, world, self.fleet.poses)

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, wrap_angle
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.cross_section import Slice
 from aro_robocop_goto_as.raycast.surroundings import body_heights
-from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.base_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion

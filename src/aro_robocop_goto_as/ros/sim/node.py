@@ -15,7 +15,7 @@ from .. import param_server
 from ..names import SIMULATOR
 from ..node_main import node
 from ..publishing import resume
-from .factory import build_simulator
+from .loading import load_simulator
 from .lockstep_warnings import warn_of
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
@@ -180,5 +180,5 @@ def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
-        with contextlib.closing(build_simulator(param_server.load(SimParams))) as simulator:
+        with contextlib.closing(load_simulator(param_server.load(SimParams))) as simulator:
             SimNode(simulator).run()

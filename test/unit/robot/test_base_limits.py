@@ -13,7 +13,7 @@ from support import model_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.robot.base_controller import Limits, accepted, limits_from
+from aro_robocop_goto_as.robot.base_limits import Limits, clamped, limits_from
 from aro_robocop_goto_as.robot.fleet import Fleet, library
 from aro_robocop_goto_as.sim_params import SimParams
 
@@ -75,7 +75,7 @@ def test_with_timeout_zero_a_command_stays_in_force_for_ever() -> None:
 @pytest.mark.parametrize("bad", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf), Twist2D(-math.inf, math.nan)])
 def test_command_that_is_not_finite_is_refused_with_its_values(bad: Twist2D) -> None:
     with pytest.raises(CommandError, match=f"linear.x {bad.v} m/s, angular.z {bad.w} rad/s"):
-        accepted(bad, LIMITS)
+        clamped(bad, LIMITS)
 
 
 @pytest.mark.parametrize("model, timeout", [("burger", 0.5), ("waffle", 0.5), ("turtlebot2", 0.6)])

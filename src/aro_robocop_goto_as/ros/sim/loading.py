@@ -33,7 +33,7 @@ def make_random(seed: int) -> str:
     return path
 
 
-def build_simulator(p: SimParams) -> Simulator:
+def load_simulator(p: SimParams) -> Simulator:
     """The simulator for these parameters; RobocopError when the world, the robots or a place for them is missing."""
     package = share()
     logging.getLogger(PACKAGE).parent = logging.getLogger("rosout")  # to which rospy's own messages go

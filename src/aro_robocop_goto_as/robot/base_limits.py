@@ -42,7 +42,7 @@ def clamp(value: float, limit: float) -> float:
     return max(-limit, min(limit, value))
 
 
-def accepted(twist: Twist2D, limits: Limits) -> Twist2D:
+def clamped(twist: Twist2D, limits: Limits) -> Twist2D:
     """A velocity command within the velocity limits; CommandError for NaN or infinity."""
     if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
         raise CommandError(
