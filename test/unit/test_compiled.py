@@ -53,7 +53,7 @@ def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 2: build"),
+        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 3: build"),
         ("int other(void) { return 1; }", "can't be used .*aro_caster_version.*: build"),
     ],
 )
@@ -77,7 +77,7 @@ def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
     warnings = ["-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
     for name, sources in SOURCES.items():
         paths = [os.path.join(ROOT, "src", "aro_robocop_goto_as", source) for source in sources]
-        options = ["-std=c99", "-g", "-O1", *warnings, *checks, "-fPIC", "-shared"]
+        options = ["-std=c99", "-g", "-O1", "-fopenmp-simd", *warnings, *checks, "-fPIC", "-shared"]
         path = os.path.join(folder, compiled.file_name(name))
         subprocess.run(["cc", *options, *paths, "-lm", "-o", path], check=True)
     return folder

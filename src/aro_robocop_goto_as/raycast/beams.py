@@ -11,7 +11,6 @@ from .caster_library import FanStruct
 from .cross_section import Slice
 from .scene import ScanPlane, Scene
 
-TURN = 2.0 * math.pi
 TOLERANCE = 1e-9  # [rad] as in caster.c
 REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 
@@ -33,8 +32,8 @@ class Fan:
         self._struct = FanStruct(
             angle_min,
             1.0 / increment,
+            (samples - 1) * increment + 2.0 * TOLERANCE,
             samples,
-            math.floor((samples - 1) * increment / TURN + TOLERANCE),
             address("dx", self._dx, (samples,)),
             address("dy", self._dy, (samples,)),
         )

@@ -6,15 +6,15 @@ import functools
 from .. import compiled
 from ..compiled import members
 
-VERSION = 2  # of the structures below and of movers and sensors.lidar, as in caster.c
+VERSION = 3  # of the structures below and of movers and sensors.lidar, as in caster.c
 
 
 class FanStruct(ctypes.Structure):
     """`struct fan` of caster.c."""
 
     _fields_ = [
-        *members(ctypes.c_double, "angle_min per_angle"),
-        *members(ctypes.c_int64, "samples turns"),
+        *members(ctypes.c_double, "angle_min per_angle end"),
+        ("samples", ctypes.c_int64),
         *members(ctypes.c_void_p, "dx dy"),
     ]
 
