@@ -16,7 +16,7 @@
 
 #define ARO_CASTER_VERSION 3
 #define TURN 6.283185307179586 /* [rad] */
-#define TOLERANCE 1e-9         /* [rad] a beam this close to a segment's end hits it: none slips between two walls */
+#define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */
 #define CULL (1.0 + 1e-9)      /* rounding errors never put a shape beyond max_range */
 
@@ -155,26 +155,32 @@ static double rough_bearing(double x, double y)
 static void cast_circle(const struct scan *scan, const double *circle)
 {
     const struct fan *fan = scan->fan;
-    double x, y, radius = circle[2], reach = scan->max_range * CULL + radius, away2, free2, side, half, low;
+    double x, y, radius = circle[2], reach = scan->max_range * CULL + radius, away2, free2, tangent, half, low, touch;
     int64_t first, last, i;
+    int inside;
 
     to_scanner_frame(scan, circle, &x, &y);
     away2 = x * x + y * y;
     if (away2 > reach * reach)
         return;
-    free2 = away2 - radius * radius; /* of the tangent from the scanner */
-    side = free2 <= 0.0 ? 1.0 : -1.0;
-    half = free2 <= 0.0 ? TURN / 2.0 : radius / sqrt(free2) + ROUGH; /* more than half of the angle that it takes up */
-    half = half < TURN / 4.0 || free2 <= 0.0 ? half : TURN / 4.0;
-    low = (free2 <= 0.0 ? 0.0 : rough_bearing(x, y)) - half;
+    free2 = away2 - radius * radius;
+    inside = free2 <= 0.0;
+    tangent = inside ? 0.0 : sqrt(free2);
+    half = radius / tangent < TURN / 4.0 ? radius / tangent : TURN / 4.0; /* at least half of the angle it takes up */
+    half = inside ? TURN / 2.0 : half + ROUGH;
+    low = (inside ? 0.0 : rough_bearing(x, y)) - half;
+    touch = -2.0 * TOLERANCE * radius * tangent; /* the squared half chord of a beam just outside the tangent */
 
     for (low = first_bearing(fan, low, 2.0 * half); low <= fan->end; low += TURN) {
         if (!beams_between(fan, low, 2.0 * half, &first, &last))
             continue;
         for (i = first; i <= last; i++) {
-            double along = fan->dx[i] * x + fan->dy[i] * y;
-            double distance = along + side * sqrt(along * along - free2); /* NaN: the beam misses the circle */
-            distance = distance < 0.0 ? 0.0 : distance;
+            double along = fan->dx[i] * x + fan->dy[i] * y, chord2 = along * along - free2, chord, distance;
+            if (!(chord2 >= touch))
+                continue;
+            chord = sqrt(chord2 > 0.0 ? chord2 : 0.0);
+            distance = along + (inside ? chord : -chord);
+            distance = distance > 0.0 ? distance : 0.0;
             scan->nearest[i] = distance < scan->nearest[i] ? distance : scan->nearest[i];
         }
     }

@@ -27,6 +27,20 @@ def test_every_beam_of_any_fan_matches_the_definition(fan: Fan, cut: Slice, pose
         assert least * (1.0 - 1e-7) - 1e-7 <= distance <= greatest * (1.0 + 1e-7) + 1e-7, f"beam {beam}"
 
 
+@pytest.mark.parametrize(
+    ("circle", "seen"),
+    [
+        ([1.0, 0.25, 0.25], [1.0, math.inf, math.inf, math.inf]),
+        ([0.25, -1.0, 0.25], [math.inf, math.inf, math.inf, 1.0]),
+        ([0.0, 0.0, 0.5], [0.5] * 4),
+    ],
+)
+def test_circle_is_seen_along_its_tangent_and_from_its_centre(circle: List[float], seen: List[float]) -> None:
+    cut = cut_of(np.zeros((0, 2, 2)), np.array([circle]))
+    quarters = Fan(0.0, math.pi / 2.0, 4).cast(np.zeros((1, 3)), cut)[0]
+    assert quarters.tolist() == pytest.approx(seen)
+
+
 @given(fans, cuts, poses, st.floats(0.0, 5.0))
 def test_maximum_range_removes_only_returns_beyond_it(fan: Fan, cut: Slice, pose: Pose, max_range: float) -> None:
     every = fan.cast(np.array([pose]), cut)
