@@ -8,21 +8,21 @@ from hypothesis import strategies as st
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.world.load import World
 
 MARGIN = 1e-7  # [rad] a beam this close to the edge of a shape may hit or miss it
 CLOSE = 1e-7  # [m] from a scanner this close to a shape, a beam may hit or miss it
 
 
-def cut_of(segments: np.ndarray, circles: np.ndarray) -> Slice:
+def cut_of(segments: np.ndarray, circles: np.ndarray) -> CrossSection:
     """A cross-section with these segments (m, 2, 2) and circles (k, 3) [m] only."""
-    cut = Slice(World("w", (), Pose2D(), (), ""), 0.1)
+    cut = CrossSection(World("w", (), Pose2D(), (), ""), 0.1)
     cut.segments, cut.circles = np.array(segments, float).reshape(-1, 2, 2), np.array(circles, float).reshape(-1, 3)
     return cut
 
 
-def bounds(cut: Slice, x: float, y: float, angle: float) -> Tuple[float, float]:
+def bounds(cut: CrossSection, x: float, y: float, angle: float) -> Tuple[float, float]:
     """The smallest and largest distance [m] that a beam from a point at a world angle [rad] may measure.
 
     Shapes are rotated so that the beam points along the x axis. The two differ where the beam only grazes a shape.

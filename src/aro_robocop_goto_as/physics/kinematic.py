@@ -14,7 +14,7 @@ import numpy as np
 from ..compiled import address, members
 from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.caster_library import GridStruct
-from ..raycast.cross_section import FEW, Slice
+from ..raycast.cross_section import FEW, CrossSection
 from ..raycast.grid_index import Tiles
 from ..raycast.movers import Movers
 from ..raycast.surroundings import body_heights
@@ -48,12 +48,12 @@ class _Outlines:
     """The union of a world's cross-sections at several heights [m]: segments (indexed if many) and circles."""
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float) -> None:
-        slices = [Slice(world, height) for height in heights]
-        self._segments = np.unique(np.concatenate([cut.segments for cut in slices]), axis=0)
+        sections = [CrossSection(world, height) for height in heights]
+        self._segments = np.unique(np.concatenate([cut.segments for cut in sections]), axis=0)
         self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
         # A pillar is cut at several heights; once each is enough. Motions compare by their values.
         found = dict.fromkeys(
-            (*circle, motion) for cut in slices for circle, motion in zip(cut.circles.tolist(), cut.motions)
+            (*circle, motion) for cut in sections for circle, motion in zip(cut.circles.tolist(), cut.motions)
         )
         self._circles = np.array([entry[:3] for entry in found], dtype=float).reshape(-1, 3)
         motions = enumerate(entry[3] for entry in found)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiled import address
 from .caster_library import FanStruct
-from .cross_section import Slice
+from .cross_section import CrossSection
 from .scene import ScanPlane, Scene
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
@@ -58,7 +58,7 @@ class Fan:
             raise ValueError(REFUSED[status])
         return distances
 
-    def cast(self, world_from_scans: np.ndarray, walls: Slice, reach: float = math.inf) -> np.ndarray:
+    def cast(self, world_from_scans: np.ndarray, walls: CrossSection, reach: float = math.inf) -> np.ndarray:
         """Distances (r, samples) [m] from poses (r, 3) [x m, y m, yaw rad]; +inf where nothing is within `reach` [m].
 
         For repeated scans in one world a Scene is faster.

@@ -19,7 +19,7 @@ FEW = 1000  # segments; above this number an index is worth its cost (measured)
 NO_SEGMENTS, NO_CIRCLES = np.zeros((0, 2, 2)), np.zeros((0, 3))
 
 
-class Slice:
+class CrossSection:
     """Segments and circles in the horizontal plane at one height, in the world frame.
 
     Only circles move: moving obstacles are upright cylinders or spheres. They are at time zero until they are moved.

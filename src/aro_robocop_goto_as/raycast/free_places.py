@@ -11,7 +11,7 @@ from ..geometry import Pose2D, compose
 from ..robot.model import RobotModel
 from ..world.model import World
 from .beams import Fan
-from .cross_section import Slice
+from .cross_section import CrossSection
 from .surroundings import Surroundings, body_heights
 
 HEIGHT = 0.1  # [m] of the cross-section
@@ -83,7 +83,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     The centre is free_place of the given pose. If there are too few places with CLEARANCE, those where the footprint
     has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
     """
-    walls, room = Slice(world, HEIGHT), _Room(world, model)
+    walls, room = CrossSection(world, HEIGHT), _Room(world, model)
     centre = _place(room, world, around)
     places: List[Pose2D] = []
     for clearance in (CLEARANCE, room.least):
@@ -95,7 +95,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     )
 
 
-def _connected_places(walls: Slice, room: _Room, centre: Pose2D, count: int, clearance: float) -> List[Pose2D]:
+def _connected_places(walls: CrossSection, room: _Room, centre: Pose2D, count: int, clearance: float) -> List[Pose2D]:
     """At most `count` places that are at least `clearance` [m] from all obstacles, the centre among them."""
     waiting: List[Tuple[int, Cell]] = [(0, (0, 0))]
     seen: Set[Cell] = {(0, 0)}
@@ -118,7 +118,7 @@ def _pose(centre: Pose2D, cell: Cell) -> Pose2D:
     return compose(centre, Pose2D(cell[0] * SPACING, cell[1] * SPACING))
 
 
-def _is_visible(pose: Pose2D, other: Pose2D, walls: Slice) -> bool:
+def _is_visible(pose: Pose2D, other: Pose2D, walls: CrossSection) -> bool:
     """Whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
     dx, dy = other.x - pose.x, other.y - pose.y
     away = math.hypot(dx, dy)

@@ -1,7 +1,6 @@
 """A grid of square tiles that finds the segments near a point."""
 
 import math
-from typing import Tuple
 
 import numpy as np
 
@@ -40,22 +39,6 @@ class Tiles:
         self._tile_marks = np.zeros(self._columns * self._rows, np.int32)
         self.segment_marks = np.zeros(len(segments), np.int32)  # struct.mark: compared with in the latest scan
         self.struct = self._make_struct()  # Create only once: it holds the mark counter.
-
-    def near(self, x: float, y: float, half: float) -> np.ndarray:
-        """Indices of a superset of the segments in the square x +- half, y +- half [m]; may contain duplicates."""
-        first_column, last_column = self._range(x - half - self._origin[0], x + half - self._origin[0], self._columns)
-        first_row, last_row = self._range(y - half - self._origin[1], y + half - self._origin[1], self._rows)
-        pieces = [self._everywhere]
-        if first_column <= last_column:
-            for row in range(first_row, last_row + 1):
-                start = self._starts[row * self._columns + first_column]
-                pieces.append(self._members[start : self._starts[row * self._columns + last_column + 1]])
-        return np.concatenate(pieces)
-
-    def _range(self, low: float, high: float, count: int) -> Tuple[int, int]:
-        """First and last tile along one axis between two distances [m] from the grid's corner."""
-        first, last = (min(max(length / self._side, -1.0), float(count)) for length in (low, high))
-        return max(math.floor(first), 0), min(math.floor(last), count - 1)
 
     def _make_struct(self) -> GridStruct:
         tiles, int32 = self._columns * self._rows, np.int32

@@ -8,7 +8,7 @@ import numpy as np
 from ..robot.model import RobotModel
 from ..world.model import Box, Cylinder, Obstacle, World
 from .beams import Fan
-from .cross_section import Slice
+from .cross_section import CrossSection
 from .scene import ScanPlane, Scene
 
 
@@ -47,27 +47,27 @@ class Scanners:
 
     def change_world(self, world: World) -> None:
         """Replace the world."""
-        self._slices = [Slice(world, height) for height in self._heights]
-        planes = [self._plane(height, walls) for height, walls in zip(self._heights, self._slices)]
+        self._sections = [CrossSection(world, height) for height in self._heights]
+        planes = [self._plane(height, walls) for height, walls in zip(self._heights, self._sections)]
         mounts = [model.base_from_scan.on_plane() for model in self._models]
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
         self._scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
 
-    def _plane(self, height: float, walls: Slice) -> ScanPlane:
+    def _plane(self, height: float, walls: CrossSection) -> ScanPlane:
         """What scanners at one height see, the robots included."""
         circles = [circles_at(model, height) for model in self._models]
         owners = np.repeat(np.arange(len(self._models)), [len(of_one) for of_one in circles])
         return ScanPlane(walls, np.concatenate(circles), owners)
 
-    def walls(self, robot: int) -> Slice:
+    def walls(self, robot: int) -> CrossSection:
         """The world's cross-section at the height of one robot's scanner."""
-        return self._slices[self._plane_of[robot]]
+        return self._sections[self._plane_of[robot]]
 
     def distances(self, fan: Fan, max_range: float, robots: Sequence[int], time: float) -> np.ndarray:
         """Exact distances (r, samples) [m] seen by the given robots at a time [s]; +inf beyond max_range [m].
 
         In the plane that TF describes: scanners are level, at their height on an upright robot.
         """
-        for walls in self._slices:
+        for walls in self._sections:
             walls.move(time)
         return fan.scan(self._scene, robots, max_range)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..compiled import address
 from .caster_library import PlaneStruct, SceneStruct, load
-from .cross_section import Slice
+from .cross_section import CrossSection
 
 NO_BODIES = np.zeros((0, 3))
 NO_OWNERS = np.zeros(0, np.int64)
@@ -16,7 +16,7 @@ NO_OWNERS = np.zeros(0, np.int64)
 class ScanPlane:
     """What scanners at one height see: a world's cross-section and circles fixed to robots."""
 
-    def __init__(self, walls: Slice, bodies: np.ndarray = NO_BODIES, owners: np.ndarray = NO_OWNERS) -> None:
+    def __init__(self, walls: CrossSection, bodies: np.ndarray = NO_BODIES, owners: np.ndarray = NO_OWNERS) -> None:
         """Bodies (b, [x, y, radius]) [m], each in the frame of the robot that owners (b,) names by its index."""
         self.walls = walls
         self.bodies, self.owners = bodies, owners

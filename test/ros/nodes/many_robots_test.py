@@ -36,7 +36,7 @@ from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.ros.convert import from_pose_msg
 from aro_robocop_goto_as.world.load import find_world, load_world
 
@@ -219,7 +219,7 @@ class ManyRobots(unittest.TestCase):
     def walls(self):
         """The default world at the height of a scanner."""
         worlds = os.path.join(rospkg.RosPack().get_path(PACKAGE), "worlds")
-        return Slice(load_world(find_world("stage_4", worlds)), SCAN_HEIGHT)
+        return CrossSection(load_world(find_world("stage_4", worlds)), SCAN_HEIGHT)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, wrap_angle
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.surroundings import body_heights
 from aro_robocop_goto_as.robot.base_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
@@ -87,9 +87,9 @@ def test_blocked_motion_is_that_of_the_definition(
     for robot in range(len(jitters)):
         if engine.touching(robot):  # as it starts: rounding decides what blocks it
             engine.place(robot, Pose2D(10.0 + robot, 10.0))
-    slices = [Slice(world, height) for height in body_heights(model_named("burger"))]
-    segments = np.unique(np.concatenate([cut.segments for cut in slices]), axis=0)
-    circles = np.unique(np.concatenate([cut.circles for cut in slices]), axis=0)
+    sections = [CrossSection(world, height) for height in body_heights(model_named("burger"))]
+    segments = np.unique(np.concatenate([cut.segments for cut in sections]), axis=0)
+    circles = np.unique(np.concatenate([cut.circles for cut in sections]), axis=0)
     for sent in commands:
         for _ in range(3):
             before = poses.copy()

@@ -10,7 +10,7 @@ from support import analytic_distances, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 
 LAB = Fan(0.0, 6.28319 / 359, 360)
@@ -47,7 +47,7 @@ def test_every_beam_of_any_fan_ends_at_the_nearest_obstacle(
     angles = yaw + fan.angle_min + fan.increment * np.arange(fan.samples)
     near, far = (analytic_distances(world, x, y, angles + turn, 1e3) for turn in (-1e-7, 1e-7))
     expected = analytic_distances(world, x, y, angles, 1e3)
-    seen = fan.cast(np.array([[x, y, yaw]]), Slice(world, 0.182))[0]
+    seen = fan.cast(np.array([[x, y, yaw]]), CrossSection(world, 0.182))[0]
     # A beam that just grazes an obstacle may hit or miss it; all others must match.
     with np.errstate(invalid="ignore"):
         grazing = ~((near == far) | (np.abs(near - far) < 1e-3))
@@ -55,7 +55,7 @@ def test_every_beam_of_any_fan_ends_at_the_nearest_obstacle(
 
 
 def test_casting_many_scanners_at_once_equals_casting_each_one() -> None:
-    walls = Slice(world_named("stage_4"), 0.182)
+    walls = CrossSection(world_named("stage_4"), 0.182)
     poses = np.random.default_rng(3).uniform(-2.2, 2.2, (300, 3))
     together = LAB.cast(poses, walls)
     assert together.shape == (300, 360)
@@ -64,25 +64,25 @@ def test_casting_many_scanners_at_once_equals_casting_each_one() -> None:
 
 
 def test_no_beam_passes_through_the_walls_of_a_closed_room() -> None:
-    walls = Slice(world_named("maze_1"), 0.182)
+    walls = CrossSection(world_named("maze_1"), 0.182)
     poses = np.random.default_rng(5).uniform(-0.4, 5.4, (2000, 3))
     assert np.isfinite(LAB.cast(poses, walls)).all()
 
 
 def test_beams_aimed_at_corners_hit_them() -> None:
-    room = Slice(World("w", (Obstacle("o", Pose3D(), Box((4.0, 4.0, 1.0))),), Pose2D(), (), ""), 0.182)
+    room = CrossSection(World("w", (Obstacle("o", Pose3D(), Box((4.0, 4.0, 1.0))),), Pose2D(), (), ""), 0.182)
     eight = Fan(0.0, math.pi / 4, 8)
     expected = [2.0, 2.0 * math.sqrt(2.0)] * 4
     assert eight.cast(np.zeros((1, 3)), room)[0] == pytest.approx(expected)
 
 
 def test_scanner_inside_a_circle_sees_its_far_side() -> None:
-    drum = Slice(World("w", (Obstacle("o", Pose3D((0.5, 0, 0)), Cylinder(2.0, 1.0)),), Pose2D(), (), ""), 0.182)
+    drum = CrossSection(World("w", (Obstacle("o", Pose3D((0.5, 0, 0)), Cylinder(2.0, 1.0)),), Pose2D(), (), ""), 0.182)
     assert Fan(0.0, math.pi, 2).cast(np.zeros((1, 3)), drum)[0] == pytest.approx([2.5, 1.5])
 
 
 def test_scan_of_an_empty_world_has_no_returns() -> None:
-    assert np.isinf(LAB.cast(np.zeros((2, 3)), Slice(World("w", (), Pose2D(), (), ""), 0.182))).all()
+    assert np.isinf(LAB.cast(np.zeros((2, 3)), CrossSection(World("w", (), Pose2D(), (), ""), 0.182))).all()
 
 
 def test_fan_without_beams_or_with_negative_increment_is_refused() -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from reference_beams import bounds, circles, cut_of, cuts, fans, lattice, poses, segments
 
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.raycast.scene import ScanPlane, Scene
 
@@ -19,7 +19,7 @@ LAB = Fan(0.0, 6.28319 / 359, 360)
 
 
 @given(fans, cuts, poses)
-def test_every_beam_of_any_fan_matches_the_definition(fan: Fan, cut: Slice, pose: Pose) -> None:
+def test_every_beam_of_any_fan_matches_the_definition(fan: Fan, cut: CrossSection, pose: Pose) -> None:
     x, y, yaw = pose
     seen = fan.cast(np.array([pose]), cut)[0]
     for beam, distance in enumerate(seen.tolist()):
@@ -42,7 +42,9 @@ def test_circle_is_seen_along_its_tangent_and_from_its_centre(circle: List[float
 
 
 @given(fans, cuts, poses, st.floats(0.0, 5.0))
-def test_maximum_range_removes_only_returns_beyond_it(fan: Fan, cut: Slice, pose: Pose, max_range: float) -> None:
+def test_maximum_range_removes_only_returns_beyond_it(
+    fan: Fan, cut: CrossSection, pose: Pose, max_range: float
+) -> None:
     every = fan.cast(np.array([pose]), cut)
     seen = fan.cast(np.array([pose]), cut, reach=max_range)
     np.testing.assert_array_equal(seen, np.where(every <= max_range, every, np.inf))
@@ -91,7 +93,7 @@ def test_mark_counter_restarts_at_its_limit() -> None:
 
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
-    fan: Fan, footprints: List[Pose], walls: List[Slice], data: st.DataObject
+    fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
 ) -> None:
     robots = range(len(footprints))
     bodies = np.array(data.draw(st.lists(st.tuples(lattice, lattice, st.floats(0.05, 0.5)), max_size=9)))

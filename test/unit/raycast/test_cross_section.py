@@ -11,7 +11,7 @@ from support import ORIGIN, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, Sphere, World
 
 HEIGHT = 0.182
@@ -25,7 +25,7 @@ def _world(geometry: Geometry, pose: Pose3D) -> World:
 
 
 def _cast(world: World, origin: Pose2D = ORIGIN) -> np.ndarray:
-    return FAN.cast(np.array([[origin.x, origin.y, origin.yaw]]), Slice(world, HEIGHT))[0]
+    return FAN.cast(np.array([[origin.x, origin.y, origin.yaw]]), CrossSection(world, HEIGHT))[0]
 
 
 def _beam(angle: float) -> int:
@@ -100,7 +100,7 @@ def test_a_tilted_plane_is_seen_where_it_crosses_the_lidars_height() -> None:
 
 def test_moving_obstacles_are_updated_in_place_for_any_time() -> None:
     world = world_named("stage_4")
-    moved = Slice(world, 0.182)
+    moved = CrossSection(world, 0.182)
     array, at_start = moved.circles, moved.circles.tolist()
     for time in (1.3, 250.0, 0.4, 0.0):
         moved.move(time)

@@ -8,7 +8,7 @@ from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
 from aro_robocop_goto_as.world.model import Box, Obstacle, Plane, World
 
@@ -26,7 +26,7 @@ def value_at(occupancy, x, y):
 @pytest.mark.parametrize("name", ["stage_4", "world", "maze_1"])
 def test_scan_hits_fall_on_occupied_cells_of_the_map(name):
     world = world_named(name)
-    cut = Slice(world, 0.182)
+    cut = CrossSection(world, 0.182)
     occupancy = grid_of(cut, world.spawn, 0.05)
     fan = Fan(0.0, math.pi / 180, 360)
     distances = fan.cast(np.array([[world.spawn.x, world.spawn.y, 0.0]]), cut)[0]
@@ -39,7 +39,7 @@ def test_scan_hits_fall_on_occupied_cells_of_the_map(name):
 
 
 def test_unreachable_cells_are_unknown():
-    occupancy = grid_of(Slice(world_named("stage_4"), 0.182), Pose2D(-0.7, 0.0), 0.05)
+    occupancy = grid_of(CrossSection(world_named("stage_4"), 0.182), Pose2D(-0.7, 0.0), 0.05)
     assert value_at(occupancy, 0.4, 0.5) == UNKNOWN  # within a pillar
     assert value_at(occupancy, 2.9, 2.9) == UNKNOWN  # outside
     assert value_at(occupancy, 1.8, 1.8) == FREE
@@ -47,7 +47,7 @@ def test_unreachable_cells_are_unknown():
 
 
 def test_cells_that_any_of_several_robots_reaches_are_free():
-    cut = Slice(world_named("stage_4"), 0.182)
+    cut = CrossSection(world_named("stage_4"), 0.182)
     occupancy = occupancy_of(cut.segments, cut.circles, [Pose2D(-0.7, 0.0), Pose2D(2.9, 2.9), Pose2D(1e6, 0.0)], 0.05)
     assert value_at(occupancy, 2.9, 2.9) == value_at(occupancy, 1.8, 1.8) == FREE
     assert value_at(occupancy, 0.4, 0.5) == UNKNOWN  # within a pillar
@@ -55,7 +55,7 @@ def test_cells_that_any_of_several_robots_reaches_are_free():
 
 
 def test_empty_world_is_a_small_free_map():
-    occupancy = grid_of(Slice(world_named("empty"), 0.182), Pose2D(3.0, 4.0), 0.1)
+    occupancy = grid_of(CrossSection(world_named("empty"), 0.182), Pose2D(3.0, 4.0), 0.1)
     assert (occupancy.cells == FREE).all() and occupancy.cells.shape == (10, 10)
     assert (occupancy.origin.x, occupancy.origin.y) == (2.5, 3.5)
 
@@ -71,7 +71,7 @@ def test_vertical_plane_does_not_extend_the_map_but_is_drawn_in_it():
         (),
         "",
     )
-    occupancy = grid_of(Slice(world, 0.182), Pose2D(), 0.05)
+    occupancy = grid_of(CrossSection(world, 0.182), Pose2D(), 0.05)
     assert max(occupancy.cells.shape) < 100
     assert value_at(occupancy, 1.0 - 1e-6, 0.9) == OCCUPIED or value_at(occupancy, 1.0 + 1e-6, 0.9) == OCCUPIED
     assert value_at(occupancy, 2.0, 0.0) == UNKNOWN and value_at(occupancy, 0.5, 0.0) == FREE
@@ -79,5 +79,5 @@ def test_vertical_plane_does_not_extend_the_map_but_is_drawn_in_it():
 
 def test_huge_world_gets_coarser_cells():
     far = World("w", (Obstacle("b", Pose3D((900.0, 0.0, 0.1)), Box((1.0, 1.0, 1.0))),), Pose2D(), (), "")
-    occupancy = grid_of(Slice(far, 0.182), Pose2D(), 0.05)
+    occupancy = grid_of(CrossSection(far, 0.182), Pose2D(), 0.05)
     assert max(occupancy.cells.shape) <= 4097 and occupancy.resolution == pytest.approx(901.5 / 4096, rel=1e-3)

@@ -18,7 +18,7 @@ from support import model_named
 
 from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.free_places import free_place
 from aro_robocop_goto_as.world.load import load_world
 
@@ -42,7 +42,7 @@ def written(case, folder):
 
 
 def beam(world, x, y, yaw):
-    walls = Slice(world, 0.182)
+    walls = CrossSection(world, 0.182)
     return float(Fan(0.0, 1.0, 1).cast(np.array([[x, y, yaw]]), walls)[0, 0])
 
 

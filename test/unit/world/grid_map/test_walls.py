@@ -10,7 +10,7 @@ from map_files import room, write_map
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
@@ -27,12 +27,12 @@ def test_unknown_cells_are_not_walls(tmp_path):
     pixels[5:35, 5:35] = 254
     world = load_world(write_map(tmp_path, pixels))
     assert (world.occupancy.cells == -1).sum() == 700
-    assert len(Slice(world, HEIGHT).segments) == 0
+    assert len(CrossSection(world, HEIGHT).segments) == 0
 
 
 def test_origin_with_yaw_rotates_the_walls(tmp_path):
     world = load_world(write_map(tmp_path, room(), origin=f"[1, 2, {math.pi / 2}]"))
-    cut = Slice(world, HEIGHT).segments
+    cut = CrossSection(world, HEIGHT).segments
     assert cut[..., 0].min() == pytest.approx(1.0 - 30 * 0.05) and cut[..., 0].max() == pytest.approx(1.0)
     assert cut[..., 1].min() == pytest.approx(2.0) and cut[..., 1].max() == pytest.approx(2.0 + 40 * 0.05)
 
@@ -42,7 +42,7 @@ def test_raw_values_beyond_the_threshold_are_walls_and_negative_ones_unknown(tmp
     pixels[5, 5:9], pixels[9, 5:9], pixels[13, 5:9] = 66, 120, 200
     world = load_world(write_map(tmp_path, pixels, mode="raw"))
     assert sorted(np.unique(world.occupancy.cells)) == [-56, 1, 66, 120]
-    assert sorted(set(Slice(world, HEIGHT).segments[..., 1].ravel().round(3))) == [1.0, 1.05, 1.2, 1.25]
+    assert sorted(set(CrossSection(world, HEIGHT).segments[..., 1].ravel().round(3))) == [1.0, 1.05, 1.2, 1.25]
 
 
 def edges_one_by_one(occupied):
@@ -88,7 +88,7 @@ def test_scan_hits_in_an_extruded_map_fall_on_occupied_cells(tmp_path_factory, s
     world = load_world(write_map(directory, pixels, origin="[-1.3, 0.4, 0.3]"))
     occupancy = world.occupancy
     pose = compose(occupancy.origin, Pose2D(1.5, 1.5))
-    distances = LAB.cast(np.array([[pose.x, pose.y, 0.0]]), Slice(world, HEIGHT))[0]
+    distances = LAB.cast(np.array([[pose.x, pose.y, 0.0]]), CrossSection(world, HEIGHT))[0]
     angles = (6.28319 / 359 * np.arange(360))[np.isfinite(distances)]
     distances = distances[np.isfinite(distances)]
     assert len(distances) > 100
@@ -159,7 +159,7 @@ def test_map_of_4000_by_4000_cells_has_less_than_80000_wall_segments(big):
 
 
 def test_scan_in_a_big_map_equals_a_scan_of_all_its_walls(big):
-    cut = Slice(big, HEIGHT)
+    cut = CrossSection(big, HEIGHT)
     poses = free_poses(big, 5)
     seen = LAB.cast(poses, cut, reach=10.0)
     endless = LAB.cast(poses[:1], cut)
@@ -170,7 +170,7 @@ def test_scan_in_a_big_map_equals_a_scan_of_all_its_walls(big):
 
 
 def test_scan_in_a_big_map_examines_only_nearby_walls(big):
-    cut, tried = Slice(big, HEIGHT), []
+    cut, tried = CrossSection(big, HEIGHT), []
     for pose in free_poses(big, 100):
         LAB.cast(pose[None, :], cut, reach=10.0)
         tried.append((cut.tiles.segment_marks == cut.tiles.struct.mark).sum())
@@ -180,7 +180,7 @@ def test_scan_in_a_big_map_examines_only_nearby_walls(big):
 def test_both_engines_stop_the_robot_at_a_wall_of_a_big_map(big, burger):
     ahead = Fan(-0.25, 0.01, 51)
     poses = free_poses(big, 300) * [1.0, 1.0, 0.0]
-    seen = ahead.cast(poses, Slice(big, HEIGHT), reach=10.0) * np.cos(-0.25 + 0.01 * np.arange(51))
+    seen = ahead.cast(poses, CrossSection(big, HEIGHT), reach=10.0) * np.cos(-0.25 + 0.01 * np.arange(51))
     facing_a_wall = (np.ptp(np.minimum(seen, 9.0), axis=1) < 1e-6) & (seen[:, 25] > 0.5) & (seen[:, 25] < 1.5)
     (x, y, _), distance = poses[facing_a_wall][0], seen[facing_a_wall][0, 25]
     for drive in ("wheels", "kinematic"):

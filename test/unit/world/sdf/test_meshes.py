@@ -8,7 +8,7 @@ from sdf_files import mesh_world, only_obstacle, raised_by, world_file
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.raycast.beams import Fan
-from aro_robocop_goto_as.raycast.cross_section import Slice
+from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
@@ -55,7 +55,7 @@ def test_mesh_of_a_box_equals_the_box_for_scans_and_physics(tmp_path, kind):
     seen, met = [], []
     for path in (as_box, as_mesh):
         world = load_world(path)
-        seen.append(fan.cast(np.zeros((1, 3)), Slice(world, 0.182))[0])
+        seen.append(fan.cast(np.zeros((1, 3)), CrossSection(world, 0.182))[0])
         physics = bullet_engine(world)
         met.append(bullet_rays(physics, (0.0, 0.0, 0.182), ends))
         physics.close()
@@ -75,7 +75,7 @@ def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
     met = [bullet_rays(physics, tuple(start), np.array([[0.0, 0.0, 0.1]]))[0] for start in starts_far.tolist()]
     physics.close()
     assert np.array(met) == pytest.approx(2.0 / 3.0, abs=0.003)
-    cut = Slice(world, 0.1)
+    cut = CrossSection(world, 0.1)
     assert np.hypot(cut.segments[..., 0], cut.segments[..., 1]) == pytest.approx(np.sqrt(0.99), abs=1e-3)
 
 
