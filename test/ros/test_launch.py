@@ -1,6 +1,7 @@
 """Names, namespaces and parameters of the nodes in the launch files, for one robot and for many; nothing is started."""
 
 import os
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -191,6 +192,16 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
     launch = Launch("sim:=false", bridge, "ignore_goal_frame:=false")
     assert launch.given(BRIDGE) == {**values, "ignore_goal_frame": False}
     assert Launch("sim:=false", bridge, "robots:=red 0 0").given("/red" + BRIDGE) == values
+
+
+@pytest.mark.parametrize(
+    "robots", ["99999999999", ";".join(f"r{i} 0 {i}" for i in range(400))], ids=["counted", "listed"]
+)
+def test_more_robots_than_launch_files_can_be_nested_are_refused(robots):
+    command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
+    ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, universal_newlines=True)
+    assert ended.returncode == 1
+    assert ended.stderr.strip().startswith("[FATAL] PARAMETER: robots: too many for a launch file")
 
 
 def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):

@@ -24,7 +24,7 @@ def robots_from(p: RobotParams, world: World, load: Callable[[str], RobotModel])
         return [RobotSpec("", model, free_place(world, spawn, model))]
     if not text:
         return [RobotSpec("", model, spawn)]
-    if text.isdigit():
+    if text.isdecimal():
         count = parse_count(text)
         names = [f"robot_{i}" for i in range(1, count + 1)]
         return [RobotSpec(name, model, pose) for name, pose in zip(names, free_places(world, spawn, count, model))]

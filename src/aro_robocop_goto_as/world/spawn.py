@@ -6,6 +6,9 @@ from ..errors import ParameterError
 from ..geometry import FARTHEST, Pose2D
 
 
+MAX_COUNT = 1000  # of robots: more than any machine simulates, yet few enough to look for room for them
+
+
 class SpawnRequest(NamedTuple):
     """One entry of a list of robots; model: its name, empty if the entry gives none."""
 
@@ -31,10 +34,12 @@ def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
 
 
 def parse_count(text: str) -> int:
-    """The number of robots in a text of digits; ParameterError if there are none."""
-    count = int(text)
+    """The number of robots in a text of digits; ParameterError if there are none or more than MAX_COUNT."""
+    count = int(text) if len(text) <= len(str(MAX_COUNT)) else MAX_COUNT + 1
     if count < 1:
         raise ParameterError("robots: expected at least 1")
+    if count > MAX_COUNT:
+        raise ParameterError(f"robots: expected at most {MAX_COUNT}")
     return count
 
 

@@ -20,7 +20,7 @@ def check(given: Dict[str, Any], node: str) -> None:
     urdf_of(p.robots.model, share())
     parse_spawn(p.robots.spawn, Pose2D())
     text = p.robots.robots.strip()
-    if text.isdigit():
+    if text.isdecimal():
         parse_count(text)
     elif text:
         for request in parse_robots(text):

@@ -6,12 +6,19 @@ from typing import Any, Callable
 
 from roslaunch import nodeprocess, pmon
 
+from ...errors import ParameterError
 from ...process.parent_death import end_with_parent
 
 
 def load_launch_files(parent: Any) -> None:
-    """Load the files of a ROSLaunchParent that is not started yet; its start() loads them only if nobody has."""
-    parent._load_config()
+    """Load the files of a ROSLaunchParent that is not started yet; its start() loads them only if nobody has.
+
+    ParameterError for so many robots that the files, one within another for each robot, are nested too deeply.
+    """
+    try:
+        parent._load_config()
+    except RecursionError as error:
+        raise ParameterError("robots: too many for a launch file, or launch files that include themselves") from error
 
 
 def add_early_listener(parent: Any, listener: Any) -> None:

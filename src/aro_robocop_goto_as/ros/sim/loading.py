@@ -54,7 +54,7 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
     rospy.loginfo("world %s from %s", world.name, world.path)
     first = simulator.robots[0].spawn
     is_elsewhere = not world.has_spawn and (first.x, first.y) != (0.0, 0.0)
-    if is_elsewhere and not p.robots.spawn.strip() and (p.robots.robots.strip() or "1").isdigit():
+    if is_elsewhere and not p.robots.spawn.strip() and (p.robots.robots.strip() or "1").isdecimal():
         rospy.logwarn(
             "world %s does not say where robots start, and (0, 0) is occupied; spawning at the nearest free pose "
             "(%.2f, %.2f); spawn:='X Y' chooses another one",
