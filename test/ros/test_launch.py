@@ -199,7 +199,7 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
 )
 def test_more_robots_than_launch_files_can_be_nested_are_refused(robots):
     command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
-    ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, universal_newlines=True)
+    ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, text=True)
     assert ended.returncode == 1
     assert ended.stderr.strip().startswith("[FATAL] PARAMETER: robots: too many for a launch file")
 

@@ -135,7 +135,7 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
         "joint": [True, 1, 1],
         "no joint": False,
         "physics": [True, False, 1.0, True],
-        "set": [True, False, False, False],
+        "set": [True, False, False, False, False, False],
         "factor": 2.0,
     }
 

@@ -14,6 +14,7 @@ from .model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
 
 LOW = 0.2  # [m] above z = 0: the highest top of a slab that is ground
 LARGE = 3.0  # [m] the shortest side of a slab that is ground
+TILT = 1e-3  # [rad] that a slab may be tilted; then its highest point is the ground
 LEVEL = 1e-6  # [m] by which a top may be higher than the ground and still be part of it
 FILLED = 0.9  # of its rectangle: what the top of a mesh has to cover to be a slab
 
@@ -76,7 +77,9 @@ def _slab(obstacle: Obstacle) -> Optional[_Slab]:
         return _Slab(height, Pose2D(), math.inf, math.inf) if math.isfinite(height) else None
     if isinstance(shape, Mesh):
         return _slab_of_mesh(obstacle.pose, shape, height)
-    if not isinstance(shape, (Box, Cylinder)) or obstacle.motion is not None or not obstacle.pose.is_upright():
+    if not isinstance(shape, (Box, Cylinder)) or obstacle.motion is not None:
+        return None
+    if abs(float(rotation_matrix(obstacle.pose.orientation)[2, 2])) < math.cos(TILT):  # near -1: it is turned over
         return None
     length, width = shape.size[:2] if isinstance(shape, Box) else (2.0 * shape.radius,) * 2
     return _Slab(height, obstacle.pose.on_plane(), length, width) if min(length, width) >= LARGE else None

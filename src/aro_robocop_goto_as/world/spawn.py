@@ -5,7 +5,6 @@ from typing import List, NamedTuple
 from ..errors import ParameterError
 from ..geometry import FARTHEST, Pose2D
 
-
 MAX_COUNT = 1000  # of robots: more than any machine simulates, yet few enough to look for room for them
 
 

@@ -2,6 +2,7 @@
 """Calls Gazebo's services about links, joints and physics as lab code does, and prints the responses as JSON."""
 
 import json
+import math
 
 import rospy
 from gazebo_calls import BOX, ROBOT, call, position
@@ -91,6 +92,8 @@ def main():
         physics(time_step=0.5),
         physics(gravity=Vector3(0.0, 0.0, -1.6)),
         physics(max_update_rate=-1.0),
+        physics(time_step=math.nan),
+        physics(gravity=Vector3(math.nan, 0.0, -9.8)),
     ]
     doubled = call("get_physics_properties", GetPhysicsProperties)
     answers["factor"] = round(doubled.max_update_rate * doubled.time_step, 6)

@@ -57,6 +57,8 @@ GROUNDS = {  # case: (body of the world, height of the ground [m])
     "sunken ground plane": (PLANE.replace("</uri>", "</uri><pose>0 0 -0.1 0 0 0</pose>"), 0.0),
     "too high": (PLANE + slab(box(20, 20, 0.5)), 0.0),
     "too small": (PLANE + slab(box(20, 2, 0.1)), 0.0),
+    "turned over": (PLANE + slab(turn="3.141592653589793 0 0.3"), 0.05),
+    "tilted by as little as a file's digits": (PLANE + slab(turn="0 1e-4 0"), 0.051),
     "not level": (PLANE + slab(turn="0 0.02 0"), 0.0),
     "under the spawn, not the origin": (
         f'{PLANE}<frame name="robot_spawn"><pose>30 1 0.05 0 0 0</pose></frame>{slab(at=(30.0, 0.0))}',

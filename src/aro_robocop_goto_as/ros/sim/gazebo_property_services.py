@@ -139,9 +139,10 @@ class GazeboProperties:
     def _refused(self, request: Any) -> str:
         """Why these physics are impossible; empty if they are not."""
         time_step, gravity = 1.0 / self._simulator.rate, request.gravity
-        if abs(request.time_step - time_step) > SLOP:
+        if not abs(request.time_step - time_step) <= SLOP:  # true for NaN
             return f"time_step is {time_step:g} s, by the parameter physics_rate; it cannot be changed"
-        if max(abs(gravity.x), abs(gravity.y), abs(gravity.z + STANDARD_GRAVITY)) > GRAVITY_SLOP:
+        differences = (gravity.x, gravity.y, gravity.z + STANDARD_GRAVITY)
+        if not all(abs(difference) <= GRAVITY_SLOP for difference in differences):
             return f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed"
         if not 0.0 <= request.max_update_rate < 1e9:
             return f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more"

@@ -8,6 +8,7 @@ import yaml
 
 from ...errors import WorldError
 from ...geometry import Pose2D, wrap_angle
+from ...limits import FARTHEST
 from ...reading import finite_numbers
 from .image import SUPPORTED
 
@@ -76,6 +77,8 @@ class _Entries:
         """A key's pose, a list of three numbers [m, m, rad]; WorldError if it is anything else."""
         node = self.nodes[key]
         x, y, yaw = self._numbers(key, node.value if isinstance(node, yaml.SequenceNode) else [], 3, expected)
+        if max(abs(x), abs(y)) > FARTHEST:
+            raise self.error(key, f"{expected}, within +-{FARTHEST:g} m")
         return Pose2D(x, y, wrap_angle(yaw))
 
     def _numbers(self, key: str, nodes: Sequence[Any], count: int, expected: str) -> Tuple[float, ...]:

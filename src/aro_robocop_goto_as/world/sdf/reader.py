@@ -17,6 +17,7 @@ from .state import SavedPoses, state_poses
 
 SPAWN_FRAME = "robot_spawn"
 MAX_DEPTH = 20  # of models within models
+MAX_MODELS = 5000  # as a file that includes another one twice, which includes a third one twice, ...
 
 # Children of SDF's elements that have no effect on a robot among fixed obstacles: first those that users may expect to
 # have one, which World.ignored lists. A child that is neither here nor read is refused.
@@ -238,6 +239,8 @@ class _Reader:
         if unused != name:
             self.report_difference(f"the name '{name}' is already taken, so this model is called '{unused}'", element)
         self.used.add((*parent.names, unused))
+        if len(self.used) > MAX_MODELS:
+            raise xml.error(element, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
         return unused
 
     def saved_pose(self, name: str, pose: Pose3D) -> Pose3D:

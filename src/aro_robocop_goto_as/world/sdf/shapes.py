@@ -5,6 +5,7 @@ from typing import Callable, Dict, Optional
 
 import numpy as np
 
+from ...limits import FARTHEST
 from ...reading import Element, file_of
 from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml
@@ -45,7 +46,11 @@ class Shapes:
         factors = (1.0, 1.0, 1.0) if scale is None else xml.numbers(scale, 3)
         if 0.0 in factors:
             raise xml.error(mesh, f"<scale> is '{' '.join(f'{f:g}' for f in factors)}', expected factors other than 0")
-        return Mesh(self._triangles[path] * factors, path)
+        with np.errstate(over="ignore"):
+            corners = self._triangles[path] * factors
+        if np.abs(corners).max() > FARTHEST:
+            raise xml.error(mesh, f"{path} has corners beyond +-{FARTHEST:g} m")
+        return Mesh(corners, path)
 
 
 def _box(box: Element) -> Box:

@@ -24,6 +24,7 @@ _DEFAULT = "model.sdf"
 def model_name(uri: str) -> str:
     """The name of the model that a model:// URI, or an address of Gazebo Fuel, refers to as a whole; else empty."""
     scheme, _, path = _local(uri).partition("://")
+    path = path[: -len(_DEFAULT) - 1] if path.endswith(f"/{_DEFAULT}") else path
     return path if scheme == "model" and "/" not in path else ""
 
 

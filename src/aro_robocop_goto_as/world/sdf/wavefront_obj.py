@@ -56,7 +56,7 @@ def _lines(content: bytes) -> List[Tuple[int, bytes]]:
 
 def _face(words: List[bytes], defined: int) -> List[int]:
     """A face's vertices: 1 is the file's first one, -1 the last one defined before the face; `/...` is skipped."""
-    if len(words) >= 3 and all(re.fullmatch(rb"-?\d+(/.*)?", word) for word in words):
+    if len(words) >= 3 and all(re.fullmatch(rb"-?\d{1,18}(/.*)?", word) for word in words):
         indices = [int(word.partition(b"/")[0]) for word in words]
         if all(index > 0 or -defined <= index < 0 for index in indices):
             return [index - 1 if index > 0 else defined + index for index in indices]

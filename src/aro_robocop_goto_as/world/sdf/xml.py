@@ -8,6 +8,7 @@ from typing import Iterable, Iterator, Optional, Sequence, Set, Tuple
 
 from ...errors import WorldError
 from ...geometry import Pose3D
+from ...limits import FARTHEST
 from ...reading import Element, file_of, finite_numbers, parse_xml, reading
 
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "1.8")
@@ -131,12 +132,15 @@ def boolean(element: Element, tag: str) -> Optional[bool]:
 
 
 def numbers(element: Element, count: int, positive: bool = False) -> Tuple[float, ...]:
-    """The element's `count` finite numbers, in SDF's units."""
+    """The element's `count` finite numbers, in SDF's units, all within FARTHEST."""
     text = " ".join(text_of(element).split())
     try:
-        return finite_numbers(text, count, positive)
+        values = finite_numbers(text, count, positive)
     except ValueError as exc:
         raise error(element, f"<{element.tag}> is '{text}', {exc}") from exc
+    if max(map(abs, values)) > FARTHEST:
+        raise error(element, f"<{element.tag}> is '{text}', expected numbers within +-{FARTHEST:g}")
+    return values
 
 
 def pose_of(element: Element) -> Pose3D:

@@ -83,6 +83,11 @@ BROKEN = {  # case: (text of the YAML, line of the error or None, what the messa
     "no resolution": (yaml_of(resolution="0"), 2, ["resolution is '0'", "greater than 0"]),
     "resolution in words": (yaml_of(resolution="5 cm"), 2, ["resolution is '5 cm'", "metres per cell"]),
     "origin without yaw": (yaml_of(origin="[0, 0]"), 3, ["origin is [0, 0], expected three numbers [x, y, yaw]"]),
+    "origin out of range": (
+        yaml_of(origin="[0, 1e300, 0]"),
+        3,
+        ["origin is [0, 1e300, 0], expected", "within +-1e+06 m"],
+    ),
     "origin in words": (yaml_of(origin="[0, left, 0]"), 3, ["origin is [0, left, 0], expected three numbers"]),
     "origin of one number": (yaml_of(origin="0"), 3, ["origin is '0', expected three numbers"]),
     "origin within a list": (yaml_of(origin="[[0, 0, 0]]"), 3, ["origin is [[0, 0, 0]], expected three numbers"]),

@@ -103,6 +103,8 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
     "beyond.obj": (CORNERS + b"f 1 2 9\n", ["beyond.obj:4: f has vertex 9, expected one of the file's 3"]),
     "zero.obj": (CORNERS + b"f 0 1 2\n", ["zero.obj:4: f is '0 1 2', expected 3 or more vertices, whole numbers"]),
     "before.obj": (CORNERS + b"f -4 1 2\n", ["before.obj:4: f is '-4 1 2', expected", "below 0, of the 3 before it"]),
+    "digits.obj": (CORNERS + b"f 1 2 " + b"9" * 5000, ["digits.obj:4: f is '1 2 999", "expected 3 or more vertices"]),
+    "far.obj": (b"v 0 0 0\nv 1 0 0\nv 1e300 0 1\nf 1 2 3\n", ["far.obj has corners beyond +-1e+06 m"]),
     "part.obj": (CORNERS + b"f 1 2 3.5\n", ["part.obj:4: f is '1 2 3.5', expected 3 or more vertices"]),
     "edge.obj": (CORNERS + b"f 1 2\n", ["edge.obj:4: f is '1 2', expected 3 or more vertices"]),
     "binary.obj": (b"f " + bytes(range(128, 256)) * 9, ["binary.obj:1: f is '\\\\x80", "expected 3 or more vertices"]),

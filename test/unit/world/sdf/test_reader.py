@@ -8,6 +8,7 @@ from sdf_files import BOX, SPHERE, collision, model, only_obstacle, raised_by, s
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Plane, Sphere
+from aro_robocop_goto_as.world.sdf import reader
 
 
 @pytest.mark.parametrize("version", ["1.4", "1.5", "1.6", "1.7"])
@@ -169,6 +170,8 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
     "pose of five numbers": (model("<pose>0 0 0\n0 0</pose>"), 4, ["<pose>", "'0 0 0 0 0'", "6 finite numbers"]),
     "pose that isn't a number": (model("<pose>nan 0 0 0 0 0</pose>"), 4, ["'nan 0 0 0 0 0'"]),
     "number beyond all bounds": (model("<pose>1e999 0 0 0 0 0</pose>"), 4, ["1e999", "finite"]),
+    "number out of range": (model("<pose>1e300 0 0 0 0 0</pose>"), 4, ["1e300", "within +-1e+06"]),
+    "size out of range": (model(collision("<sphere>\n<radius>1e7</radius></sphere>")), 5, ["'1e7'", "within +-1e+06"]),
     "number in Python's spelling": (model("<pose>1_0 0 0 0 0 0</pose>"), 4, ["1_0"]),
     "element among numbers": (model("<pose>0 0 0 <x/> 0 0 0</pose>"), 4, ["<x>", "<pose>"]),
     "negative radius": (
@@ -248,6 +251,17 @@ def test_same_model_can_be_included_repeatedly_and_nested(tmp_path, chair):
 def test_models_nested_too_deeply_are_refused(tmp_path):
     body = '<model name="m">' * 30 + "</model>" * 30
     assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
+
+
+def test_models_that_include_two_each_are_refused_when_they_are_too_many(tmp_path, monkeypatch):
+    monkeypatch.setattr(reader, "MAX_MODELS", 50)
+    for level in range(14):
+        uri = f"<uri>model://m{level + 1}</uri>"
+        twice = f"<include><name>a</name>{uri}</include><include><name>b</name>{uri}</include>"
+        sdf_file(tmp_path / f"m{level}" / "model.sdf", f'<model name="m">{twice}</model>')
+    sdf_file(tmp_path / "m14" / "model.sdf", f'<model name="m">{BOX}</model>')
+    body = "<include><uri>model://m0</uri></include>"
+    assert "more than 50 models; supported: 50" in raised_by(world_file(tmp_path, body))
 
 
 def test_models_of_the_same_name_are_numbered(tmp_path, chair):

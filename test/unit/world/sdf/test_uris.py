@@ -39,6 +39,7 @@ FUEL = (
     "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/{}/2",
     "HTTPS://app.gazebosim.org/OpenRobotics/fuel/models/{}/",
     "fuel://fuel.gazebosim.org/1.0/OpenRobotics/models/{}/tip",
+    "https://fuel.gazebosim.org/1.0/OpenRobotics/models/{}/tip/files/model.sdf",
 )
 
 
@@ -57,6 +58,11 @@ def test_models_on_gazebo_fuel_are_looked_up_under_their_names_before_they_are_r
     sdf_file(tmp_path / "models" / folder / "model.sdf", f'<model name="desk">{BOX}</model>')
     include = f"<include><uri>{address.format('Office Desk')}</uri></include>"
     assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "desk/l/c"
+
+
+def test_file_of_a_built_in_model_is_the_built_in_model(tmp_path):
+    include = "<include><uri>model://ground_plane/model.sdf</uri></include>"
+    assert only_obstacle(world_file(tmp_path, include)).name == "ground_plane/link/collision"
 
 
 def test_file_of_a_model_on_gazebo_fuel_is_looked_up_in_the_local_model(tmp_path, chair):
