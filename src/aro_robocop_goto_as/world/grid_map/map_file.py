@@ -7,8 +7,7 @@ from typing import Any, Dict, Sequence, Tuple
 import yaml
 
 from ...errors import WorldError
-from ...geometry import Pose2D, wrap_angle
-from ...limits import FARTHEST
+from ...geometry import FARTHEST, Pose2D, wrap_angle
 from ...reading import finite_numbers
 from .image import SUPPORTED
 

@@ -5,7 +5,7 @@ from typing import Callable, Dict, Optional
 
 import numpy as np
 
-from ...limits import FARTHEST
+from ...geometry import FARTHEST
 from ...reading import Element, file_of
 from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml

@@ -7,8 +7,7 @@ from contextlib import contextmanager
 from typing import Iterable, Iterator, Optional, Sequence, Set, Tuple
 
 from ...errors import WorldError
-from ...geometry import Pose3D
-from ...limits import FARTHEST
+from ...geometry import FARTHEST, Pose3D
 from ...reading import Element, file_of, finite_numbers, parse_xml, reading
 
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "1.8")
@@ -138,7 +137,7 @@ def numbers(element: Element, count: int, positive: bool = False) -> Tuple[float
         values = finite_numbers(text, count, positive)
     except ValueError as exc:
         raise error(element, f"<{element.tag}> is '{text}', {exc}") from exc
-    if max(map(abs, values)) > FARTHEST:
+    if not all(abs(value) <= FARTHEST for value in values):
         raise error(element, f"<{element.tag}> is '{text}', expected numbers within +-{FARTHEST:g}")
     return values
 
