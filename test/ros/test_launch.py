@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -290,3 +291,16 @@ def test_time_and_drive_are_passed_on_to_the_simulator():
 def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():
     assert {"/robocop_sim", SERVER, BRIDGE} <= {name.rstrip("/") for name in Launch().cleared}
     assert {"/red" + SERVER, "/red" + BRIDGE} <= {name.rstrip("/") for name in Launch("robots:=red 0 0").cleared}
+
+
+def test_what_a_full_disk_can_not_take_of_the_launchers_output_is_dropped(tmp_path):
+    script = """
+import os, pathlib, sys
+from aro_robocop_goto_as.process import signals
+from aro_robocop_goto_as.ros.cli import launch
+with launch.buffered_stderr(signals.Deferred()):
+    os.write(2, b"a warning")
+print("how to use it", file=launch._quiet(pathlib.Path(sys.argv[1])), flush=True)
+"""
+    with open("/dev/full", "wb") as full:
+        subprocess.run([sys.executable, "-c", script, str(tmp_path)], stdout=full, stderr=full, check=True)

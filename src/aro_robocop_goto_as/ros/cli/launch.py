@@ -153,7 +153,7 @@ def _quiet(folder: Path) -> TextIO:
     with open(folder / "roslaunch.log", "ab") as log:
         os.dup2(log.fileno(), STDOUT)
     os.environ[RVIZ_LOG] = str(folder / "rviz.log")
-    return screen
+    return cast(TextIO, log_handlers.Lossy(screen))
 
 
 @contextlib.contextmanager
@@ -173,7 +173,8 @@ def buffered_stderr(deferred: signals.Deferred) -> Iterator[None]:
             os.dup2(screen, STDERR)
             buffer.seek(0)
             if not deferred.interrupted:
-                stream.write(buffer.read())
+                with contextlib.suppress(OSError):  # a full disk
+                    stream.write(buffer.read())
 
 
 def _explained(error: OSError) -> str:
