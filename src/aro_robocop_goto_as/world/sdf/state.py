@@ -1,8 +1,9 @@
 """Read the <state> that Gazebo saves with a world: where its models and links were at that time."""
 
+import math
 from typing import Callable, Dict, Iterator, Tuple
 
-from ...geometry import Pose3D
+from ...geometry import FARTHEST, Pose3D
 from ...reading import Element
 from . import xml
 
@@ -38,5 +39,11 @@ def _poses(
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
             report(f"<scale> {xml.text_of(scale)} in the state of '{name}' is left out", scale)
         if xml.optional_child(element, "pose") is not None:
-            yield name, (xml.pose_in_world(element), element)
+            yield name, (_within_reach(xml.pose_in_world(element, math.inf)), element)
         yield from _poses(element, name + "/", report)
+
+
+def _within_reach(pose: Pose3D) -> Pose3D:
+    """The pose with its position within FARTHEST: Gazebo saves a model that has fallen for minutes where it is then."""
+    x, y, z = (max(-FARTHEST, min(FARTHEST, value)) for value in pose.position)
+    return Pose3D((x, y, z), pose.orientation)

@@ -130,19 +130,19 @@ def boolean(element: Element, tag: str) -> Optional[bool]:
     return value
 
 
-def numbers(element: Element, count: int, positive: bool = False) -> Tuple[float, ...]:
-    """The element's `count` finite numbers, in SDF's units, all within FARTHEST."""
+def numbers(element: Element, count: int, positive: bool = False, largest: float = FARTHEST) -> Tuple[float, ...]:
+    """The element's `count` finite numbers, in SDF's units, all within +-largest."""
     text = " ".join(text_of(element).split())
     try:
         values = finite_numbers(text, count, positive)
     except ValueError as exc:
         raise error(element, f"<{element.tag}> is '{text}', {exc}") from exc
-    if not all(abs(value) <= FARTHEST for value in values):
-        raise error(element, f"<{element.tag}> is '{text}', expected numbers within +-{FARTHEST:g}")
+    if not all(abs(value) <= largest for value in values):
+        raise error(element, f"<{element.tag}> is '{text}', expected numbers within +-{largest:g}")
     return values
 
 
-def pose_of(element: Element) -> Pose3D:
+def pose_of(element: Element, largest: float = FARTHEST) -> Pose3D:
     """The element's <pose> in whichever frame it is given; the identity without a <pose>, or without text in it.
 
     `gz sdf` writes a <pose> without text for a link that coincides with its joint.
@@ -153,14 +153,14 @@ def pose_of(element: Element) -> Pose3D:
     for key, value in pose.attrib.items():
         if key not in ("frame", "relative_to") and (key, _BOOLEANS.get(value.lower())) != ("degrees", False):
             raise error(pose, f"<pose {key}='{value}'> is not supported; supported: metres and radians")
-    x, y, z, roll, pitch, yaw = numbers(pose, 6) if text_of(pose) else (0.0,) * 6
+    x, y, z, roll, pitch, yaw = numbers(pose, 6, largest=largest) if text_of(pose) else (0.0,) * 6
     return Pose3D.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
 
 
-def pose_in_world(element: Element) -> Pose3D:
+def pose_in_world(element: Element, largest: float = FARTHEST) -> Pose3D:
     """As pose_of; WorldError if the <pose> names a frame other than the world."""
     pose = optional_child(element, "pose")
     for key in ("frame", "relative_to"):
         if pose is not None and pose.get(key, "") not in ("", "world"):
             raise error(pose, f"<pose {key}='{pose.get(key)}'> is not supported here; supported: a pose in the world")
-    return pose_of(element)
+    return pose_of(element, largest)
