@@ -18,7 +18,7 @@ PACKAGE = ROOT / "src" / "aro_robocop_goto_as"
 OTHERS = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.rst": "changelog.md", "README.md": "index.md"}
 # The parts of the core that do not need ROS, in the order in which they build on one another.
 CORE = (
-    *("goto", "goto_params", "params", "param_loading", "geometry", "errors"),
+    *("goto", "goto_params", "sim_params", "bridge_params", "web_params", "param_loading", "geometry", "errors"),
     *("simulation", "robot", "sensors", "physics", "raycast", "world"),
 )
 LINK = re.compile(r"(?<=\]\()(?!\w+:|#)([^)#\s]+)")  # the path of a Markdown link
