@@ -87,6 +87,7 @@ class Owner:
         self._hold(lambda: self.simulation.time_control.hold(self.simulator.steps))
 
     def _hold(self, hold: Callable[[], float]) -> None:
+        started = self.clock.now()
         wait = hold()
         while wait > 0.0 and not self.is_stopped():
             self.simulation.jobs.run_next(wait)
@@ -94,6 +95,7 @@ class Owner:
                 self.events.append("clock repeated")
                 self.simulation.controllers.enroll(self._answering)
             wait = hold()
+        self.simulation.time_control.pacer.waited(self.clock.now() - started)
 
     def _connected(self, _robot: int) -> AbstractSet[str]:
         return self.nodes

@@ -6,6 +6,7 @@ from typing import Callable, Optional
 
 REPORT_PERIOD = 1.0  # [s, wall]
 MOST_BEHIND = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
+REST_PERIOD, REST = 0.01, 1e-4  # [s, wall] a simulation that never waits rests this often, for this long
 TOLERANCE = 0.95  # share of the requested factor, below which the simulation counts as behind
 
 
@@ -25,7 +26,12 @@ class FactorReport:
 
 
 class Pacer:
-    """Keeps simulated time at `factor` times the wall clock; factor 0 never waits."""
+    """Keeps simulated time at `factor` times the wall clock; factor 0 waits for rests only.
+
+    A rest lets the process's other threads run, which accept subscribers and receive commands. CPython takes the
+    interpreter from a thread that has kept it for 5 ms; one that gives it up for microseconds, and often, as numpy does,
+    begins these 5 ms anew each time, and the others, too slow to wake up, can wait for minutes.
+    """
 
     def __init__(self, factor: float, now: Callable[[], float] = time.monotonic) -> None:
         self.factor = factor
@@ -39,13 +45,22 @@ class Pacer:
         self._report_wall, self._report_simulated = wall, simulated
         self._report_steps: Optional[int] = None
         self._waited = 0.0
+        self._rested = wall
         self._lag = 0.0
 
     def ahead(self, simulated: float) -> float:
-        """Wall time [s] until simulated time `simulated` [s] is due; 0 when it is overdue."""
+        """How long to wait [s, wall] before simulated time `simulated` [s]: until it is due, or for a rest."""
+        wall = self.now()
+        ahead = self._until_due(simulated, wall)
+        if ahead == 0.0 and wall - self._rested >= REST_PERIOD:
+            ahead = REST
+        if ahead > 0.0:
+            self._rested = wall + ahead
+        return ahead
+
+    def _until_due(self, simulated: float, wall: float) -> float:
         if self.factor == 0.0:
             return 0.0
-        wall = self.now()
         due = self._anchor_wall + (simulated - self._anchor_simulated) / self.factor
         self._lag = max(0.0, wall - due)
         if wall - due > MOST_BEHIND:
@@ -55,6 +70,8 @@ class Pacer:
     def waited(self, seconds: float) -> None:
         """Add time [s, wall] spent waiting, which does not count as work."""
         self._waited += seconds
+        if seconds >= REST:
+            self._rested = self.now()
 
     def report(self, simulated: float, steps: int) -> Optional[FactorReport]:
         """The factor since the last report; None until a report period has passed."""

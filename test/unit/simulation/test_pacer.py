@@ -21,14 +21,28 @@ def test_pacer_waits_for_the_simulated_time_divided_by_the_factor() -> None:
     assert timing.ahead(1.0) == 0.0
 
 
-def test_factor_zero_never_waits() -> None:
-    assert pacer.Pacer(0.0, Wall()).ahead(1e9) == 0.0
+def test_factor_zero_waits_for_rests_only() -> None:
+    wall = Wall()
+    timing = pacer.Pacer(0.0, wall)
+    assert timing.ahead(1e9) == 0.0
+    wall.now += pacer.REST_PERIOD
+    assert timing.ahead(1e9) == pacer.REST
+    assert timing.ahead(1e9) == 0.0
+
+
+def test_waits_count_as_rests() -> None:
+    wall = Wall()
+    timing = pacer.Pacer(0.0, wall)
+    wall.now += pacer.REST_PERIOD
+    timing.waited(pacer.REST)
+    assert timing.ahead(1e9) == 0.0
 
 
 def test_long_lag_is_dropped_and_not_caught_up_in_a_burst() -> None:
     wall = Wall()
     timing = pacer.Pacer(1.0, wall)
     wall.now += 5.0
+    assert timing.ahead(1.0) == pacer.REST
     assert timing.ahead(1.0) == 0.0
     assert timing.ahead(1.1) == pytest.approx(0.1)
 
