@@ -85,8 +85,8 @@ class Batch:
     def send(self, stamp_ns: int, more: bool = False) -> None:
         """Send everything at a simulated time [ns].
 
-        A subscriber that takes nothing for publishing.STALL_LIMIT misses messages until it reads again. While one is
-        waited for, that time passes for the others, too: a stopped node can have many topics.
+        A subscriber that takes nothing for publishing.STALL_LIMIT, and is not kept from it, misses messages until it
+        reads again. While one is waited for, that time passes for the others, too: a stopped node can have many topics.
 
         With `more` the kernel keeps the messages until the next ones on these topics, or publishing.push(), for 0.2 s
         [wall] at most: the subscribers wake up once for all of them.

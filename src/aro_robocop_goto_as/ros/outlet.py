@@ -7,20 +7,23 @@ return to a publisher that has closed the connection, so it stays open, and what
 import ctypes
 import errno
 import socket
-from typing import Any
+from typing import Any, Optional
 
 import rospy
 
+from ..process.peer import Peer
 from .rospy_internals import count_sent
 
+PATIENCE = 2.0  # [s] processor time that a subscriber's process may use without reading
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
 class Outlet:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
-    A subscriber that takes nothing for as long as its socket's send timeout stands still: it misses all messages until
-    it takes data again, and nobody waits for it. What is kept for it is the rest of one message.
+    A subscriber that takes nothing for as long as its socket's send timeout, though its process is stopped, asleep or
+    busy with other things, stands still: it misses all messages until it takes data again, and nobody waits for it. What
+    is kept for it is the rest of one message. One whose process only waits for a processor is waited for.
     """
 
     def __init__(self, connection: Any, duplicate: socket.socket) -> None:
@@ -31,6 +34,7 @@ class Outlet:
         self._stands = ctypes.c_int64(0)  # read by sender.c
         self._rest = b""
         self._missed = 0  # messages, while it stands still
+        self._peer: Optional[Peer] = None  # known while it takes nothing
 
     @property
     def stands_still(self) -> bool:
@@ -50,7 +54,8 @@ class Outlet:
     def finish(self, message: memoryview, taken: int, patient: bool) -> bool:
         """Send what is left of a message of which `taken` bytes were sent, or -errno; whether all was sent.
 
-        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once stands still.
+        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once is waited for only
+        if it is kept from reading.
         """
         if taken < 0 and taken not in LATER:
             raise OSError(-taken, "send")
@@ -58,11 +63,12 @@ class Outlet:
         if self.push_rest():
             took = self._take(left, socket.MSG_DONTWAIT)
             left = left[took:]
-            reads = bool(took) or (patient and not self.stands_still)
+            reads = bool(took) or (not self.stands_still and (patient or self._is_kept_from_reading()))
             while left and reads:
                 took = self._take(left)
-                left, reads = left[took:], bool(took)
+                left, reads = left[took:], bool(took) or self._is_kept_from_reading()
             self._rest = b"" if len(left) == len(message) else bytes(left)
+        self._peer = None
         self._note(not left)
         return not left
 
@@ -79,14 +85,27 @@ class Outlet:
         except BlockingIOError:
             return 0
 
+    def _is_kept_from_reading(self) -> bool:
+        """Whether its process waits for a processor, as far as is known."""
+        first = self._peer is None
+        peer = self._peer = self._peer or Peer(self.socket, PATIENCE)
+        if rospy.is_shutdown() or not peer.wants_to_run():
+            return False
+        if first:
+            rospy.logwarn("%s waits for a processor, and simulated time for it: the machine is busy", self._name)
+        return True
+
+    @property
+    def _name(self) -> str:
+        return f"{self.connection.endpoint_id} ({self.connection.name})"
+
     def _note(self, sent: bool) -> None:
         """Note, and log, whether it stands still."""
-        name = f"{self.connection.endpoint_id} ({self.connection.name})"
         if sent and self.stands_still:
-            rospy.loginfo("%s reads again; it has missed %d messages", name, self._missed)
+            rospy.loginfo("%s reads again; it has missed %d messages", self._name, self._missed)
             self._missed = 0
         elif not sent:
             if not self.stands_still:
-                rospy.logwarn("%s has stopped reading; it misses all messages until it reads again", name)
+                rospy.logwarn("%s has stopped reading; it misses all messages until it reads again", self._name)
             self._missed += 1
         self._stands.value = not sent

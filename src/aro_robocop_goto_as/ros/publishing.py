@@ -14,7 +14,7 @@ import rospy
 from .outlet import Outlet
 from .rospy_internals import connections_of, send_latched, write_with
 
-STALL_LIMIT = 2  # [s, wall] without taking any data, after which a subscriber is not waited for until it reads again
+STALL_LIMIT = 2  # [s, wall] without taking any data, after which a subscriber's process is looked at
 
 _publishers: "weakref.WeakSet[DirectPublisher]" = weakref.WeakSet()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A simulator that never waits accepts subscribers while it runs: its loop lets rospy's threads have the interpreter."""
+"""A simulator that never waits accepts subscribers: its loop lets rospy's threads have the interpreter."""
 
 import unittest
 

@@ -92,7 +92,7 @@ def spied(subscriber: Subscriber, before: Callable[[int], Any]) -> Any:
         before(flags)
         return near.send(data, flags)
 
-    return SimpleNamespace(send=send, close=near.close)
+    return SimpleNamespace(send=send, close=near.close, getpeername=near.getpeername, getsockname=near.getsockname)
 
 
 def counted(beams: int) -> PackedMessage:

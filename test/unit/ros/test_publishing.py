@@ -173,3 +173,32 @@ def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator
         _send(lds02.topics["scan"], message)
         sent.append(struct.unpack_from("<I", message.data, 4)[0])
     assert sent == [1, 2, 3, 4, 5]
+
+
+def test_subscriber_that_waits_for_a_processor_is_waited_for(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scans, asked = topic(), []
+    link, message = (
+        connect(scans),
+        PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)),
+    )  # more than a socket takes at once
+    reading = threading.Thread(target=lambda: asked.append(_received(link, message.size) == message.data.tobytes()))
+
+    class Starved:
+        """At the third look, the process gets its processor."""
+
+        def __init__(self, *_: object) -> None: ...
+
+        def wants_to_run(self) -> bool:
+            asked.append(True)
+            if len(asked) == 3:
+                reading.start()
+            return True
+
+    monkeypatch.setattr("aro_robocop_goto_as.ros.outlet.Peer", Starved)
+    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    _send(scans, message)
+    assert len(asked) >= 3 and not scans.outlets[0].stands_still
+    reading.join()
+    assert all(asked)
