@@ -22,8 +22,8 @@ class Outlet:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
     A subscriber that takes nothing for as long as its socket's send timeout, though its process is stopped, asleep or
-    busy with other things, stands still: it misses all messages until it takes data again, and nobody waits for it. What
-    is kept for it is the rest of one message. One whose process only waits for a processor is waited for.
+    busy with other things, stands still: it misses all messages until it takes data again, and nobody waits for it.
+    What is kept for it is the rest of one message. One whose process only waits for a processor is waited for.
     """
 
     def __init__(self, connection: Any, duplicate: socket.socket) -> None:
