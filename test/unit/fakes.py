@@ -9,6 +9,7 @@ from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Job, Queue
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulation import Simulation
 
@@ -55,6 +56,7 @@ class Owner:
         self.observed: List[Observations] = []
         self.events: List[object] = []
         self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
+        self.is_kept: Callable[[ControllerId, float], bool] = lambda *_: False
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
         self.simulation = Simulation(self.simulator, self.clock, lambda: self.is_stopped())
 
@@ -74,7 +76,7 @@ class Owner:
                     self.on_tick(seen.stamp_ns)
                 if seen.due.control and controllers.in_lockstep:
                     controllers.begin_tick(self._answering)
-                    self._hold(lambda: controllers.hold(self._connected))
+                    self._hold(lambda: controllers.hold(self._connected, self.is_kept))
                     report = controllers.end_tick()
                     self.events += [("late", report.late)] if report.late else []
                     self.events += [("gone", controller) for controller in report.gone]

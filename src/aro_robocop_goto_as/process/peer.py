@@ -6,8 +6,9 @@ Time on the wall clock does not tell: on a busy machine, a process that would go
 import contextlib
 import os
 import socket
+import threading
 from pathlib import Path
-from typing import Optional
+from typing import Iterator, Optional
 
 import psutil
 
@@ -19,6 +20,7 @@ class Peer:
 
     def __init__(self, end: socket.socket, patience: float) -> None:
         """`patience` [s]: processor time that it may use from now on before it counts as doing something else."""
+        self._end = end
         self._process = _peer_of(end)
         self._limit = self._processor_time() + patience
 
@@ -26,7 +28,13 @@ class Peer:
         """Whether it may still do what is awaited, but is kept from it; False if it is unknown."""
         if self._process is None or self._processor_time() >= self._limit:
             return False
-        return any(_state(thread) in WANTING for thread in Path(f"/proc/{self._process.pid}/task").glob("*/stat"))
+        return any(_state(thread) in WANTING for thread in _threads(self._process.pid))
+
+    def has_sent(self) -> bool:
+        """Whether the connection has data of the other end that this process has not read yet."""
+        with contextlib.suppress(OSError):
+            return bool(self._end.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT))
+        return False
 
     def _processor_time(self) -> float:
         """[s] used by all of its threads."""
@@ -35,6 +43,12 @@ class Peer:
                 times = self._process.cpu_times()
                 return float(times.user + times.system)
         return 0.0
+
+
+def others_want_to_run() -> bool:
+    """Whether a thread of this process, other than the caller's, runs or waits for a processor or a disk."""
+    own = str(threading.get_native_id())
+    return any(_state(thread) in WANTING for thread in _threads(os.getpid()) if thread.parent.name != own)
 
 
 def _peer_of(end: socket.socket) -> Optional[psutil.Process]:
@@ -47,7 +61,11 @@ def _peer_of(end: socket.socket) -> Optional[psutil.Process]:
     return None
 
 
+def _threads(pid: int) -> Iterator[Path]:
+    return Path(f"/proc/{pid}/task").glob("*/stat")
+
+
 def _state(thread: Path) -> str:
     with contextlib.suppress(OSError):  # it has ended
         return thread.read_text(errors="replace").rpartition(")")[2].split()[0]
-    return ""
+    return "X"

@@ -20,6 +20,12 @@ def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
     return {link.callerid_pub for link in subscriber.impl.connections}
 
 
+def socket_from(subscriber: rospy.Subscriber, node: str) -> Optional[socket.socket]:
+    """The socket on which a subscriber receives from a node, if it is connected; rospy keeps it to itself."""
+    links = [link for link in subscriber.impl.connections if link.callerid_pub == node]
+    return getattr(links[0], "socket", None) if links else None
+
+
 def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
     """Whether a publisher is connected to this node; rospy's public API only counts connections."""
     return bool(publisher.impl.has_connection(node))

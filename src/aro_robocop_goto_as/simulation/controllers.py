@@ -12,7 +12,12 @@ from .simulator import Simulator
 
 DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controllers while waiting for their answers
 
+SECOND_LOOK = 0.005  # [s, wall] during which what has arrived meanwhile is processed
+
 NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
+IsKept = Callable[
+    [ControllerId, float], bool
+]  # from answering, for want of a processor, of which it may use so much [s]
 
 
 class _Pending(NamedTuple):
@@ -47,6 +52,7 @@ class Controllers:
         self._report = TickReport()
         self._held_since = self._next_look = 0.0  # [s, wall]
         self._is_reset = False  # since the tick began
+        self._is_silent = False  # at the last look, nobody was kept from answering
 
     def command(self, controller: ControllerId, twist: Twist2D) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
@@ -84,22 +90,32 @@ class Controllers:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
         self.enroll(answering)
         self.lockstep.tick = self.tick
-        self._report, self._is_reset = TickReport(), False
+        self._report, self._is_reset, self._is_silent = TickReport(), False, False
         self._held_since = self._clock.now()
         self._next_look = self._held_since + DISCONNECT_POLL
 
-    def hold(self, connected: NodesOf) -> float:
-        """How long to hold simulated time [s, wall] before asking again; 0: nobody is waited for any more."""
+    def hold(self, connected: NodesOf, is_kept: IsKept) -> float:
+        """How long to hold simulated time [s, wall] before asking again; 0: nobody is waited for any more.
+
+        After the timeout, a controller is given up only if at two looks it is not kept from answering.
+        """
         while not self._is_reset and self.lockstep.missing():
             now = self._clock.now()
-            remaining = self._held_since + self.lockstep.patience() * self.timeout - now
-            if remaining <= 0.0:
-                self._report.late = self.lockstep.give_up()
-                break
-            if now < self._next_look:
+            if now >= self._next_look:
+                self._forget_disconnected(connected)
+                self._next_look = now + DISCONNECT_POLL
+                continue
+            patience = self.lockstep.patience() * self.timeout
+            remaining = self._held_since + patience - now
+            if remaining > 0.0:
                 return min(remaining, self._next_look - now)
-            self._forget_disconnected(connected)
-            self._next_look = now + DISCONNECT_POLL
+            was_silent = self._is_silent
+            self._is_silent = not any(is_kept(controller, patience) for controller in self.lockstep.missing())
+            if not self._is_silent:
+                return self._next_look - now
+            if not was_silent:
+                return SECOND_LOOK
+            self._report.late = self.lockstep.give_up()
         return 0.0
 
     def _forget_disconnected(self, connected: NodesOf) -> None:

@@ -15,6 +15,7 @@ from .. import param_server
 from ..names import SIMULATOR
 from ..node_main import node
 from ..publishing import resume
+from .awaited_nodes import AwaitedNodes
 from .loading import load_simulator
 from .lockstep_warnings import warn_of
 from .pose_inputs import PoseInputs
@@ -39,6 +40,7 @@ class SimNode:
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
         self._inputs = [RobotInputs(self._simulation, index) for index in range(len(robots))]
+        self._awaited = AwaitedNodes(self._inputs)
         self._pose_inputs = PoseInputs(self._simulation, p.frames, p.topics.has_initialpose)
         self._time_services = TimeServices(self._simulation)
         world_services = WorldServices(self._simulation)
@@ -90,7 +92,8 @@ class SimNode:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
         controllers = self._simulation.controllers
         controllers.begin_tick(self._answering)
-        self._hold(lambda: controllers.hold(self._connected))
+        self._awaited.begin_tick()
+        self._hold(lambda: controllers.hold(self._connected, self._awaited.is_kept))
         warn_of(controllers.end_tick(), self._simulator, controllers.timeout)
 
     def _hold(self, hold: Callable[[], float]) -> None:

@@ -1,5 +1,6 @@
 """The topics on which one robot is commanded: cmd_vel, and in lockstep the answers to control ticks."""
 
+import socket
 from typing import List, Optional, Set
 
 import rospy
@@ -11,7 +12,7 @@ from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert
 from ..names import prefixed
-from ..rospy_internals import publishers_of, sender
+from ..rospy_internals import publishers_of, sender, socket_from
 from .answering_nodes import AnsweringNodes
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
@@ -44,6 +45,11 @@ class RobotInputs:
     def connected(self) -> Set[str]:
         """Names of the nodes that are connected to these topics."""
         return set().union(*map(publishers_of, self._inputs()))
+
+    def sockets_from(self, node: str) -> List[socket.socket]:
+        """On which a node's commands and answers arrive."""
+        found = [socket_from(subscriber, node) for subscriber in self._inputs()]
+        return [end for end in found if end is not None]
 
     def answering(self) -> Set[str]:
         """Names of the nodes that are connected to answer ticks and to all they subscribe to."""
