@@ -309,6 +309,21 @@ def test_controller_that_hangs_causes_one_miss_and_is_awaited_again_when_it_cont
 
 
 @pytest.mark.slow
+def test_controller_that_hardly_gets_a_processor_is_awaited_at_each_tick(ros):
+    simulator = ros.simulator(lockstep_timeout=0.05, cmd_vel_timeout=0.0)
+    remote = Remote(ros, simulator)
+    remote.step(1.0)
+    controller = start_metronome(ros, remote)
+    remote.step(1.0)
+    before = remote.status()
+    for thread in Path(f"/proc/{controller.pid}/task").iterdir():
+        os.sched_setscheduler(int(thread.name), os.SCHED_IDLE, os.sched_param(0))
+    with busy_processes(2 * len(os.sched_getaffinity(0))):
+        remote.step(3.0)
+    assert remote.status() == before and before["drivers"] == ["/metronome"]
+
+
+@pytest.mark.slow
 def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again(ros):
     simulator = ros.simulator(drive="kinematic", physics_rate=60, imu_rate=60, world="empty", lockstep_timeout=0.5)
     server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
