@@ -3,16 +3,14 @@
 Time on the wall clock does not tell: on a busy machine, a process that would go on can get no processor for seconds.
 """
 
-import contextlib
 import os
 import socket
 import threading
-from pathlib import Path
-from typing import Iterator, Optional
+from contextlib import suppress
+from typing import List, Optional
 
-import psutil
-
-WANTING = "RD"  # states of a thread that runs, or waits for a processor or for a disk (proc_pid_stat(5))
+WANTING = (["R"], ["D"])  # states of a thread that runs, or waits for a processor or for a disk
+TICK = os.sysconf("SC_CLK_TCK")  # [1/s] of processor times
 
 
 class Peer:
@@ -28,44 +26,47 @@ class Peer:
         """Whether it may still do what is awaited, but is kept from it; False if it is unknown."""
         if self._process is None or self._processor_time() >= self._limit:
             return False
-        return any(_state(thread) in WANTING for thread in _threads(self._process.pid))
+        return _want_to_run(self._process)
 
     def has_sent(self) -> bool:
         """Whether the connection has data of the other end that this process has not read yet."""
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             return bool(self._end.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT))
         return False
 
     def _processor_time(self) -> float:
-        """[s] used by all of its threads."""
-        with contextlib.suppress(psutil.Error):
-            if self._process is not None:
-                times = self._process.cpu_times()
-                return float(times.user + times.system)
-        return 0.0
+        """[s] used by all of its threads; 0 if it is unknown or gone."""
+        words = _stat(f"/proc/{self._process}/stat")
+        return (int(words[11]) + int(words[12])) / TICK if len(words) > 12 else 0.0
 
 
 def others_want_to_run() -> bool:
     """Whether a thread of this process, other than the caller's, runs or waits for a processor or a disk."""
-    own = str(threading.get_native_id())
-    return any(_state(thread) in WANTING for thread in _threads(os.getpid()) if thread.parent.name != own)
+    return _want_to_run(os.getpid(), but=threading.get_native_id())
 
 
-def _peer_of(end: socket.socket) -> Optional[psutil.Process]:
-    """The process that has the other end, unless it is this one."""
-    with contextlib.suppress(psutil.Error, OSError):
+def _peer_of(end: socket.socket) -> Optional[int]:
+    """The id of the process that has the other end, unless it is this one."""
+    import psutil  # seldom needed: not at the start of a node
+
+    with suppress(psutil.Error, OSError):
         ends = end.getpeername()[:2], end.getsockname()[:2]
         for connection in psutil.net_connections("tcp"):
             if (connection.laddr, connection.raddr) == ends and connection.pid not in (None, os.getpid()):
-                return psutil.Process(connection.pid)
+                return int(connection.pid)
     return None
 
 
-def _threads(pid: int) -> Iterator[Path]:
-    return Path(f"/proc/{pid}/task").glob("*/stat")
+def _want_to_run(process: int, but: int = 0) -> bool:
+    """Whether one of a process's threads, `but` this one, runs or is kept from it."""
+    with suppress(OSError):  # the process has ended
+        threads = [thread for thread in os.listdir(f"/proc/{process}/task") if thread != str(but)]
+        return any(_stat(f"/proc/{process}/task/{thread}/stat")[:1] in WANTING for thread in threads)
+    return False
 
 
-def _state(thread: Path) -> str:
-    with contextlib.suppress(OSError):  # it has ended
-        return thread.read_text(errors="replace").rpartition(")")[2].split()[0]
-    return "X"
+def _stat(path: str) -> List[str]:
+    """The words from a thread's or process's state on (proc_pid_stat(5)); none if it has ended."""
+    with suppress(OSError), open(path, errors="replace") as file:
+        return file.read().rpartition(")")[2].split()
+    return []

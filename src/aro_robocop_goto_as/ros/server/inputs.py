@@ -14,6 +14,7 @@ from ... import goto
 from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
 from ...goto import Outcome
+from ...process.peer import others_want_to_run
 from .. import convert
 from .tuning import Tuning
 
@@ -82,8 +83,20 @@ class Inputs:
             newest = [topic for topic in (self.odom, self.scan) if topic is not None]
             return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
 
-        with self._arrived:
-            self._arrived.wait_for(complete, LOCKSTEP_PATIENCE)
+        self._await(complete, LOCKSTEP_PATIENCE)
+
+    def _await(self, complete: Callable[[], bool], patience: float) -> bool:
+        """Wait for messages until `complete`, for `patience` [s, wall], and as long as callbacks wait for a processor.
+
+        These may take as much processor time, too. Returns whether it is complete.
+        """
+        limit = time.process_time() + patience
+        while True:
+            with self._arrived:
+                if self._arrived.wait_for(complete, patience):
+                    return True
+            if time.process_time() >= limit or not others_want_to_run():
+                return False
 
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.
@@ -108,8 +121,7 @@ class Inputs:
         return (newest is None or newest.wall < accepted) and self._wall() - accepted < FIRST_MESSAGE
 
     def _arrives_late(self) -> bool:
-        with self._arrived:
-            return self._arrived.wait_for(self._has_data, LATE_DATA)
+        return self._await(self._has_data, LATE_DATA)
 
     def _absence(self, name: str, valid: Optional[Received], now: float) -> str:
         # By the present time, as scans have arrived since the control period began.
