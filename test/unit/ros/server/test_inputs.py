@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
@@ -108,3 +109,25 @@ def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
         LaserScan(angle_min=3.14, angle_max=-3.14, angle_increment=-0.0175, range_max=5.0, ranges=[2.0] * 360)
     )
     assert server.inputs.read()[1] == 2.0
+
+
+def test_messages_of_a_tick_are_waited_for_while_their_callbacks_get_no_processor(server, monkeypatch):
+    looks = []
+
+    def others_want_to_run():
+        looks.append(server.inputs.odom)
+        if len(looks) == 3:
+            odom = Odometry()
+            odom.header.stamp = rospy.Time(2.0)
+            server.inputs.on_odom(odom)
+        return True
+
+    monkeypatch.setattr(f"{Inputs.__module__}.LOCKSTEP_PATIENCE", 0.01)
+    monkeypatch.setattr(f"{Inputs.__module__}.others_want_to_run", others_want_to_run)
+    monkeypatch.setattr("time.process_time", lambda: 0.0)  # what the test itself uses does not count
+    for stamp in (1.0, 1.5):
+        odom = Odometry()
+        odom.header.stamp = rospy.Time(stamp)
+        server.inputs.on_odom(odom)
+    server.inputs.await_tick(2 * 10**9)
+    assert len(looks) == 3
