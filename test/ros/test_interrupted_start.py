@@ -75,7 +75,12 @@ def test_interrupted_while_it_starts_it_ends_without_a_traceback(tmp_path, comma
 def test_ended_while_the_workspace_is_set_up_it_leaves_no_temporary_file(tmp_path, number):
     environment = {**os.environ, "TMPDIR": str(tmp_path), "ROS_HOME": str(tmp_path / "ros")}
     before = set(CATKINS.glob("setup.sh.*"))
-    started = subprocess.Popen([ROOT / "robocop", "_start", "sleep", "600"], env=environment, start_new_session=True)
+
+    def heed_hangups():  # also below nohup, where a shell cannot
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+    command = [ROOT / "robocop", "_start", "sleep", "600"]
+    started = subprocess.Popen(command, env=environment, start_new_session=True, preexec_fn=heed_hangups)
     try:
         end = time.monotonic() + DEADLINE
         while not set(CATKINS.glob("setup.sh.*")) - before:

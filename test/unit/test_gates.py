@@ -56,8 +56,8 @@ ORDER = {
     "simulation": "errors geometry sim_params physics raycast robot sensors sensors.camera sensors.scan_profiles world",
     "ros": "compiled errors geometry param_loading sim_params process robot ros.names sensors sensors.scan_profiles "
     "simulation world",
-    "ros.sim": "errors geometry sim_params robot ros ros.names sensors sensors.camera simulation world",
-    "ros.server": "errors geometry goto goto_params sim_params ros ros.names simulation trail",
+    "ros.sim": "errors geometry sim_params process robot ros ros.names sensors sensors.camera simulation world",
+    "ros.server": "errors geometry goto goto_params sim_params process ros ros.names simulation trail",
     "ros.client": "bridge_params errors geometry ros ros.names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
     "ros.cli": "bootstrap errors geometry limits param_loading sim_params process robot.model_names ros ros.client "
