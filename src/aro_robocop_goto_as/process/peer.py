@@ -3,11 +3,13 @@
 Time on the wall clock does not tell: on a busy machine, a process that would go on can get no processor for seconds.
 """
 
+import functools
 import os
 import socket
 import threading
+import time
 from contextlib import suppress
-from typing import List, Optional
+from typing import Any, Dict, List, Optional, Tuple
 
 WANTING = (["R"], ["D"])  # states of a thread that runs, or waits for a processor or for a disk
 TICK = os.sysconf("SC_CLK_TCK")  # [1/s] of processor times
@@ -47,14 +49,21 @@ def others_want_to_run() -> bool:
 
 def _peer_of(end: socket.socket) -> Optional[int]:
     """The id of the process that has the other end, unless it is this one."""
+    with suppress(OSError):
+        owner = _owners(int(time.monotonic())).get((end.getpeername()[:2], end.getsockname()[:2]))
+        return None if owner == os.getpid() else owner
+    return None
+
+
+@functools.lru_cache(maxsize=1)
+def _owners(_second: int) -> Dict[Tuple[Any, ...], int]:
+    """Processes by their connections' own and other addresses, read once a second: a stopped node can have hundreds."""
     import psutil  # seldom needed: not at the start of a node
 
     with suppress(psutil.Error, OSError):
-        ends = end.getpeername()[:2], end.getsockname()[:2]
-        for connection in psutil.net_connections("tcp"):
-            if (connection.laddr, connection.raddr) == ends and connection.pid not in (None, os.getpid()):
-                return int(connection.pid)
-    return None
+        connections = psutil.net_connections("tcp")
+        return {(tuple(one.laddr), tuple(one.raddr)): int(one.pid) for one in connections if one.pid is not None}
+    return {}
 
 
 def _want_to_run(process: int, but: int = 0) -> bool:
