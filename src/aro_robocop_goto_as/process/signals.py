@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 from typing import Any, Dict, Optional, Tuple
 
@@ -25,6 +26,9 @@ def _interrupt(_number: int, _frame: object) -> None:
     global _interrupted
     _interrupted = True
     threading.excepthook = lambda _: None  # threads fail when the system that they use is ended
+    sys.unraisablehook = lambda _: (
+        None
+    )  # when it is raised in a callback that may raise nothing: reraise_if_interrupted()
     begin_cleanup()
     raise KeyboardInterrupt
 

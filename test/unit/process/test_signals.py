@@ -142,3 +142,21 @@ os.kill(os.getpid(), signal.SIGHUP)
 print(signal.getsignal(signal.SIGHUP) is signal.SIG_IGN, flush=True)
 """
     assert output_of(code, signal.SIGUSR1) == (["True"], 0)
+
+
+def test_signal_in_a_callback_that_may_raise_nothing_prints_no_traceback_and_is_raised_again():
+    code = (
+        "import os, signal, weakref\n"
+        "from aro_robocop_goto_as.process import signals\n"
+        "class Thing: pass\n"
+        "signals.interrupt_on_signal()\n"
+        "thing = Thing()\n"
+        "reference = weakref.ref(thing, lambda _: (os.kill(os.getpid(), signal.SIGINT), sum(range(1000))))\n"
+        "del thing\n"
+        "try:\n"
+        "    signals.reraise_if_interrupted()\n"
+        "except KeyboardInterrupt:\n"
+        "    print('raised again')\n"
+    )
+    program = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=DEADLINE)
+    assert (program.stdout, program.stderr, program.returncode) == ("raised again\n", "", 0)

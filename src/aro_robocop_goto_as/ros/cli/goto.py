@@ -5,7 +5,7 @@ import os
 import re
 import sys
 from pathlib import Path
-from typing import List
+from typing import Callable, List
 
 import rosgraph
 import rospkg
@@ -38,9 +38,7 @@ def _run(args: argparse.Namespace) -> int:
     if system_runs:
         if args.world:
             complain("--world is ignored: a ROS system is already running")
-        from .followed_goal import go_to  # rospy is imported where it is needed, and at its time: see below
-
-        return go_to(args, SERVER_PATIENCE)
+        return _import_go_to()(args, SERVER_PATIENCE)
     if args.robot:
         complain(
             f"--robot {args.robot}: no ROS master answers, and a simulator started for one goal has one robot only"
@@ -54,8 +52,7 @@ def _run(args: argparse.Namespace) -> int:
     log = Path(rospkg.get_ros_home(), "robocop_goto.log")
     status = NOT_REACHED
     with own_system("robocop_goto_as.launch", arguments, log) as system:
-        from .followed_goal import go_to  # while the system starts, on another processor
-
+        go_to = _import_go_to()  # while the system starts, on another processor
         started = wait_for_master(system)
         if started:
             status = go_to(args, START_PATIENCE, ended=lambda: system.poll() is not None)
@@ -67,6 +64,13 @@ def _run(args: argparse.Namespace) -> int:
         lines = ["the system started for this goal failed:", *errors, f"its complete output is in {log}"]
         complain("\n".join(lines))
     return status
+
+
+def _import_go_to() -> Callable[..., int]:
+    """rospy is imported where it is needed, and at its time; an import must not be interrupted half-way."""
+    with signals.Deferred():
+        from .followed_goal import go_to
+    return go_to
 
 
 def _lines(log: Path) -> List[str]:
