@@ -78,18 +78,42 @@ def errors_to(goal: Goal, pose: Pose2D) -> Errors:
     return Errors(distance, angle)
 
 
-def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams) -> Decision:
+@dataclass(frozen=True)
+class Turning:
+    """The direction of a goal's newest rotation (1.0: counter-clockwise), and how often it has been reversed.
+
+    With late data or commands, as on a busy machine or over a slow network, a robot turns too far each time; at full
+    speed it would turn to and fro for ever. At half the speed after each reversal it comes to an end.
+    """
+
+    direction: float = 0.0
+    reversals: int = 0
+
+    def limit(self, params: GotoParams) -> float:
+        """The maximum angular velocity [rad/s] now; at least min_angular_velocity."""
+        return max(params.min_angular_velocity, math.ldexp(params.max_angular_velocity, -self.reversals))
+
+    def after(self, decision: Decision) -> "Turning":
+        """The same after one more decision."""
+        if not isinstance(decision, Rotate):
+            return self
+        direction = math.copysign(1.0, decision.twist.w)
+        return Turning(direction, self.reversals + (direction * self.direction < 0.0))
+
+
+def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams, turning: Turning = Turning()) -> Decision:
     """The handout's rule; `clearance` [m] is the distance to the nearest obstacle ahead, +inf for none.
 
     The goal is reached within position_tolerance. Otherwise rotate in place while the angle error exceeds
-    angle_tolerance, then move forward, unless an obstacle ahead is nearer than obstacle_distance.
+    angle_tolerance, then move forward, unless an obstacle ahead is nearer than obstacle_distance. `turning`: the
+    goal's rotations so far.
     """
     errors = errors_to(goal, pose)
     if errors.position < params.position_tolerance:
         return End(errors, Outcome.REACHED)
     if abs(errors.angle) > params.angle_tolerance:
         gain = params.angular_gain
-        speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, params.max_angular_velocity)
+        speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, turning.limit(params))
         return Rotate(errors, Twist2D(0.0, math.copysign(speed, errors.angle)))
     if clearance < params.obstacle_distance:
         return End(errors, Outcome.OBSTACLE)

@@ -1,7 +1,7 @@
 """The lab's control rule as a pure function of pose, clearance, goal and parameters."""
 
 import math
-from typing import List
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 import pytest
@@ -15,7 +15,9 @@ from aro_robocop_goto_as.goto import (
     Goal,
     MoveForward,
     Outcome,
+    Progress,
     Rotate,
+    Turning,
     clearance_ahead,
     decide,
     errors_to,
@@ -114,6 +116,39 @@ def test_an_ideal_robot_without_obstacles_always_arrives(x: float, y: float, yaw
             wrap_angle(pose.yaw + 0.1 * twist.w),
         )
     pytest.fail(f"not there after two minutes: {pose}")
+
+
+@given(st.integers(0, 5), st.integers(0, 3), st.randoms(use_true_random=False), st.floats(-math.pi, math.pi))
+def test_a_robot_whose_commands_arrive_late_arrives_all_the_same(
+    delay: int, jitter: int, random: Any, yaw: float
+) -> None:
+    pose, goal, turning, twist = Pose2D(0.0, 0.0, yaw), Goal(1.0, 0.0), Turning(), STANDSTILL
+    sent: List[Tuple[int, Twist2D]] = []  # with the control periods in which they arrive
+    progress: Optional[Progress] = None
+    for period in range(600):
+        decision = decide(pose, math.inf, goal, P, turning)
+        if isinstance(decision, End):
+            return
+        turning = turning.after(decision)
+        progress = track_progress(progress, decision.errors, 0.1 * period, P.stuck_distance, P.stuck_angle)
+        assert 0.1 * period - progress.since <= P.stuck_timeout
+        twist = limit_acceleration(twist, decision, 0.1, P)
+        sent.append((period + delay + random.randint(0, jitter), twist))
+        driven = next((late for arrival, late in reversed(sent) if arrival <= period), STANDSTILL)
+        pose = Pose2D(
+            pose.x + 0.1 * driven.v * math.cos(pose.yaw),
+            pose.y + 0.1 * driven.v * math.sin(pose.yaw),
+            wrap_angle(pose.yaw + 0.1 * driven.w),
+        )
+    pytest.fail(f"not there after a minute: {pose}")
+
+
+def test_each_reversal_halves_the_speed_of_turning_down_to_the_minimum() -> None:
+    left, right = (decide(Pose2D(0.0, 0.0, yaw), math.inf, Goal(1.0, 0.0), P) for yaw in (-1.0, 1.0))
+    turning = Turning().after(left).after(left)
+    assert turning.limit(P) == P.max_angular_velocity
+    assert turning.after(right).limit(P) == P.max_angular_velocity / 2.0
+    assert Turning(1.0, 2000).limit(P) == P.min_angular_velocity
 
 
 def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:

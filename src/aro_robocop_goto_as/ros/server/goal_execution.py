@@ -11,7 +11,7 @@ from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
 from ... import goto
 from ...geometry import FARTHEST, STANDSTILL
-from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate
+from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate, Turning
 from ...goto_params import GotoParams
 from ...simulation.schedule import NANOSECONDS
 from ..names import place
@@ -49,6 +49,7 @@ class GoalExecution:
         self._last: Optional[float] = None  # time of the previous step
         self._stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
         self._progress: Optional[Progress] = None
+        self._turning = Turning()
 
     def refusal(self) -> Optional[Ending]:
         """The ending of a goal that is not a position in reach; None for a valid goal."""
@@ -77,7 +78,8 @@ class GoalExecution:
         if inputs is None:
             return None, None
         pose, clearance = inputs
-        decision = goto.decide(pose, clearance, self.goal, p)
+        decision = goto.decide(pose, clearance, self.goal, p, self._turning)
+        self._turning = self._turning.after(decision)
         errors, driven = decision.errors, now - self._stalled
         self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)
