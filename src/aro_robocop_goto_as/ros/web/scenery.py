@@ -8,7 +8,7 @@ from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
-from ...web.shapes import IMAGE, POINTS, Shape
+from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
 from ..names import SERVER, SIMULATOR, absolute
 from .images import map_image, scan_points

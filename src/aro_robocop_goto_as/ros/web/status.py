@@ -11,7 +11,7 @@ from ...geometry import Pose3D
 from ...web import text
 from ...web.elements import Html, set_visible
 from ...web.page import LOOK_AT
-from ...web.shapes import TEXT, Shape
+from ...web.scene import TEXT, Shape
 from ...web.state import PageState
 from ..names import ACTION, BRIDGE, SIMULATOR, absolute
 from .inbox import Inbox

@@ -13,7 +13,7 @@ from ...geometry import Pose3D, Vector3
 from ...trail import Trail
 from ...web.elements import set_visible
 from ...web.page import set_theme
-from ...web.shapes import FRAME, LINE, Group, Shape
+from ...web.scene import FRAME, LINE, Group, Shape
 from ...web.state import PageState
 from ..names import absolute
 from .images import camera_image
