@@ -8,17 +8,14 @@ Mover = Callable[[float], None]
 
 
 class Html:
-    """HTML that is sent when it changes, and hidden while it is empty."""
+    """HTML that is hidden while it is empty. viser sends what is set only if it changes."""
 
     def __init__(self, gui: Any) -> None:
         self._handle = gui.add_html("", visible=False)
-        self._content = ""
 
     def show(self, content: str) -> None:
         """Show this HTML."""
-        if content != self._content:
-            self._handle.content = self._content = content
-            self._handle.visible = bool(content)
+        self._handle.content, self._handle.visible = content, bool(content)
 
 
 class Slider:
@@ -39,16 +36,10 @@ class Slider:
     def show(self, value: float) -> None:
         """Show the value within the bounds, unless a visitor's own may still be on its way."""
         value = min(max(value, self._handle.min), self._handle.max)
-        if time.monotonic() - self._moved_at > SETTLED and abs(self._handle.value - value) > 1e-6:
+        if time.monotonic() - self._moved_at > SETTLED:
             self._handle.value = value
 
 
 def add_button(gui: Any, label: str, icon: str, action: Callable[[], None], visible: bool = True) -> None:
     """Add a button that makes a request when it is clicked."""
     gui.add_button(label, icon=icon, visible=visible).on_click(lambda _event: action())
-
-
-def set_visible(handle: Any, visible: bool) -> None:
-    """Show or hide an element; sent only if that changes."""
-    if handle.visible != visible:
-        handle.visible = visible

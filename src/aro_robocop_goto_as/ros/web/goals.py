@@ -13,15 +13,14 @@ from aro_robocop_goto_as.srv import SetPose
 from ...web import text
 from ...web.elements import Html, add_button
 from ...web.goal_history import Ended, GoalHistory
-from ...web.pick import floor_point
+from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers, names
 from ..client.sent_goal import STATES, UNFINISHED
 from ..covariances import diagonal
 from ..names import ACTION, absolute
-from .inbox import Inbox
 from .marker_shapes import MarkerStore
-from .part import Context, Part
+from .part import Context, Inbox, Part
 from .requests import Requests
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
@@ -50,7 +49,6 @@ class Goals(Part):
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
         self._history = GoalHistory()
-        self._results = Inbox()
         self._watched: Set[str] = set()
         context.server.scene.on_click()(self._on_click)
 
@@ -86,13 +84,12 @@ class Goals(Part):
         inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         for robot in set(state.robots) - self._watched:
             self._watched.add(robot)
             name = absolute(robot, ACTION)
-            self._results.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
-            self._results.subscribe(f"{name}/result", GoToPositionActionResult, self._result_handler(robot), None)
-        self._results.deliver()
+            inbox.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
+            inbox.subscribe(f"{name}/result", GoToPositionActionResult, self._result_handler(robot), None)
 
     def _on_feedback(self, at: float, message: GoToPositionActionFeedback) -> None:
         self._feedback = (at, message.feedback)
@@ -112,7 +109,6 @@ class Goals(Part):
         return on_result
 
     def show(self, state: PageState) -> None:
-        self._results.deliver()
         if self._feedback is not None and time.monotonic() - self._feedback[0] >= FEEDBACK_AGE:
             self._feedback = None
         if self._answered is not None and time.monotonic() - self._answered >= STATUS_AGE and not state.recorded:
@@ -152,5 +148,4 @@ class Goals(Part):
         return ended.state == "SUCCEEDED", f"{robot}{goal}: {ended.message or ended.state}"
 
     def forget(self) -> None:
-        self._results.clear()
         self._history, self._feedback, self._answered, self._newest = GoalHistory(), None, None, None

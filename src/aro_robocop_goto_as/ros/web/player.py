@@ -10,8 +10,6 @@ import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...errors import WebError
-from ...web.samples import Samples
-from ...web.state import ReplayState
 
 LEAD = 1.0  # [s, recorded] before the moment that is sought, for topics with more messages than one in this time
 FEW = 10  # messages of a topic that always count as rare: of rare topics all is sent again from the beginning
@@ -57,8 +55,10 @@ class Player:
         self._sought: Optional[float] = None
         self._newcomers: List[Tuple[str, Callable[[Any], None]]] = []
 
-    def samples(self, topic: str, figures: Callable[[Any], Tuple[float, ...]]) -> Samples:
-        """Figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
+    def samples(
+        self, topic: str, figures: Callable[[Any], Tuple[float, float]]
+    ) -> Tuple[Tuple[float, float, float], ...]:
+        """Two figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
         with rosbag.Bag(self.path) as bag:
             found = bag.read_messages([topic])
             return tuple((stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found)
@@ -89,16 +89,19 @@ class Player:
             self._set(at=self._sought)
 
     def _set(self, **values: Any) -> None:
-        now = {"at": min(self._clock.position(), self.duration), "since": time.monotonic()}
+        now: Dict[str, Any] = {"at": self.position, "since": time.monotonic()}
         self._clock = self._clock._replace(**{**now, **values})
         self._changed.notify()
 
     @property
-    def state(self) -> ReplayState:
-        """What is shown now."""
-        clock = self._clock
-        position = min(clock.position(), self.duration)
-        return ReplayState(position, self.duration, clock.playing and position < self.duration, clock.speed)
+    def position(self) -> float:
+        """The moment that is shown [s] after the beginning."""
+        return min(self._clock.position(), self.duration)
+
+    @property
+    def speed(self) -> float:
+        """How many times as fast as recorded; 0 while it is paused, and at its end."""
+        return self._clock.speed if self._clock.playing and self.position < self.duration else 0.0
 
     # -- the thread --
 
@@ -149,7 +152,7 @@ class Player:
                         return True
                     self._changed.wait(min(ahead / self._clock.speed, 1.0) if self._clock.playing else None)
             for topic, publish in newcomers:
-                for _, message in self._past([topic], self.state.position):
+                for _, message in self._past([topic], self.position):
                     publish(message)
 
     def _stamp(self, position: float) -> rospy.Time:

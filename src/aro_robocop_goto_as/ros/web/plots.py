@@ -2,21 +2,22 @@
 
 import math
 import time
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from collections import deque
+from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback
 
-from ...web.report import Failure
-from ...web.samples import SPAN, Samples, columns, extended, held
 from ...web.state import PageState
 from ..names import ACTION, absolute
-from .inbox import Inbox
-from .part import Context, Part
+from .part import Context, Inbox, Part
 from .player import Player
+from .replay import Failure
 
+SPAN = 30.0  # [s, wall] that a plot of a running system shows
+MOST = 900  # samples: 30 Hz
 HEIGHT = 110  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
@@ -27,6 +28,8 @@ SHARE = "share"  # scale from 0 to 1, of what marks a time
 PLAYED: Dict[str, Any] = {"label": "played", "scale": SHARE, "stroke": "#868e96", "fill": "rgba(134,142,150,0.18)"}
 FAILED: Dict[str, Any] = {"label": "check failed", "scale": SHARE, "stroke": "#e03131", "width": 2}
 POINTS = 400  # of a recording's plot
+Sample = Tuple[float, float, float]  # time [s] and two figures
+Figures = Callable[[Any], Tuple[float, float]]
 
 
 def add_plot(gui: Any, texts: Tuple[str, str, str], data: Sequence[Any], span: Tuple[float, float], *marks: Any) -> Any:
@@ -44,10 +47,10 @@ class Plots(Part):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        gui, nothing = context.server.gui, columns((), 2, 0.0)
+        gui, nothing = context.server.gui, columns((), 0.0)
         self._handles = [add_plot(gui, texts, nothing, (-SPAN, 0.0)) for texts in (ERRORS, COMMANDS)]
-        self._samples: List[Samples] = [(), ()]  # of errors and commands
-        self._shown: List[Samples] = [(), ()]
+        self._samples: List[Deque[Sample]] = [deque(maxlen=MOST), deque(maxlen=MOST)]  # by plot
+        self._changed: Set[int] = set()  # plots
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
@@ -58,9 +61,10 @@ class Plots(Part):
         for number, (topic, kind, figures) in enumerate(plotted(robot)):
             inbox.subscribe(topic, kind, self._handler(number, figures), None)
 
-    def _handler(self, number: int, figures: "Figures") -> Callable[[float, Any], None]:
+    def _handler(self, number: int, figures: Figures) -> Callable[[float, Any], None]:
         def on_message(at: float, message: Any) -> None:
-            self._samples[number] = extended(self._samples[number], at, *figures(message))
+            self._samples[number].append((at, *figures(message)))
+            self._changed.add(number)
 
         return on_message
 
@@ -68,13 +72,14 @@ class Plots(Part):
         now = time.monotonic()
         if now - self._shown_at >= PERIOD:
             self._shown_at = now
-            for number, handle in enumerate(self._handles):
-                if self._samples[number] is not self._shown[number]:
-                    self._shown[number] = self._samples[number]
-                    handle.data = columns(self._samples[number], 2, now)
+            while self._changed:
+                number = self._changed.pop()
+                self._handles[number].data = columns(self._samples[number], now)
 
     def forget(self) -> None:
-        self._samples = [(), ()]
+        for number, samples in enumerate(self._samples):
+            samples.clear()
+            self._changed.add(number)
 
 
 class RecordedPlots(Part):
@@ -103,21 +108,18 @@ class RecordedPlots(Part):
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         """Read the recording; the plots of the robot before are gone."""
         self._figures = [
-            held(self._player.samples(topic, figures), self._times, 2) for topic, _, figures in plotted(robot)
+            held(self._player.samples(topic, figures), self._times) for topic, _, figures in plotted(robot)
         ]
         self._position = math.nan
 
     def show(self, state: PageState) -> None:
-        position = self._player.state.position
+        position = self._player.position
         if self._figures is None or abs(position - self._position) < self._player.duration / POINTS:
             return
         self._position = position
         played = np.where(self._times <= position, 1.0, 0.0)
         for handle, figures in zip(self._handles, self._figures):
             handle.data = (self._times, *figures, played, *self._marked)
-
-
-Figures = Callable[[Any], Tuple[float, float]]
 
 
 def plotted(robot: str) -> Tuple[Tuple[str, Any, Figures], Tuple[str, Any, Figures]]:
@@ -130,3 +132,18 @@ def plotted(robot: str) -> Tuple[Tuple[str, Any, Figures], Tuple[str, Any, Figur
 
 def _errors(message: GoToPositionActionFeedback) -> Tuple[float, float]:
     return message.feedback.position_error, message.feedback.angle_error
+
+
+def columns(samples: Iterable[Sample], now: float) -> Tuple[np.ndarray, ...]:
+    """Those of the last seconds: times before `now` [s], negative, and both figures; all (n,), and never empty."""
+    recent = [sample for sample in samples if now - sample[0] <= SPAN]
+    table = np.array(recent or [(now, 0.0, 0.0)])
+    table[:, 0] -= now
+    return tuple(np.ascontiguousarray(column) for column in table.T)
+
+
+def held(samples: Iterable[Sample], times: np.ndarray) -> Tuple[np.ndarray, ...]:
+    """Each figure at these times (n,) [s]: its newest value, 0 before the first one."""
+    table = np.array([(-np.inf, 0.0, 0.0), *samples])
+    newest = np.searchsorted(table[:, 0], times, side="right") - 1
+    return tuple(np.ascontiguousarray(column) for column in table[newest, 1:].T)

@@ -13,9 +13,8 @@ from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
 from ..names import absolute
-from .inbox import Inbox
 from .marker_shapes import to_pose
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 DESCRIPTION = "robot_description"
 BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that exists
@@ -67,7 +66,7 @@ class Robots(Part):
         poses = (context.locate(context.frame_of(state.selected, base)) for base in BASES)
         context.state.change(pose=next((pose for pose in poses if pose is not None), None))
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in state.robots}
         self._links = {robot: links for robot, links in found.items() if links is not None}
 

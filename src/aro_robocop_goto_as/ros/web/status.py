@@ -9,13 +9,12 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose3D
 from ...web import text
-from ...web.elements import Html, set_visible
+from ...web.elements import Html
 from ...web.page import LOOK_AT
 from ...web.scene import TEXT, Shape
 from ...web.state import PageState
 from ..names import ACTION, BRIDGE, SIMULATOR, absolute
-from .inbox import Inbox
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 GROUPS = ("robots", "world", "server", "scan", "map")  # of the scene; while all are empty a notice takes their place
 SILENCE = 4.0  # [s, wall] without a report of the simulator, which sends one per second, until it counts as gone
@@ -49,7 +48,9 @@ class Status(Part):
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
-        self.context.state.change(simulated=True, factor=message.factor_reached or 1.0)
+        self.context.state.change(
+            simulated=True, factor=message.factor_reached or 1.0, factor_asked=message.factor_asked
+        )
 
     def _on_bridge(self, _: float, message: String) -> None:
         self._bridge = message.data
@@ -69,9 +70,8 @@ class Status(Part):
         self._answer.show(text.answer(state.answer))
         if self._robot.options != state.robots:
             self._robot.options = state.robots
-        if self._robot.value != state.selected:
-            self._robot.value = state.selected
-        set_visible(self._robot, len(state.robots) > 1)
+        self._robot.value = state.selected
+        self._robot.visible = len(state.robots) > 1
 
     def _show_notice(self) -> None:
         empty = not any(self.context.scene.draws(group) for group in GROUPS)
@@ -81,7 +81,7 @@ class Status(Part):
     def _rows(self, state: PageState) -> List[Tuple[str, str]]:
         rows, sim = [], self._sim
         if sim is not None:
-            asked = text.factor(sim.factor_asked)
+            asked = f"{sim.factor_asked:g}" if sim.factor_asked > 0.0 else "as fast as possible"
             speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, requested {asked}"
             rows += [
                 ("world", f"{sim.world} (seed {sim.seed}, {sim.drive}, {sim.sync})"),

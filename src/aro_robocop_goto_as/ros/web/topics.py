@@ -2,22 +2,25 @@
 
 import time
 from collections import deque
-from typing import Any, Deque, Dict, Tuple
+from typing import Any, Deque, Dict, List, Optional, Tuple
 
+import genpy
+import roslib.message
 import rospy
 
 from ...web import text
 from ...web.elements import Html
 from ...web.state import PageState
 from ..names import absolute
-from .messages import brief, class_of, full
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 PERIOD = 0.5  # [s, wall] between two updates
 SPAN = 5.0  # [s, wall] over which a rate is measured
 MOST = 1000  # messages of this time: 200 Hz
 COSTLY = ("sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/PointCloud2")  # only where it is chosen
 DEFAULT = "cmd_vel"
+LINES, WIDTH = 60, 120  # of a message in full: lines, characters of a line
+BRIEF = 100  # characters of a message on one line
 
 
 class _Listener:
@@ -55,7 +58,7 @@ class Topics(Part):
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         """Subscribe to what is chosen; here, since this is done also after the last browser has gone."""
         visited, chosen, every = bool(self.context.server.get_clients()), self._choice.value, self._all.value
         wanted = {
@@ -82,8 +85,7 @@ class Topics(Part):
         options = tuple(sorted({*names, default, chosen}))
         if self._choice.options != options:
             self._choice.options = options
-        if self._choice.value != chosen:
-            self._choice.value = chosen
+        self._choice.value = chosen
 
     def _rate(self, listener: _Listener, state: PageState) -> str:
         """As `rostopic hz` with simulated time."""
@@ -101,3 +103,36 @@ class Topics(Part):
         if listener is None or listener.newest is None:
             return "", ""
         return self._rate(listener, state), brief(listener.newest)
+
+
+def class_of(kind: str) -> Any:
+    """The class of a type, such as geometry_msgs/Twist; one of unread bytes where the type's package is not built here.
+
+    rospy has one class for all subscribers of a topic, so it has to be the one that other parts use.
+    """
+    return roslib.message.get_message_class(kind) or rospy.AnyMsg
+
+
+def _lines(message: Any, fields: Optional[Any] = None) -> List[str]:
+    if isinstance(message, rospy.AnyMsg):
+        return ["a message of a type that is not built here"]
+    return str(genpy.message.strify_message(message, field_filter=fields)).splitlines()
+
+
+def full(message: Any) -> str:
+    """As `rostopic echo` shows it, with long lines and long messages cut."""
+    lines = _lines(message)
+    return "\n".join([_cut(line, WIDTH) for line in lines[:LINES]] + ["…"] * (len(lines) > LINES))
+
+
+def brief(message: Any) -> str:
+    """On one line, without its header."""
+    return _cut(" ".join(" ".join(_lines(message, _without_header)).split()), BRIEF)
+
+
+def _without_header(message: Any) -> List[str]:
+    return [name for name in message.__slots__ if name != "header"]
+
+
+def _cut(line: str, width: int) -> str:
+    return line if len(line) <= width else line[: width - 1] + "…"

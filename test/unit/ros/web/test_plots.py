@@ -1,18 +1,20 @@
-"""What the plots of a recording show: all of it, what has been played, and when checks failed."""
+"""What plots show: the last seconds, or all of a recording, what of it has been played, and when checks failed."""
 
+import time
 from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import Twist
 
-from aro_robocop_goto_as.ros.web.plots import POINTS, RecordedPlots
-from aro_robocop_goto_as.web.report import Failure
-from aro_robocop_goto_as.web.state import PageState, ReplayState
+from aro_robocop_goto_as.ros.web.plots import MOST, POINTS, SPAN, Plots, RecordedPlots, columns, held
+from aro_robocop_goto_as.ros.web.replay import Failure
+from aro_robocop_goto_as.web.state import PageState
 
 
 @pytest.fixture
 def player():
-    player = MagicMock(duration=20.0, state=ReplayState(5.0, 20.0, True, 1.0))
+    player = MagicMock(duration=20.0, position=5.0)
     player.samples.side_effect = lambda topic, _: ((10.0, 1.0, -1.0),) if topic == "/blue/cmd_vel" else ()
     return player
 
@@ -42,6 +44,40 @@ def test_plots_are_sent_only_when_the_cursor_moves(player, context):
     sent = plots._handles[0].data
     plots.show(PageState())
     assert plots._handles[0].data is sent
-    player.state = ReplayState(6.0, 20.0, True, 1.0)
+    player.position = 6.0
     plots.show(PageState())
     assert plots._handles[0].data is not sent and np.sum(plots._handles[0].data[3]) > np.sum(sent[3])
+
+
+def test_the_last_messages_are_plotted_until_another_robot_is_selected(context):
+    plots, inbox = Plots(context), MagicMock()
+    plots.subscribe_to_robot(inbox, "blue")
+    (topic, _, handler, _) = inbox.subscribe.call_args_list[1][0]
+    assert topic == "/blue/cmd_vel"
+    for _ in range(2 * MOST):
+        handler(time.monotonic(), Twist())
+    plots.show(PageState())
+    assert plots._handles[1].data[0].shape == (MOST,)
+    plots._shown_at = 0.0
+    plots.subscribe_to_robot(inbox, "red")
+    plots.show(PageState())
+    assert plots._handles[1].data[0].shape == (1,)
+
+
+def test_a_plot_shows_the_last_seconds_relative_to_now():
+    samples = [(float(second), float(second), -float(second)) for second in range(100)]
+    times, first, second_figure = columns(samples, 99.0)
+    assert times.tolist() == [float(t) for t in range(-int(SPAN), 1)]
+    assert first[-1] == 99.0 and second_figure[-1] == -99.0
+    assert columns(samples, 109.0)[0][0] == -SPAN
+
+
+def test_a_plot_without_samples_is_not_empty():
+    assert [column.shape for column in columns((), 5.0)] == [(1,)] * 3
+
+
+def test_a_figure_holds_its_newest_value_and_is_zero_before_the_first():
+    times = np.array((0.0, 1.0, 1.5, 2.0, 9.0))
+    first, second = held(((1.0, 5.0, -5.0), (2.0, 7.0, -7.0)), times)
+    assert first.tolist() == [0.0, 5.0, 5.0, 7.0, 7.0] and second.tolist() == [0.0, -5.0, -5.0, -7.0, -7.0]
+    assert [figure.tolist() for figure in held((), times)] == [[0.0] * 5] * 2
