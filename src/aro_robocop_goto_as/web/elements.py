@@ -21,7 +21,16 @@ class Html:
 class Slider:
     """A slider that visitors move, and that otherwise follows what is reported."""
 
-    def __init__(self, gui: Any, label: str, high: float, start: float, hint: str, moved: Mover, low: float = 0.1):
+    def __init__(
+        self,
+        gui: Any,
+        label: str,
+        high: float,
+        start: float,
+        hint: str,
+        moved: Callable[[float], None],
+        low: float = 0.1,
+    ):
         """`moved` is called with the value that a visitor has chosen, a multiple of 0.1."""
         self._handle = gui.add_slider(label, low, high, 0.1, start, hint=hint)
         self._moved_at = 0.0  # [s, wall]
@@ -38,8 +47,3 @@ class Slider:
         value = min(max(value, self._handle.min), self._handle.max)
         if time.monotonic() - self._moved_at > SETTLED:
             self._handle.value = value
-
-
-def add_button(gui: Any, label: str, icon: str, action: Callable[[], None], visible: bool = True) -> None:
-    """Add a button that makes a request when it is clicked."""
-    gui.add_button(label, icon=icon, visible=visible).on_click(lambda _event: action())

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActi
 from aro_robocop_goto_as.srv import SetPose
 
 from ...web import text
-from ...web.elements import Html, add_button
+from ...web.elements import Html
 from ...web.goal_history import Ended, GoalHistory
 from ...web.page import floor_point
 from ...web.state import PageState
@@ -43,8 +43,9 @@ class Goals(Part):
         gui, live = context.server.gui, context.state.now.live
         self._feedback_html = Html(gui)
         self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
-        add_button(gui, "Cancel goal", "x", lambda: cancel(context.requests), live)
-        self._history_html: Optional[Html] = None
+        cancel_button = gui.add_button("Cancel goal", icon="x", visible=live)
+        cancel_button.on_click(lambda _: cancel(context.requests))
+        self._history_html: Any = None
         self._answered: Optional[float] = None  # [s, wall] when the server's status was received
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
@@ -56,7 +57,7 @@ class Goals(Part):
         """Show the last goals in the part of the panel that is open now."""
         gui = self.context.server.gui
         with gui.add_folder("Goals"):
-            self._history_html = Html(gui)
+            self._history_html = gui.add_html("")
 
     def _on_click(self, event: Any) -> None:
         point = floor_point(event.ray_origin, event.ray_direction)
@@ -123,7 +124,8 @@ class Goals(Part):
         self._feedback_html.show(text.table(rows) if rows else "")
         if self._history_html is not None:
             several = len(state.robots) > 1
-            self._history_html.show(text.history(self._ended(ended, several) for ended in self._history.latest()))
+            lines = (self._ended(ended, several) for ended in self._history.latest())
+            self._history_html.content = text.history(lines)
 
     def _goal_rows(self, robot: str) -> List[Tuple[str, str]]:
         """The newest goal's state, as actionlib names it, and its position."""

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, List, Tuple
 
 from ...web import text
-from ...web.elements import Html
 from .part import Context, Part
 
 LAB = Path(__file__).resolve().parents[4] / "docs" / "lab.md"
@@ -37,7 +36,7 @@ class Lab(Part):
     def _add(self, section: Section) -> None:
         gui = self.context.server.gui
         with gui.add_folder(section.title, expand_by_default=False) as folder:
-            Html(gui).show(text.steps(section.expected, section.steps))
+            gui.add_html(text.steps(section.expected, section.steps))
             done = gui.add_checkbox("Done", False)
 
         async def on_update(_: Any) -> None:

@@ -7,7 +7,6 @@ import rospy
 from rosgraph_msgs.msg import Log as LogMessage
 
 from ...web import text
-from ...web.elements import Html
 from ...web.state import PageState
 from .part import Context, Inbox, Part
 
@@ -19,9 +18,8 @@ class Log(Part):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        gui = context.server.gui
-        with gui.add_folder("Log"):
-            self._html = Html(gui)
+        with context.server.gui.add_folder("Log"):
+            self._html = context.server.gui.add_html("")
         self._lines: Deque[Tuple[int, str, str]] = deque(maxlen=REMEMBERED)
         self._subscribed = False
 
@@ -35,7 +33,7 @@ class Log(Part):
             self._lines.append((message.level, message.name.lstrip("/"), message.msg))
 
     def show(self, state: PageState) -> None:
-        self._html.show(text.log(reversed(self._lines)))
+        self._html.content = text.log(reversed(self._lines))
 
     def forget(self) -> None:
         self._lines.clear()

@@ -176,16 +176,6 @@ class WebNode:
             part.forget()
 
 
-def warn_of_strangers(p: WebParams) -> None:
-    """Warn if other machines can reach the page and drive the robot with it."""
-    if not access.is_loopback(p.web_host) and not p.view_only:
-        rospy.logwarn(
-            "the page listens on %s:%d without a password: every machine that reaches it can drive the robot",
-            p.web_host,
-            p.web_port,
-        )
-
-
 def main() -> None:
     """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
     try:
@@ -199,7 +189,9 @@ def main() -> None:
     web.wait_for_master()
     replaced = False
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
-        warn_of_strangers(p)
+        if not access.is_loopback(p.web_host) and not p.view_only:
+            warning = "the page listens on %s:%d without a password: every machine that reaches it can drive the robot"
+            rospy.logwarn(warning, p.web_host, p.web_port)
         replaced = web.run()
     if replaced:  # this closes the port, and browsers connect again by themselves
         os.execv(sys.executable, [sys.executable, *sys.argv])

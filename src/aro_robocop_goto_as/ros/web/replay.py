@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Callable, List, Sequence
 
 from ...web import text
-from ...web.elements import Html, Slider, add_button
+from ...web.elements import Slider
 from ...web.state import PageState
 from .part import Context, Part
 from .player import Player
@@ -32,7 +32,7 @@ class Replay(Part):
         super().__init__(context)
         gui = context.server.gui
         self._player = player
-        self._progress = Html(gui)
+        self._progress = gui.add_html("")
         buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
         buttons.on_click(lambda event: player.play(event.target.value == PLAY))
         longest = max(round(player.duration, 1), 0.1)
@@ -40,16 +40,17 @@ class Replay(Part):
         Slider(gui, "Speed", 10.0, speed, "recorded seconds per second", player.set_speed)
         for failure in failed:
             with gui.add_folder(f"✗ {failure.check}, failed at {failure.time:.1f} s"):
-                Html(gui).show(text.answer(failure.text))
-                add_button(gui, "Show the moment", "player-skip-back", self._to(failure))
+                gui.add_html(text.answer(failure.text))
+                gui.add_button("Show the moment", icon="player-skip-back").on_click(self._to(failure))
 
-    def _to(self, failure: Failure) -> Callable[[], None]:
-        return lambda: self._player.seek(max(failure.time - BEFORE, 0.0))
+    def _to(self, failure: Failure) -> Callable[[Any], None]:
+        return lambda _: self._player.seek(max(failure.time - BEFORE, 0.0))
 
     def show(self, state: PageState) -> None:
         position, speed = self._player.position, self._player.speed
         how = f"factor {speed:g}" if speed else "paused"
-        self._progress.show(text.table([("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")]))
+        row = ("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")
+        self._progress.content = text.table([row])
         self._time.show(round(position, 1))
 
 

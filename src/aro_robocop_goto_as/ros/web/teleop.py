@@ -9,7 +9,6 @@ from geometry_msgs.msg import Twist
 
 from ...geometry import Twist2D
 from ...web.dead_man import DeadMan
-from ...web.elements import Html, add_button
 from .. import convert
 from ..names import absolute
 from ..ticker import wait_until
@@ -57,10 +56,10 @@ class Teleop(Part):
         self._used = 0.0  # [s, wall] when the last command was sent
         gui = context.server.gui
         with gui.add_folder("Drive", visible=context.state.now.live):
-            Html(gui).show(CROSS)
+            gui.add_html(CROSS)
             for label, key, share in PAD:
                 if share is None:
-                    add_button(gui, label, "hand-stop", self.stop)
+                    gui.add_button(label, icon="hand-stop").on_click(lambda _: self.stop())
                     continue
                 button = gui.add_button(label, hint="drives while it is held")
                 button.on_hold(self._holder(share), callback_hz=HOLD_RATE)

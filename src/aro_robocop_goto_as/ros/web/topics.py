@@ -9,7 +9,6 @@ import roslib.message
 import rospy
 
 from ...web import text
-from ...web.elements import Html
 from ...web.state import PageState
 from ..names import absolute
 from .part import Context, Inbox, Part
@@ -35,10 +34,15 @@ class _Listener:
         self.newest = message
         self._times.append(time.monotonic())
 
-    def rate(self) -> float:
-        """Messages per second [Hz, wall]; 0 while there are fewer than two."""
+    def rate(self, factor: float) -> str:
+        """Messages per simulated second, as `rostopic hz` shows them; empty while there are fewer than two.
+
+        factor: simulated seconds per second
+        """
         times = [at for at in list(self._times) if time.monotonic() - at <= SPAN]
-        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 and times[-1] > times[0] else 0.0
+        if len(times) < 2 or times[-1] <= times[0]:
+            return ""
+        return f"{(len(times) - 1) / (times[-1] - times[0]) / factor:.1f} Hz"
 
     def close(self) -> None:
         self._subscriber.unregister()
@@ -51,9 +55,9 @@ class Topics(Part):
         super().__init__(context)
         gui = context.server.gui
         self._choice = gui.add_dropdown("Topic", (absolute("", DEFAULT),), hint="as rostopic hz and rostopic echo")
-        self._echo = Html(gui)
+        self._echo = gui.add_html("")
         self._all = gui.add_checkbox("Listen to all", False, hint="except cameras; takes some processor time")
-        self._list = Html(gui)
+        self._list = gui.add_html("")
         self._listeners: Dict[str, _Listener] = {}
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
@@ -74,9 +78,9 @@ class Topics(Part):
             return
         self._shown_at = time.monotonic()
         self._offer(state)
-        self._echo.show(text.block(self._full(state)))
+        self._echo.content = text.block(self._full(state))
         rows = [(topic, kind, *self._brief(topic, state)) for topic, kind in state.topics]
-        self._list.show(text.topics(rows))
+        self._list.content = text.topics(rows)
 
     def _offer(self, state: PageState) -> None:
         names, default = tuple(topic for topic, _ in state.topics), absolute(state.selected, DEFAULT)
@@ -87,22 +91,17 @@ class Topics(Part):
             self._choice.options = options
         self._choice.value = chosen
 
-    def _rate(self, listener: _Listener, state: PageState) -> str:
-        """As `rostopic hz` with simulated time."""
-        rate = listener.rate()
-        return f"{rate / state.factor:.1f} Hz" if rate else ""
-
     def _full(self, state: PageState) -> str:
         listener = self._listeners.get(self._choice.value)
         if listener is None or listener.newest is None:
             return "no message yet"
-        return f"{self._rate(listener, state) or 'no message for some seconds'}\n{full(listener.newest)}"
+        return f"{listener.rate(state.factor) or 'no message for some seconds'}\n{full(listener.newest)}"
 
     def _brief(self, topic: str, state: PageState) -> Tuple[str, str]:
         listener = self._listeners.get(topic)
         if listener is None or listener.newest is None:
             return "", ""
-        return self._rate(listener, state), brief(listener.newest)
+        return listener.rate(state.factor), brief(listener.newest)
 
 
 def class_of(kind: str) -> Any:

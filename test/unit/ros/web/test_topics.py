@@ -53,10 +53,10 @@ def test_a_rate_is_counted_in_simulated_seconds(part, monkeypatch):
     for _ in range(11):
         listener._on_message(Twist())
         now[0] += 0.2
-    assert part._rate(listener, STATE) == "5.0 Hz"
-    assert part._rate(listener, PageState(factor=0.5)) == "10.0 Hz"
+    assert listener.rate(STATE.factor) == "5.0 Hz"
+    assert listener.rate(0.5) == "10.0 Hz"
     now[0] += topics.SPAN
-    assert part._rate(listener, STATE) == ""
+    assert listener.rate(STATE.factor) == ""
 
 
 def test_a_message_in_full_is_what_rostopic_echo_prints_with_long_lines_cut():
