@@ -3,6 +3,7 @@
 import math
 import time
 from collections import deque
+from functools import partial
 from typing import Any, Callable, Deque, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -59,14 +60,11 @@ class Plots(Part):
             self._robot = robot
             self.forget()
         for number, (topic, kind, figures) in enumerate(plotted(robot)):
-            inbox.subscribe(topic, kind, self._handler(number, figures), None)
+            inbox.subscribe(topic, kind, partial(self._on_message, number, figures), None)
 
-    def _handler(self, number: int, figures: Figures) -> Callable[[float, Any], None]:
-        def on_message(at: float, message: Any) -> None:
-            self._samples[number].append((at, *figures(message)))
-            self._changed.add(number)
-
-        return on_message
+    def _on_message(self, number: int, figures: Figures, at: float, message: Any) -> None:
+        self._samples[number].append((at, *figures(message)))
+        self._changed.add(number)
 
     def show(self, state: PageState) -> None:
         now = time.monotonic()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Callable, List, Sequence
 
 from ...web import text
-from ...web.elements import Slider
+from ...web.slider import Slider
 from ...web.state import PageState
 from .part import Context, Part
 from .player import Player

@@ -9,7 +9,6 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose3D
 from ...web import text
-from ...web.elements import Html
 from ...web.page import LOOK_AT
 from ...web.scene import TEXT, Shape
 from ...web.state import PageState
@@ -26,7 +25,7 @@ class Status(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui = context.server.gui
-        self._master_alert, self._alert, self._overview, self._answer = Html(gui), Html(gui), Html(gui), Html(gui)
+        self._master_alert, self._alert, self._overview, self._answer = (gui.add_html("") for _ in range(4))
         self._robot = gui.add_dropdown("Robot", ("",), visible=False, hint="shown in detail and driven")
         self._sim: Optional[SimStatus] = None
         self._sim_at = 0.0  # [s, wall]
@@ -57,17 +56,17 @@ class Status(Part):
 
     def show_master_problem(self, problem: str) -> None:
         """Why the ROS master does not answer, if it does not. Only one thread calls this, also while others hang."""
-        self._master_alert.show(text.alert(f"ROS does not answer: {problem}." if problem else ""))
+        self._master_alert.content = text.alert(f"ROS does not answer: {problem}." if problem else "")
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        self._alert.show(text.alert(gone if silence > SILENCE else ""))
+        self._alert.content = text.alert(gone if silence > SILENCE else "")
         self._show_notice()
         known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
-        self._overview.show(text.table(self._rows(state)) if known else "")
-        self._answer.show(text.answer(state.answer))
+        self._overview.content = text.table(self._rows(state)) if known else ""
+        self._answer.content = text.answer(state.answer)
         if self._robot.options != state.robots:
             self._robot.options = state.robots
         self._robot.value = state.selected

@@ -6,7 +6,7 @@ from std_srvs.srv import Trigger
 
 from aro_robocop_goto_as.srv import Reset, Step
 
-from ...web.elements import Slider
+from ...web.slider import Slider
 from ...web.state import PageState
 from .part import Context, Part
 

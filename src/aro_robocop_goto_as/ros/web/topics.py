@@ -126,11 +126,8 @@ def full(message: Any) -> str:
 
 def brief(message: Any) -> str:
     """On one line, without its header."""
-    return _cut(" ".join(" ".join(_lines(message, _without_header)).split()), BRIEF)
-
-
-def _without_header(message: Any) -> List[str]:
-    return [name for name in message.__slots__ if name != "header"]
+    lines = _lines(message, lambda part: [name for name in part.__slots__ if name != "header"])
+    return _cut(" ".join(" ".join(lines).split()), BRIEF)
 
 
 def _cut(line: str, width: int) -> str:

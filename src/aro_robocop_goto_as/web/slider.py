@@ -1,21 +1,10 @@
-"""Elements of the panel that several sections use."""
+"""A slider of the panel."""
 
 import time
 from typing import Any, Callable
 
 SETTLED = 2.0  # [s, wall] after a visitor has moved a slider: until then what is reported may be older than that
 Mover = Callable[[float], None]
-
-
-class Html:
-    """HTML that is hidden while it is empty. viser sends what is set only if it changes."""
-
-    def __init__(self, gui: Any) -> None:
-        self._handle = gui.add_html("", visible=False)
-
-    def show(self, content: str) -> None:
-        """Show this HTML."""
-        self._handle.content, self._handle.visible = content, bool(content)
 
 
 class Slider:
