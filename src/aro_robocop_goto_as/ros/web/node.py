@@ -25,7 +25,7 @@ from .log import Log
 from .master_watch import watch_master
 from .part import Context, Inbox, Part
 from .player import Player
-from .plots import Plots, RecordedPlots
+from .plots import PLOTTED, Plot, RecordedPlot
 from .replay import Replay, failures
 from .requests import Requests
 from .robots import Robots
@@ -73,7 +73,8 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
         goals.add_history()
         parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
     with tabs.add_tab("Plots"):
-        parts.append(Plots(context) if player is None else RecordedPlots(context, player, failed))
+        for plotted in PLOTTED:
+            parts.append(Plot(context, plotted) if player is None else RecordedPlot(context, plotted, player, failed))
         if not p.view_only:
             parts.append(Log(context))
     if not p.view_only:  # a page that is only looked at subscribes to nothing that it does not need for the scene

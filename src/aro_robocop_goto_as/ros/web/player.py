@@ -17,6 +17,8 @@ MARKERS = "visualization_msgs/MarkerArray"  # likewise, however many: each one o
 QUEUE = 1000  # messages that wait for a slow subscriber
 CONNECT = 0.5  # [s, wall] for subscribers that wait already, as `rosbag play` gives them
 CLEAR = MarkerArray([Marker(action=Marker.DELETEALL)])
+Sample = Tuple[float, float, float]  # time [s] and two figures
+Figures = Callable[[Any], Tuple[float, float]]  # those of a message
 
 
 class _Clock(NamedTuple):
@@ -55,13 +57,11 @@ class Player:
         self._sought: Optional[float] = None
         self._newcomers: List[Tuple[str, Callable[[Any], None]]] = []
 
-    def samples(
-        self, topic: str, figures: Callable[[Any], Tuple[float, float]]
-    ) -> Tuple[Tuple[float, float, float], ...]:
+    def samples(self, topic: str, figures: Figures) -> List[Sample]:
         """Two figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
         with rosbag.Bag(self.path) as bag:
             found = bag.read_messages([topic])
-            return tuple((stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found)
+            return [(stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found]
 
     # -- controls, from any thread --
 

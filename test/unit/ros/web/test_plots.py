@@ -1,4 +1,4 @@
-"""What plots show: the last seconds, or all of a recording, what of it has been played, and when checks failed."""
+"""What plot show: the last seconds, or all of a recording, what of it has been played, and when checks failed."""
 
 import time
 from unittest.mock import MagicMock
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import Twist
 
-from aro_robocop_goto_as.ros.web.plots import MOST, POINTS, SPAN, Plots, RecordedPlots, columns, held
+from aro_robocop_goto_as.ros.web.plots import MOST, PLOTTED, POINTS, SPAN, Plot, RecordedPlot, columns, held
 from aro_robocop_goto_as.ros.web.replay import Failure
 from aro_robocop_goto_as.web.state import PageState
 
@@ -27,41 +27,41 @@ def context():
 
 
 def test_the_whole_recording_is_plotted_with_the_played_part_and_the_failures_marked(player, context):
-    plots = RecordedPlots(context, player, [Failure("stops", 15.0, "")])
-    plots.subscribe_to_robot(MagicMock(), "blue")
-    plots.show(PageState())
-    times, speed, turn, played, failed = plots._handles[1].data
+    plot = RecordedPlot(context, PLOTTED[1], player, [Failure("stops", 15.0, "")])
+    plot.subscribe_to_robot(MagicMock(), "blue")
+    plot.show(PageState())
+    times, speed, turn, played, failed = plot._handle.data
     assert (len(times), times[0], times[-1]) == (POINTS, 0.0, 20.0)
     assert not speed[times < 10.0].any() and (speed[times >= 10.0] == 1.0).all() and turn[-1] == -1.0
     assert played.tolist() == (times <= 5.0).tolist()
     assert times[failed > 0.0] == pytest.approx([15.0], abs=20.0 / POINTS)
 
 
-def test_plots_are_sent_only_when_the_cursor_moves(player, context):
-    plots = RecordedPlots(context, player, [])
-    plots.subscribe_to_robot(MagicMock(), "")
-    plots.show(PageState())
-    sent = plots._handles[0].data
-    plots.show(PageState())
-    assert plots._handles[0].data is sent
+def test_plot_are_sent_only_when_the_cursor_moves(player, context):
+    plot = RecordedPlot(context, PLOTTED[1], player, [])
+    plot.subscribe_to_robot(MagicMock(), "")
+    plot.show(PageState())
+    sent = plot._handle.data
+    plot.show(PageState())
+    assert plot._handle.data is sent
     player.position = 6.0
-    plots.show(PageState())
-    assert plots._handles[0].data is not sent and np.sum(plots._handles[0].data[3]) > np.sum(sent[3])
+    plot.show(PageState())
+    assert plot._handle.data is not sent and np.sum(plot._handle.data[3]) > np.sum(sent[3])
 
 
 def test_the_last_messages_are_plotted_until_another_robot_is_selected(context):
-    plots, inbox = Plots(context), MagicMock()
-    plots.subscribe_to_robot(inbox, "blue")
-    (topic, _, handler, _) = inbox.subscribe.call_args_list[1][0]
+    plot, inbox = Plot(context, PLOTTED[1]), MagicMock()
+    plot.subscribe_to_robot(inbox, "blue")
+    (topic, _, handler, _) = inbox.subscribe.call_args[0]
     assert topic == "/blue/cmd_vel"
     for _ in range(2 * MOST):
         handler(time.monotonic(), Twist())
-    plots.show(PageState())
-    assert plots._handles[1].data[0].shape == (MOST,)
-    plots._shown_at = 0.0
-    plots.subscribe_to_robot(inbox, "red")
-    plots.show(PageState())
-    assert plots._handles[1].data[0].shape == (1,)
+    plot.show(PageState())
+    assert plot._handle.data[0].shape == (MOST,)
+    plot._shown_at = 0.0
+    plot.subscribe_to_robot(inbox, "red")
+    plot.show(PageState())
+    assert plot._handle.data[0].shape == (1,)
 
 
 def test_a_plot_shows_the_last_seconds_relative_to_now():
