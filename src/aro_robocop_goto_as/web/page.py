@@ -1,8 +1,11 @@
-"""The page before it shows anything, its colours, and where its cameras are at first."""
+"""The page before it shows anything: its colours, where its cameras are, and which point of the floor they show."""
 
-from typing import Any, Dict, Tuple
+import math
+from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
+
+from ..geometry import Vector3
 
 CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; a room of 5 x 5 m
 PHONE = 576  # [pixel] of width, below which viser shows the panel at the bottom
@@ -20,6 +23,7 @@ FLOOR: Dict[bool, Dict[str, Tuple[int, int, int]]] = {  # its colours by whether
     False: {"plane_color": (246, 247, 249), "cell_color": (222, 226, 230), "section_color": (190, 197, 205)},
     True: {"plane_color": (34, 38, 46), "cell_color": (62, 68, 80), "section_color": (95, 103, 118)},
 }
+FARTHEST_CLICK = 1000.0  # [m] from the scene's origin; a ray that almost misses the floor meets it somewhere beyond
 SUN = (-3.0, -5.0, 9.0)  # [m] where the light comes from: the left of the first view
 
 
@@ -53,3 +57,13 @@ def set_theme(server: Any, dark: bool) -> None:
     server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False, control_width="medium")
     opaque = {"plane_opacity": 1.0, "shadow_opacity": 0.0}
     server.scene.add_grid("/floor", FLOOR_SIZE, FLOOR_SIZE, cell_size=0.5, section_size=1.0, **opaque, **FLOOR[dark])
+
+
+def floor_point(origin: Vector3, direction: Vector3) -> Optional[Tuple[float, float]]:
+    """Where the ray of a click meets the floor: x, y [m], or None if it does not, or too far away to be meant."""
+    numbers = (*origin, *direction)
+    if not all(math.isfinite(number) for number in numbers) or direction[2] * origin[2] >= 0.0:
+        return None
+    distance = -origin[2] / direction[2]
+    x, y = origin[0] + distance * direction[0], origin[1] + distance * direction[1]
+    return (x, y) if math.hypot(x, y) <= FARTHEST_CLICK else None

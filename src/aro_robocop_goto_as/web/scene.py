@@ -1,13 +1,15 @@
 """The page's 3D scene: groups of shapes, drawn by viser."""
 
-from dataclasses import replace
-from typing import Any, Dict, Hashable, Tuple
+from dataclasses import dataclass, field, replace
+from typing import Any, Dict, Hashable, Iterable, Optional, Tuple
 
 import numpy as np
 
-from ..geometry import Pose3D
-from .shapes import BODY, BOX, CYLINDER, FRAME, IMAGE, LINE, MESH, POINTS, SPHERE, TEXT, Group, Shape
+from ..geometry import Pose3D, Vector3
 
+Color = Tuple[int, int, int]  # red, green, blue from 0 to 255
+BOX, CYLINDER, SPHERE, MESH, LINE, TEXT = "box", "cylinder", "icosphere", "mesh_simple", "line_segments", "label"
+POINTS, IMAGE, FRAME, BODY = "point_cloud", "image", "frame", "body"
 STILL = 1e-4  # [m] and quaternion units: smaller changes of a pose are not sent
 LOOK = ("color", "opacity")
 CHANGEABLE = {  # what may differ between two shapes of a kind without drawing anew
@@ -19,14 +21,69 @@ CHANGEABLE = {  # what may differ between two shapes of a kind without drawing a
 FLAT = {"cast_shadow": False, "receive_shadow": False}
 
 
+@dataclass(frozen=True)
+class Shape:
+    """One shape in its own frame.
+
+    size: [m] of a box: x, y, z; of a cylinder: diameter, -, height along z; of a sphere and of points: diameter; of a
+        line: width; of text: height; of an image: width, height
+    points: [m] corners of a mesh, three for each triangle; of a line, one after the other; of points
+    text: that is shown, or the name beside a frame's axes
+    parts: of a body: shapes with their poses in its frame
+    image: (rows, columns, 4), row 0 at the lowest y; not compared, so another image needs another key in its group
+    """
+
+    kind: str  # as in the name of viser's add_KIND, except for BODY
+    size: Vector3 = (1.0, 1.0, 1.0)
+    color: Color = (200, 200, 200)
+    opacity: float = 1.0
+    points: Tuple[Vector3, ...] = ()
+    text: str = ""
+    parts: "Tuple[Placed, ...]" = ()
+    image: Optional[np.ndarray] = field(default=None, compare=False)
+
+
+Placed = Tuple[Shape, Pose3D]
+Group = Dict[Hashable, Placed]
+
+
+def color_of(rgba: Iterable[float]) -> Tuple[Color, float]:
+    """Colour and opacity of a shape for red, green, blue and opacity from 0 to 1; ValueError if it is not four."""
+    red, green, blue, opacity = (min(max(value, 0.0), 1.0) for value in rgba)
+    return (round(255 * red), round(255 * green), round(255 * blue)), opacity
+
+
 def _wxyz(pose: Pose3D) -> Tuple[float, float, float, float]:
     x, y, z, w = pose.orientation
     return (w, x, y, z)
 
 
-def _segments(shape: Shape) -> np.ndarray:
-    points = np.array(shape.points, dtype=np.float32)
-    return np.stack([points[:-1], points[1:]], axis=1)
+def _options(shape: Shape) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+    """viser's arguments for a shape: those that are fixed once it is drawn, and those that can be set later on."""
+    kind, (x, y, z), points = shape.kind, shape.size, np.array(shape.points, dtype=np.float32)
+    look = {"color": shape.color, "opacity": shape.opacity if shape.opacity < 1.0 else None}
+    if kind == BOX:
+        return {**FLAT, "dimensions": shape.size}, look
+    if kind == CYLINDER:
+        return {**FLAT, "radius": x / 2.0, "height": z}, look
+    if kind == SPHERE:
+        return {**FLAT, "radius": x / 2.0}, look
+    if kind == MESH:
+        faces = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
+        return {**FLAT, "vertices": points, "faces": faces, "side": "double", "flat_shading": True}, look
+    if kind == LINE:
+        segments = np.stack([points[:-1], points[1:]], axis=1)
+        return {"thickness": x}, {"points": segments, "colors": np.array(shape.color, dtype=np.uint8)}
+    if kind == POINTS:
+        style = {"colors": shape.color, "point_size": x, "point_shape": "circle", "precision": "float32"}
+        return style, {"points": points}
+    if kind == TEXT:
+        return {"anchor": "bottom-center"}, {"text": shape.text}
+    if kind == IMAGE:
+        return {**FLAT, "image": shape.image, "render_width": x, "render_height": y}, {}
+    if kind == FRAME:
+        return {"axes_length": 0.12, "axes_radius": 0.005}, {}
+    raise ValueError(f"no shape of the kind {kind!r}")
 
 
 class _Drawn:
@@ -51,14 +108,8 @@ class _Drawn:
         kept = {name: getattr(new, name) for name in CHANGEABLE.get(new.kind, ())}
         if not kept or replace(old, **kept) != new:
             return False
-        if new.kind == TEXT:
-            self.handle.text = new.text
-        elif new.kind == LINE:
-            self.handle.points, self.handle.colors = _segments(new), np.array(new.color, dtype=np.uint8)
-        elif new.kind == POINTS:
-            self.handle.points = np.array(new.points, dtype=np.float32)
-        else:
-            self.handle.color, self.handle.opacity = new.color, new.opacity
+        for name, value in _options(new)[1].items():
+            setattr(self.handle, name, value)
         return True
 
 
@@ -89,35 +140,14 @@ class PageScene:
         return bool(self._groups.get(group))
 
     def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:
-        api, kind, color, size = self._api, shape.kind, shape.color, shape.size
-        where: Dict[str, Any] = {"position": pose.position, "wxyz": _wxyz(pose)}
-        look = {**FLAT, **where, "opacity": shape.opacity if shape.opacity < 1.0 else None}
-        if kind == BOX:
-            return api.add_box(name, color, size, **look)
-        if kind == CYLINDER:
-            return api.add_cylinder(name, size[0] / 2.0, size[2], color, **look)
-        if kind == SPHERE:
-            return api.add_icosphere(name, size[0] / 2.0, color, **look)
-        if kind == MESH:
-            corners = np.array(shape.points, dtype=np.float32)
-            faces = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
-            return api.add_mesh_simple(name, corners, faces, color=color, side="double", flat_shading=True, **look)
-        if kind == LINE:
-            return api.add_line_segments(name, _segments(shape), color, thickness=size[0], **where)
-        if kind == POINTS:
-            points, style = np.array(shape.points), {"point_shape": "circle", "precision": "float32"}
-            return api.add_point_cloud(name, points, color, point_size=size[0], **style, **where)
-        if kind == TEXT:
-            return api.add_label(name, shape.text, anchor="bottom-center", **where)
-        if kind == IMAGE:
-            return api.add_image(name, shape.image, size[0], size[1], **FLAT, **where)
-        if kind == FRAME:
-            handle = api.add_frame(name, axes_length=0.12, axes_radius=0.005, **where)
-            api.add_label(f"{name}/name", shape.text, anchor="top-left", font_screen_scale=0.8)
-            return handle
-        if kind == BODY:
-            handle = api.add_frame(name, show_axes=False, **where)
+        where = {"position": pose.position, "wxyz": _wxyz(pose)}
+        if shape.kind == BODY:
+            handle = self._api.add_frame(name, show_axes=False, **where)
             for number, (part, part_pose) in enumerate(shape.parts):
                 self._draw(f"{name}/{number}", part, part_pose)
             return handle
-        raise ValueError(f"no shape of the kind {kind!r}")
+        fixed, changeable = _options(shape)
+        handle = getattr(self._api, f"add_{shape.kind}")(name, **fixed, **changeable, **where)
+        if shape.kind == FRAME:
+            self._api.add_label(f"{name}/name", shape.text, anchor="top-left", font_screen_scale=0.8)
+        return handle

@@ -8,16 +8,6 @@ from ..geometry import Pose3D
 
 
 @dataclass(frozen=True)
-class ReplayState:
-    """A recording that is played: where it is and how long it is [s, recorded], and how fast it goes."""
-
-    position: float
-    duration: float
-    playing: bool
-    speed: float
-
-
-@dataclass(frozen=True)
 class PageState:
     """What more than one part of the page needs to know."""
 
@@ -32,6 +22,7 @@ class PageState:
     answer: str = ""  # the outcome of the last request
     simulated: bool = False  # a simulator has reported
     factor: float = 1.0  # simulated seconds per second, as the simulator reached it
+    factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
     answering: bool = False  # the selected robot's server publishes its status
     executing: bool = False  # the selected robot's server executes a goal
     root: str = ""  # the frame that the scene is drawn in

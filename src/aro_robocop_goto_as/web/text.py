@@ -4,9 +4,6 @@ import html
 import re
 from typing import Iterable, Tuple
 
-from .lab import Section
-from .state import ReplayState
-
 LONGEST = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
 BLOCK = "margin:0.4em 0;padding:0.3em 0.5em;white-space:pre-wrap;overflow-wrap:anywhere;font-size:0.9em"
@@ -40,17 +37,6 @@ def answer(message: str) -> str:
     return f'<div style="{STYLE}" role="status">{plain(message)}</div>' if message else ""
 
 
-def progress(state: ReplayState) -> str:
-    """How far a recording has been played."""
-    how = f"factor {state.speed:g}" if state.playing else "paused"
-    return table([("recording", f"{state.position:.0f} of {state.duration:.0f} s, {how}")])
-
-
-def factor(asked: float) -> str:
-    """A requested real-time factor in words."""
-    return f"{asked:g}" if asked > 0.0 else "as fast as possible"
-
-
 def history(ended: Iterable[Tuple[bool, str]]) -> str:
     """The last goals: whether each was reached, and what became of it."""
     marks = {True: '<span style="color:#2b8a3e">✓</span>', False: '<span style="color:#e8590c">✗</span>'}
@@ -82,16 +68,15 @@ def topics(rows: Iterable[Tuple[str, str, str, str]]) -> str:
     return f'<div style="{STYLE}">{shown or "no topics"}</div>'
 
 
-def steps(section: Section) -> str:
-    """A section of the lab. A click on a command selects the whole of it, so that it can be copied."""
+def steps(expected: str, commands: Iterable[Tuple[str, str]]) -> str:
+    """A section of the lab: what one will see, and commands, each with what it prints.
+
+    A click on a command selects the whole of it, so that it can be copied.
+    """
     shown = "".join(
         f'<pre style="{BLOCK};user-select:all;border-left:3px solid #1c7ed6">{html.escape(command.strip())}</pre>'
         + (f'<pre style="{BLOCK};opacity:0.75">{html.escape(printed.strip())}</pre>' if printed else "")
-        for command, printed in section.steps
+        for command, printed in commands
     )
-    seen = _code(html.escape(f"You will see{section.expected and ' '}{section.expected}")) if section.expected else ""
+    seen = re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(f"You will see {expected}")) if expected else ""
     return f'<div style="{STYLE}">{seen}{shown}</div>'
-
-
-def _code(escaped: str) -> str:
-    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escaped)

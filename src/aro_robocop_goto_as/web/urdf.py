@@ -1,6 +1,6 @@
 """A robot's description -> the shapes of its links."""
 
-from typing import Callable, Dict, Optional, Tuple
+from typing import Dict, Optional, Tuple
 
 import numpy as np
 from lxml import etree
@@ -8,14 +8,15 @@ from lxml import etree
 from ..errors import RobotModelError, WorldError
 from ..geometry import Pose3D, Vector3
 from ..world.sdf.large_meshes import load_triangles
-from .shapes import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape
+from ..world.sdf.uris import locate
+from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape, color_of
 
 Look = Tuple[Color, float]  # colour, opacity
 PLAIN: Look = ((150, 150, 155), 1.0)  # of a visual without a colour
-MeshFinder = Callable[[str], Optional[str]]  # a mesh's URI -> its file, None if it can't be found
+MESHES = ("package://", "file://")  # where a description may take meshes from
 
 
-def read_links(text: str, find_mesh: MeshFinder = lambda uri: None) -> Dict[str, Shape]:
+def read_links(text: str) -> Dict[str, Shape]:
     """The links by name, each a body of its visuals; a link without visuals is left out.
 
     So are meshes that can't be found or read. RobotModelError if the description is not a URDF.
@@ -31,7 +32,7 @@ def read_links(text: str, find_mesh: MeshFinder = lambda uri: None) -> Dict[str,
     try:
         looks = {material.get("name"): _look(material, {}) for material in root.iterfind("material")}
         placed = {
-            link.get("name", ""): [_placed(visual, looks, find_mesh) for visual in link.iterfind("visual")]
+            link.get("name", ""): [_placed(visual, looks) for visual in link.iterfind("visual")]
             for link in root.iterfind("link")
         }
     except ValueError as error:
@@ -40,16 +41,16 @@ def read_links(text: str, find_mesh: MeshFinder = lambda uri: None) -> Dict[str,
     return {name: Shape(BODY, parts=parts) for name, parts in links.items() if parts}
 
 
-def _placed(visual: "etree._Element", looks: Dict[Optional[str], Look], find_mesh: MeshFinder) -> Optional[Placed]:
+def _placed(visual: "etree._Element", looks: Dict[Optional[str], Look]) -> Optional[Placed]:
     origin, geometry = visual.find("origin"), visual.find("geometry/*")
     if geometry is None:
         return None
-    shape = _shape(geometry, _look(visual.find("material"), looks), find_mesh)
+    shape = _shape(geometry, _look(visual.find("material"), looks))
     xyz, rpy = ("0 0 0" if origin is None else origin.get(name, "0 0 0") for name in ("xyz", "rpy"))
     return None if shape is None else (shape, Pose3D.from_xyz_rpy(_vector(xyz), _vector(rpy)))
 
 
-def _shape(geometry: "etree._Element", look: Look, find_mesh: MeshFinder) -> Optional[Shape]:
+def _shape(geometry: "etree._Element", look: Look) -> Optional[Shape]:
     if geometry.tag == "box":
         return Shape(BOX, _vector(geometry.get("size", "")), *look)
     if geometry.tag in ("cylinder", "sphere"):
@@ -57,11 +58,11 @@ def _shape(geometry: "etree._Element", look: Look, find_mesh: MeshFinder) -> Opt
         if geometry.tag == "sphere":
             return Shape(SPHERE, (diameter, diameter, diameter), *look)
         return Shape(CYLINDER, (diameter, diameter, float(geometry.get("length", ""))), *look)
-    path = find_mesh(geometry.get("filename", "")) if geometry.tag == "mesh" else None
-    if path is None:
+    uri = geometry.get("filename", "")
+    if geometry.tag != "mesh" or not uri.startswith(MESHES):
         return None
     try:
-        triangles = load_triangles(path) * np.array(_vector(geometry.get("scale", "1 1 1")))
+        triangles = load_triangles(locate(uri, "")) * np.array(_vector(geometry.get("scale", "1 1 1")))
     except WorldError:
         return None
     corners = tuple((x, y, z) for x, y, z in triangles.reshape(-1, 3).tolist())
@@ -73,8 +74,7 @@ def _look(material: "Optional[etree._Element]", looks: Dict[Optional[str], Look]
     color = None if material is None else material.find("color")
     if color is None:
         return looks.get(None if material is None else material.get("name"), PLAIN)
-    red, green, blue, opacity = (min(max(float(word), 0.0), 1.0) for word in color.get("rgba", "").split())
-    return (round(255 * red), round(255 * green), round(255 * blue)), opacity
+    return color_of(map(float, color.get("rgba", "").split()))
 
 
 def _vector(text: str) -> Vector3:

@@ -6,8 +6,7 @@ from typing import Any, List
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose3D
-from aro_robocop_goto_as.web.scene import PageScene
-from aro_robocop_goto_as.web.shapes import BODY, BOX, LINE, MESH, POINTS, TEXT, Shape
+from aro_robocop_goto_as.web.scene import BODY, BOX, LINE, MESH, POINTS, TEXT, PageScene, Shape
 
 AWAY = Pose3D((1.0, 0.0, 0.0))
 

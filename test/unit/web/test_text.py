@@ -1,8 +1,6 @@
 """The page's texts: what looks like markup in them is shown as text."""
 
 from aro_robocop_goto_as.web import text
-from aro_robocop_goto_as.web.lab import Section
-from aro_robocop_goto_as.web.state import ReplayState
 
 
 def test_markup_in_names_and_messages_is_shown_as_text() -> None:
@@ -15,15 +13,10 @@ def test_markup_in_names_and_messages_is_shown_as_text() -> None:
         text.log([(2, attack, attack)]),
         text.topics([(attack, attack, attack, attack)]),
         text.block(attack),
-        text.steps(Section(attack, attack, ((attack, attack),))),
+        text.steps(attack, ((attack, attack),)),
     ):
         assert "<img" not in content and "&lt;img" in content
 
 
 def test_an_endless_message_is_cut() -> None:
     assert len(text.plain("x" * 10_000)) == text.LONGEST
-
-
-def test_a_recording_says_where_it_is_and_how_fast_it_goes() -> None:
-    assert "12 of 60 s, factor 0.5" in text.progress(ReplayState(12.3, 60.0, True, 0.5))
-    assert "60 of 60 s, paused" in text.progress(ReplayState(60.0, 60.0, False, 2.0))

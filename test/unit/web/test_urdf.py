@@ -7,7 +7,7 @@ import pytest
 from support import ROOT
 
 from aro_robocop_goto_as.errors import RobotModelError
-from aro_robocop_goto_as.web.shapes import BODY, BOX, CYLINDER
+from aro_robocop_goto_as.web.scene import BODY, BOX, CYLINDER
 from aro_robocop_goto_as.web.urdf import read_links
 
 URDF = """<robot name="r"><!-- a comment -->

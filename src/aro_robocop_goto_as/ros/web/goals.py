@@ -1,7 +1,10 @@
 """Goals: sent by a click, cancelled, with their feedback and their results. A click can also place the robot."""
 
 import time
-from typing import Any, List, Optional, Set, Tuple
+from collections import deque
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Deque, Dict, List, Optional, Set, Tuple
 
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -11,22 +14,20 @@ from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActi
 from aro_robocop_goto_as.srv import SetPose
 
 from ...web import text
-from ...web.elements import Html, add_button
-from ...web.goal_history import Ended, GoalHistory
-from ...web.pick import floor_point
+from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers, names
 from ..client.sent_goal import STATES, UNFINISHED
 from ..covariances import diagonal
 from ..names import ACTION, absolute
-from .inbox import Inbox
 from .marker_shapes import MarkerStore
-from .part import Context, Part
+from .part import Context, Inbox, Part
 from .requests import Requests
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
 POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.5 m and 15 degrees, squared
 FEEDBACK_AGE = 1.0  # [s, wall] after which a goal without feedback counts as ended
+REMEMBERED = 8  # goals in the history
 TOLERANCE = 0.1  # [m] at which the handout counts a goal as reached
 STATUS_AGE = 3.0  # [s, wall] without a server's status, sent five times a second, after which it counts as gone
 
@@ -36,21 +37,58 @@ def cancel(requests: Requests) -> None:
     requests.publish("cancel", f"{ACTION}/cancel", GoalID(), ": is the server running?")
 
 
+@dataclass(frozen=True)
+class Ended:
+    """A goal that has ended."""
+
+    robot: str
+    state: str  # of actionlib, as SUCCEEDED
+    message: str
+    goal: Optional[Tuple[float, float]]  # [m] in the server's frame, if it was seen
+
+
+class GoalHistory:
+    """Goals and results by their actionlib ids."""
+
+    def __init__(self) -> None:
+        self._goals: Dict[str, Tuple[float, float]] = {}
+        self.latest: Deque[Ended] = deque(maxlen=REMEMBERED)  # the newest first
+
+    def sent(self, goal_id: str, x: float, y: float) -> None:
+        """A goal was sent to a server [m]."""
+        self._goals[goal_id] = (x, y)
+        for oldest in list(self._goals)[:-REMEMBERED]:
+            del self._goals[oldest]
+
+    def position(self, goal_id: str) -> Optional[Tuple[float, float]]:
+        """A goal's position [m] in the server's frame, if it was seen and is not too old.
+
+        A goal without an id, as of `rostopic pub`, gets one from its server: the first that is asked for and unknown.
+        """
+        if goal_id not in self._goals and "" in self._goals:
+            self._goals[goal_id] = self._goals.pop("")
+        return self._goals.get(goal_id)
+
+    def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
+        """A result was received."""
+        self.latest.appendleft(Ended(robot, state, message, self.position(goal_id)))
+
+
 class Goals(Part):
     """The goals of all robots. Their results are received also without a browser, for the history of later visitors."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui, live = context.server.gui, context.state.now.live
-        self._feedback_html = Html(gui)
+        self._feedback_html = gui.add_html("")
         self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
-        add_button(gui, "Cancel goal", "x", lambda: cancel(context.requests), live)
-        self._history_html: Optional[Html] = None
+        cancel_button = gui.add_button("Cancel goal", icon="x", visible=live)
+        cancel_button.on_click(lambda _: cancel(context.requests))
+        self._history_html: Any = None
         self._answered: Optional[float] = None  # [s, wall] when the server's status was received
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
         self._history = GoalHistory()
-        self._results = Inbox()
         self._watched: Set[str] = set()
         context.server.scene.on_click()(self._on_click)
 
@@ -58,7 +96,7 @@ class Goals(Part):
         """Show the last goals in the part of the panel that is open now."""
         gui = self.context.server.gui
         with gui.add_folder("Goals"):
-            self._history_html = Html(gui)
+            self._history_html = gui.add_html("")
 
     def _on_click(self, event: Any) -> None:
         point = floor_point(event.ray_origin, event.ray_direction)
@@ -86,13 +124,12 @@ class Goals(Part):
         inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         for robot in set(state.robots) - self._watched:
             self._watched.add(robot)
             name = absolute(robot, ACTION)
-            self._results.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
-            self._results.subscribe(f"{name}/result", GoToPositionActionResult, self._result_handler(robot), None)
-        self._results.deliver()
+            inbox.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
+            inbox.subscribe(f"{name}/result", GoToPositionActionResult, partial(self._on_result, robot), None)
 
     def _on_feedback(self, at: float, message: GoToPositionActionFeedback) -> None:
         self._feedback = (at, message.feedback)
@@ -104,15 +141,11 @@ class Goals(Part):
     def _on_goal(self, _: float, message: GoToPositionActionGoal) -> None:
         self._history.sent(message.goal_id.id, message.goal.position.x, message.goal.position.y)
 
-    def _result_handler(self, robot: str) -> Any:
-        def on_result(_: float, message: GoToPositionActionResult) -> None:
-            state, goal_id = STATES.get(message.status.status, ""), message.status.goal_id.id
-            self._history.ended(robot, goal_id, state, message.result.message)
-
-        return on_result
+    def _on_result(self, robot: str, _: float, message: GoToPositionActionResult) -> None:
+        state, goal_id = STATES.get(message.status.status, ""), message.status.goal_id.id
+        self._history.ended(robot, goal_id, state, message.result.message)
 
     def show(self, state: PageState) -> None:
-        self._results.deliver()
         if self._feedback is not None and time.monotonic() - self._feedback[0] >= FEEDBACK_AGE:
             self._feedback = None
         if self._answered is not None and time.monotonic() - self._answered >= STATUS_AGE and not state.recorded:
@@ -124,10 +157,11 @@ class Goals(Part):
             feedback = self._feedback[1]
             errors = f"{feedback.position_error:.2f} m", f"{feedback.angle_error:.2f} rad"
             rows += [("position error", errors[0]), ("angle error", errors[1]), ("feedback", feedback.message)]
-        self._feedback_html.show(text.table(rows) if rows else "")
+        self._feedback_html.content = text.table(rows) if rows else ""
         if self._history_html is not None:
             several = len(state.robots) > 1
-            self._history_html.show(text.history(self._ended(ended, several) for ended in self._history.latest()))
+            lines = (self._ended(ended, several) for ended in self._history.latest)
+            self._history_html.content = text.history(lines)
 
     def _goal_rows(self, robot: str) -> List[Tuple[str, str]]:
         """The newest goal's state, as actionlib names it, and its position."""
@@ -152,5 +186,4 @@ class Goals(Part):
         return ended.state == "SUCCEEDED", f"{robot}{goal}: {ended.message or ended.state}"
 
     def forget(self) -> None:
-        self._results.clear()
         self._history, self._feedback, self._answered, self._newest = GoalHistory(), None, None, None

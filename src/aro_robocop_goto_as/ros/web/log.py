@@ -7,10 +7,8 @@ import rospy
 from rosgraph_msgs.msg import Log as LogMessage
 
 from ...web import text
-from ...web.elements import Html
 from ...web.state import PageState
-from .inbox import Inbox
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 REMEMBERED = 12  # messages
 
@@ -20,27 +18,22 @@ class Log(Part):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        gui = context.server.gui
-        with gui.add_folder("Log"):
-            self._html = Html(gui)
+        with context.server.gui.add_folder("Log"):
+            self._html = context.server.gui.add_html("")
         self._lines: Deque[Tuple[int, str, str]] = deque(maxlen=REMEMBERED)
-        self._inbox = Inbox()
         self._subscribed = False
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         if not self._subscribed:
             self._subscribed = True
-            self._inbox.subscribe("/rosout", LogMessage, self._on_log, None)
-        self._inbox.deliver()
+            inbox.subscribe("/rosout", LogMessage, self._on_log, None)
 
     def _on_log(self, _: float, message: LogMessage) -> None:
         if message.name != rospy.get_name():
             self._lines.append((message.level, message.name.lstrip("/"), message.msg))
 
     def show(self, state: PageState) -> None:
-        self._inbox.deliver()
-        self._html.show(text.log(reversed(self._lines)))
+        self._html.content = text.log(reversed(self._lines))
 
     def forget(self) -> None:
-        self._inbox.clear()
         self._lines.clear()

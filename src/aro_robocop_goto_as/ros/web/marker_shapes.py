@@ -8,7 +8,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from ...errors import FrameError
 from ...geometry import Pose3D, compose3
-from ...web.shapes import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Shape
+from ...web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Shape, color_of
 from ..convert import from_quaternion
 
 KINDS = {
@@ -42,10 +42,7 @@ def to_shape(marker: Marker) -> Optional[Shape]:
         return None
     if (kind == MESH and (not points or len(points) % 3)) or (kind == LINE and len(points) < 2):
         return None
-    red, green, blue, opacity = (min(max(value, 0.0), 1.0) for value in color)
-    return Shape(
-        kind, size, (round(255 * red), round(255 * green), round(255 * blue)), opacity, points, marker.text[:500]
-    )
+    return Shape(kind, size, *color_of(color), points, marker.text[:500])
 
 
 class MarkerStore:

@@ -14,21 +14,19 @@ from ...param_loading import from_dict
 from ...web import access
 from ...web.frames import FrameTree
 from ...web.page import set_up
-from ...web.report import failures
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
 from ...web_params import WebParams
 from ..names import WEB
 from ..node_main import node
 from .goals import Goals
-from .inbox import Inbox
 from .lab import Lab
 from .log import Log
 from .master_watch import watch_master
-from .part import Context, Part
+from .part import Context, Inbox, Part
 from .player import Player
-from .plots import Plots, RecordedPlots
-from .replay import Replay
+from .plots import PLOTTED, Plot, RecordedPlot
+from .replay import Replay, failures
 from .requests import Requests
 from .robots import Robots
 from .scenery import Scenery
@@ -69,13 +67,14 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
     """Add what the panel shows below the status: goals, tabs."""
     live, goals = context.state.now.live, Goals(context)
     failed = [] if player is None else failures(player.path)
-    parts: List[Part] = [goals] if player is None else [Replay(context, player, failed), goals]
+    parts: List[Part] = [goals] if player is None else [Replay(context, player, failed, p.replay_speed), goals]
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
         parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
     with tabs.add_tab("Plots"):
-        parts.append(Plots(context) if player is None else RecordedPlots(context, player, failed))
+        for plotted in PLOTTED:
+            parts.append(Plot(context, plotted) if player is None else RecordedPlot(context, plotted, player, failed))
         if not p.view_only:
             parts.append(Log(context))
     if not p.view_only:  # a page that is only looked at subscribes to nothing that it does not need for the scene
@@ -104,7 +103,8 @@ class WebNode:
         set_up(server)
         status = Status(context)
         self._parts = [Robots(context), status, *add_parts(context, p, player), Scenery(context)]
-        self._system, self._detail = Inbox(), Inbox()  # topics of the system, of the selected robot
+        # Topics that are always received; of the system and of the selected robot, while there is a visitor.
+        self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are
         self._asked = 0.0  # [s, wall] when the parts asked the master last
         self._visitors = threading.Event()  # a browser has come or gone
@@ -135,8 +135,12 @@ class WebNode:
                 player.begin()
             if not self._state.now.master_problem:  # otherwise, connections that exist go on
                 self._connect(visited)
+            for inbox in (self._always, self._system, self._detail):
+                inbox.deliver()
             if visited:
-                self._show()
+                with self._server.atomic():
+                    for part in self._parts:
+                        part.show(self._state.now)
                 time.sleep(1.0 / RATE)
             else:
                 self._visitors.wait(IDLE_PERIOD)
@@ -160,33 +164,17 @@ class WebNode:
         if time.monotonic() - self._asked >= ASK_PERIOD:
             self._asked = time.monotonic()
             for part in self._parts:
-                part.ask_master(state)
-
-    def _show(self) -> None:
-        self._system.deliver()
-        self._detail.deliver()
-        with self._server.atomic():
-            for part in self._parts:
-                part.show(self._state.now)
+                part.ask_master(state, self._always)
 
     def _end(self) -> None:
         for part in self._parts:
             part.end()
 
     def _forget(self) -> None:
+        self._always.clear()
         self._detail.clear()
         for part in self._parts:
             part.forget()
-
-
-def warn_of_strangers(p: WebParams) -> None:
-    """Warn if other machines can reach the page and drive the robot with it."""
-    if not access.is_loopback(p.web_host) and not p.view_only:
-        rospy.logwarn(
-            "the page listens on %s:%d without a password: every machine that reaches it can drive the robot",
-            p.web_host,
-            p.web_port,
-        )
 
 
 def main() -> None:
@@ -202,7 +190,9 @@ def main() -> None:
     web.wait_for_master()
     replaced = False
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
-        warn_of_strangers(p)
+        if not access.is_loopback(p.web_host) and not p.view_only:
+            warning = "the page listens on %s:%d without a password: every machine that reaches it can drive the robot"
+            rospy.logwarn(warning, p.web_host, p.web_port)
         replaced = web.run()
     if replaced:  # this closes the port, and browsers connect again by themselves
         os.execv(sys.executable, [sys.executable, *sys.argv])

@@ -1,15 +1,20 @@
 """What the parts of the page have in common. Each part has its topics, its elements of the panel and its shapes."""
 
+import time
+from collections import deque
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Callable, Deque, List, Optional, Tuple
+
+import rospy
 
 from ...geometry import Pose3D, compose3
 from ...web.frames import FrameTree
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
 from .. import names
-from .inbox import Inbox
 from .requests import Requests
+
+Handler = Callable[[float, Any], None]  # time at which a message was received [s, monotonic], the message
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,38 @@ class Context:
         return prefixed if robot and self.frames.knows(prefixed) else link
 
 
+class Inbox:
+    """Subscriptions that are closed together; the node's main thread handles their messages, by `deliver`."""
+
+    def __init__(self) -> None:
+        self._subscriptions: List[Tuple[rospy.Subscriber, Deque[Tuple[float, Any]], Handler]] = []
+
+    def subscribe(self, topic: str, kind: Any, handler: Handler, keep: Optional[int] = 1) -> None:
+        """Subscribe, and let the last `keep` messages wait, or all."""
+        waiting: Deque[Tuple[float, Any]] = deque(maxlen=keep)
+        subscriber = rospy.Subscriber(
+            topic, kind, lambda message: waiting.append((time.monotonic(), message)), queue_size=keep
+        )
+        self._subscriptions.append((subscriber, waiting, handler))
+
+    def deliver(self) -> None:
+        """Handle all messages that wait; those of one topic in the order of their arrival."""
+        for _, waiting, handler in self._subscriptions:
+            while waiting:
+                handler(*waiting.popleft())
+
+    def clear(self) -> None:
+        """Forget the messages that wait."""
+        for _, waiting, _ in self._subscriptions:
+            waiting.clear()
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        for subscriber, _, _ in self._subscriptions:
+            subscriber.unregister()
+        self._subscriptions = []
+
+
 class Part:
     """A part of the page; everything but callbacks of viser runs in the node's main thread."""
 
@@ -54,8 +91,11 @@ class Part:
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         """Forget the previous robot, and subscribe to the topics of the one that is selected now."""
 
-    def ask_master(self, state: PageState) -> None:
-        """Ask the ROS master for what is needed; called once a second, also without a browser."""
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
+        """Ask the ROS master for what is needed, and subscribe to what is received also without a browser.
+
+        Called once a second. The inbox is never closed.
+        """
 
     def show(self, state: PageState) -> None:
         """Show what was received in panel and scene."""

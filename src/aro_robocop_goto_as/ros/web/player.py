@@ -10,8 +10,6 @@ import rospy
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...errors import WebError
-from ...web.samples import Samples
-from ...web.state import ReplayState
 
 LEAD = 1.0  # [s, recorded] before the moment that is sought, for topics with more messages than one in this time
 FEW = 10  # messages of a topic that always count as rare: of rare topics all is sent again from the beginning
@@ -19,6 +17,8 @@ MARKERS = "visualization_msgs/MarkerArray"  # likewise, however many: each one o
 QUEUE = 1000  # messages that wait for a slow subscriber
 CONNECT = 0.5  # [s, wall] for subscribers that wait already, as `rosbag play` gives them
 CLEAR = MarkerArray([Marker(action=Marker.DELETEALL)])
+Sample = Tuple[float, float, float]  # time [s] and two figures
+Figures = Callable[[Any], Tuple[float, float]]  # those of a message
 
 
 class _Clock(NamedTuple):
@@ -57,11 +57,11 @@ class Player:
         self._sought: Optional[float] = None
         self._newcomers: List[Tuple[str, Callable[[Any], None]]] = []
 
-    def samples(self, topic: str, figures: Callable[[Any], Tuple[float, ...]]) -> Samples:
-        """Figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
+    def samples(self, topic: str, figures: Figures) -> List[Sample]:
+        """Two figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
         with rosbag.Bag(self.path) as bag:
             found = bag.read_messages([topic])
-            return tuple((stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found)
+            return [(stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found]
 
     # -- controls, from any thread --
 
@@ -89,16 +89,19 @@ class Player:
             self._set(at=self._sought)
 
     def _set(self, **values: Any) -> None:
-        now = {"at": min(self._clock.position(), self.duration), "since": time.monotonic()}
+        now: Dict[str, Any] = {"at": self.position, "since": time.monotonic()}
         self._clock = self._clock._replace(**{**now, **values})
         self._changed.notify()
 
     @property
-    def state(self) -> ReplayState:
-        """What is shown now."""
-        clock = self._clock
-        position = min(clock.position(), self.duration)
-        return ReplayState(position, self.duration, clock.playing and position < self.duration, clock.speed)
+    def position(self) -> float:
+        """The moment that is shown [s] after the beginning."""
+        return min(self._clock.position(), self.duration)
+
+    @property
+    def speed(self) -> float:
+        """How many times as fast as recorded; 0 while it is paused, and at its end."""
+        return self._clock.speed if self._clock.playing and self.position < self.duration else 0.0
 
     # -- the thread --
 
@@ -149,7 +152,7 @@ class Player:
                         return True
                     self._changed.wait(min(ahead / self._clock.speed, 1.0) if self._clock.playing else None)
             for topic, publish in newcomers:
-                for _, message in self._past([topic], self.state.position):
+                for _, message in self._past([topic], self.position):
                     publish(message)
 
     def _stamp(self, position: float) -> rospy.Time:

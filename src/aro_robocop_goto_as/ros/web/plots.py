@@ -2,31 +2,56 @@
 
 import math
 import time
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from collections import deque
+from dataclasses import dataclass
+from typing import Any, Deque, Dict, Iterable, Sequence, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback
 
-from ...web.report import Failure
-from ...web.samples import SPAN, Samples, columns, extended, held
 from ...web.state import PageState
 from ..names import ACTION, absolute
-from .inbox import Inbox
-from .part import Context, Part
-from .player import Player
+from .part import Context, Inbox, Part
+from .player import Figures, Player, Sample
+from .replay import Failure
 
+SPAN = 30.0  # [s, wall] that a plot of a running system shows
+MOST = 900  # samples: 30 Hz
 HEIGHT = 110  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
 AXES = ({"size": 40, "grid": {"show": False}}, {"size": 42})
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
-ERRORS, COMMANDS = ("errors", "position [m]", "angle [rad]"), ("cmd_vel", "v [m/s]", "w [rad/s]")
 SHARE = "share"  # scale from 0 to 1, of what marks a time
 PLAYED: Dict[str, Any] = {"label": "played", "scale": SHARE, "stroke": "#868e96", "fill": "rgba(134,142,150,0.18)"}
 FAILED: Dict[str, Any] = {"label": "check failed", "scale": SHARE, "stroke": "#e03131", "width": 2}
 POINTS = 400  # of a recording's plot
+
+
+@dataclass(frozen=True)
+class Plotted:
+    """A topic of a robot, and what is plotted of it."""
+
+    texts: Tuple[str, str, str]  # title, labels of the figures
+    topic: str
+    kind: Any
+    figures: Figures
+
+
+def _errors(message: GoToPositionActionFeedback) -> Tuple[float, float]:
+    return message.feedback.position_error, message.feedback.angle_error
+
+
+def _velocities(message: Twist) -> Tuple[float, float]:
+    return message.linear.x, message.angular.z
+
+
+PLOTTED = (
+    Plotted(("errors", "position [m]", "angle [rad]"), f"{ACTION}/feedback", GoToPositionActionFeedback, _errors),
+    Plotted(("cmd_vel", "v [m/s]", "w [rad/s]"), "cmd_vel", Twist, _velocities),
+)
 
 
 def add_plot(gui: Any, texts: Tuple[str, str, str], data: Sequence[Any], span: Tuple[float, float], *marks: Any) -> Any:
@@ -39,94 +64,76 @@ def add_plot(gui: Any, texts: Tuple[str, str, str], data: Sequence[Any], span: T
     return gui.add_uplot(tuple(data), series, title=title, scales=scales, **look)
 
 
-class Plots(Part):
+class Plot(Part):
     """The last seconds; sent only while something is received."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, plotted: Plotted) -> None:
         super().__init__(context)
-        gui, nothing = context.server.gui, columns((), 2, 0.0)
-        self._handles = [add_plot(gui, texts, nothing, (-SPAN, 0.0)) for texts in (ERRORS, COMMANDS)]
-        self._samples: List[Samples] = [(), ()]  # of errors and commands
-        self._shown: List[Samples] = [(), ()]
+        self._plotted = plotted
+        self._handle = add_plot(context.server.gui, plotted.texts, columns((), 0.0), (-SPAN, 0.0))
+        self._samples: Deque[Sample] = deque(maxlen=MOST)
+        self._changed = False
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         if robot != self._robot:
-            self._robot = robot
-            self.forget()
-        for number, (topic, kind, figures) in enumerate(plotted(robot)):
-            inbox.subscribe(topic, kind, self._handler(number, figures), None)
+            self._robot, self._changed = robot, True
+            self._samples.clear()
+        inbox.subscribe(absolute(robot, self._plotted.topic), self._plotted.kind, self._on_message, None)
 
-    def _handler(self, number: int, figures: "Figures") -> Callable[[float, Any], None]:
-        def on_message(at: float, message: Any) -> None:
-            self._samples[number] = extended(self._samples[number], at, *figures(message))
-
-        return on_message
+    def _on_message(self, at: float, message: Any) -> None:
+        self._samples.append((at, *self._plotted.figures(message)))
+        self._changed = True
 
     def show(self, state: PageState) -> None:
         now = time.monotonic()
-        if now - self._shown_at >= PERIOD:
-            self._shown_at = now
-            for number, handle in enumerate(self._handles):
-                if self._samples[number] is not self._shown[number]:
-                    self._shown[number] = self._samples[number]
-                    handle.data = columns(self._samples[number], 2, now)
-
-    def forget(self) -> None:
-        self._samples = [(), ()]
+        if self._changed and now - self._shown_at >= PERIOD:
+            self._shown_at, self._changed = now, False
+            self._handle.data = columns(self._samples, now)
 
 
-class RecordedPlots(Part):
+class RecordedPlot(Part):
     """The whole recording, shaded up to the moment that is shown; the times at which checks failed are marked."""
 
-    def __init__(self, context: Context, player: Player, failed: Sequence[Failure]) -> None:
+    def __init__(self, context: Context, plotted: Plotted, player: Player, failed: Sequence[Failure]) -> None:
         super().__init__(context)
-        self._player = player
+        self._plotted, self._player = plotted, player
         self._times = np.linspace(0.0, player.duration, POINTS)
-        marks: Tuple[Any, ...] = (PLAYED,)
         self._marked: Tuple[np.ndarray, ...] = ()
         if failed:
-            marks += (FAILED,)
-            self._marked = (self._spikes([failure.time for failure in failed]),)
-        nothing, gui = np.zeros(POINTS), context.server.gui
-        data, span = (self._times, nothing, nothing, nothing, *self._marked), (0.0, player.duration)
-        self._handles = [add_plot(gui, texts, data, span, *marks) for texts in (ERRORS, COMMANDS)]
-        self._figures: Optional[Sequence[Tuple[np.ndarray, ...]]] = None  # not read yet
+            spikes = np.zeros(POINTS)
+            spikes[np.clip(np.searchsorted(self._times, [failure.time for failure in failed]), 0, POINTS - 1)] = 1.0
+            self._marked = (spikes,)
+        nothing, marks = np.zeros(POINTS), (PLAYED, FAILED)[: 1 + len(self._marked)]
+        data = (self._times, nothing, nothing, nothing, *self._marked)
+        self._handle = add_plot(context.server.gui, plotted.texts, data, (0.0, player.duration), *marks)
+        self._figures: Tuple[np.ndarray, ...] = ()  # not read yet
         self._position = math.nan  # [s] that is shown
 
-    def _spikes(self, times: Sequence[float]) -> np.ndarray:
-        spikes = np.zeros(POINTS)
-        spikes[np.clip(np.searchsorted(self._times, times), 0, POINTS - 1)] = 1.0
-        return spikes
-
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        """Read the recording; the plots of the robot before are gone."""
-        self._figures = [
-            held(self._player.samples(topic, figures), self._times, 2) for topic, _, figures in plotted(robot)
-        ]
-        self._position = math.nan
+        """Read the recording; the plot of the robot before is gone."""
+        samples = self._player.samples(absolute(robot, self._plotted.topic), self._plotted.figures)
+        self._figures, self._position = held(samples, self._times), math.nan
 
     def show(self, state: PageState) -> None:
-        position = self._player.state.position
-        if self._figures is None or abs(position - self._position) < self._player.duration / POINTS:
+        position = self._player.position
+        if not self._figures or abs(position - self._position) < self._player.duration / POINTS:
             return
         self._position = position
-        played = np.where(self._times <= position, 1.0, 0.0)
-        for handle, figures in zip(self._handles, self._figures):
-            handle.data = (self._times, *figures, played, *self._marked)
+        self._handle.data = (self._times, *self._figures, np.where(self._times <= position, 1.0, 0.0), *self._marked)
 
 
-Figures = Callable[[Any], Tuple[float, float]]
+def columns(samples: Iterable[Sample], now: float) -> Tuple[np.ndarray, ...]:
+    """Those of the last seconds: times before `now` [s], negative, and both figures; all (n,), and never empty."""
+    recent = [sample for sample in samples if now - sample[0] <= SPAN]
+    table = np.array(recent or [(now, 0.0, 0.0)])
+    table[:, 0] -= now
+    return tuple(np.ascontiguousarray(column) for column in table.T)
 
 
-def plotted(robot: str) -> Tuple[Tuple[str, Any, Figures], Tuple[str, Any, Figures]]:
-    """Topic, type and figures of each plot."""
-    return (
-        (absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, _errors),
-        (absolute(robot, "cmd_vel"), Twist, lambda message: (message.linear.x, message.angular.z)),
-    )
-
-
-def _errors(message: GoToPositionActionFeedback) -> Tuple[float, float]:
-    return message.feedback.position_error, message.feedback.angle_error
+def held(samples: Iterable[Sample], times: np.ndarray) -> Tuple[np.ndarray, ...]:
+    """Each figure at these times (n,) [s]: its newest value, 0 before the first one."""
+    table = np.array([(-np.inf, 0.0, 0.0), *samples])
+    newest = np.searchsorted(table[:, 0], times, side="right") - 1
+    return tuple(np.ascontiguousarray(column) for column in table[newest, 1:].T)

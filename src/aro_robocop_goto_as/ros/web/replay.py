@@ -1,10 +1,12 @@
-"""The controls of a recording: play, pause, time and speed."""
+"""The controls of a recording: play, pause, time and speed, and the checks that failed in it, from its report."""
 
-from typing import Callable, Sequence
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, List, Sequence
 
 from ...web import text
-from ...web.elements import Html, Slider, add_button
-from ...web.report import Failure
+from ...web.slider import Slider
 from ...web.state import PageState
 from .part import Context, Part
 from .player import Player
@@ -13,28 +15,58 @@ PLAY, PAUSE = "Play", "Pause"
 BEFORE = 1.0  # [s, recorded] before a failure, from where on it is shown
 
 
+@dataclass(frozen=True)
+class Failure:
+    """A failed check: when [s, after the recording's beginning], and what was wrong."""
+
+    check: str
+    time: float
+    text: str
+
+
 class Replay(Part):
     """Only a page that shows a recording has this part."""
 
-    def __init__(self, context: Context, player: Player, failed: Sequence[Failure]) -> None:
+    def __init__(self, context: Context, player: Player, failed: Sequence[Failure], speed: float) -> None:
+        """speed: at the beginning"""
         super().__init__(context)
-        gui, start = context.server.gui, player.state
+        gui = context.server.gui
         self._player = player
-        self._progress = Html(gui)
+        self._progress = gui.add_html("")
         buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
         buttons.on_click(lambda event: player.play(event.target.value == PLAY))
-        longest = max(round(start.duration, 1), 0.1)
+        longest = max(round(player.duration, 1), 0.1)
         self._time = Slider(gui, "Time", longest, 0.0, "seconds since the beginning", player.seek, low=0.0)
-        Slider(gui, "Speed", 10.0, start.speed, "recorded seconds per second", player.set_speed)
+        Slider(gui, "Speed", 10.0, speed, "recorded seconds per second", player.set_speed)
         for failure in failed:
             with gui.add_folder(f"✗ {failure.check}, failed at {failure.time:.1f} s"):
-                Html(gui).show(text.answer(failure.text))
-                add_button(gui, "Show the moment", "player-skip-back", self._to(failure))
+                gui.add_html(text.answer(failure.text))
+                gui.add_button("Show the moment", icon="player-skip-back").on_click(self._to(failure))
 
-    def _to(self, failure: Failure) -> Callable[[], None]:
-        return lambda: self._player.seek(max(failure.time - BEFORE, 0.0))
+    def _to(self, failure: Failure) -> Callable[[Any], None]:
+        return lambda _: self._player.seek(max(failure.time - BEFORE, 0.0))
 
     def show(self, state: PageState) -> None:
-        replay = self._player.state
-        self._progress.show(text.progress(replay))
-        self._time.show(round(replay.position, 1))
+        position, speed = self._player.position, self._player.speed
+        how = f"factor {speed:g}" if speed else "paused"
+        row = ("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")
+        self._progress.content = text.table([row])
+        self._time.show(round(position, 1))
+
+
+def failures(bag: str) -> List[Failure]:
+    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it."""
+    path = Path(bag)
+    try:
+        checks = json.loads((path.parent / "report.json").read_text(encoding="utf-8"))["checks"]
+        failed = [check for check in checks if check["failure"] and f"{check['part']}-{check['scenario']}" == path.stem]
+        found = [_failure(check) for check in failed]
+    except (OSError, ValueError, KeyError, TypeError):  # no report, or another file of this name
+        return []
+    return sorted(found, key=lambda failure: failure.time)
+
+
+def _failure(check: Any) -> Failure:
+    failure = check["failure"]
+    text = f"{failure['cause']} Expected {failure['expected']}, got {failure['seen']}."
+    return Failure(str(check["name"]), float(failure["time"]), text)

@@ -4,19 +4,17 @@ import xmlrpc.client
 from typing import Dict, Optional, Set
 
 import rosgraph
-import rospkg
 import rospy
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from ...errors import RobotModelError
-from ...web.shapes import Group, Shape
+from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
 from ..names import absolute
-from .inbox import Inbox
 from .marker_shapes import to_pose
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 DESCRIPTION = "robot_description"
 BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that exists
@@ -29,7 +27,6 @@ class Robots(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
-        self._packages = rospkg.RosPack()
         self._moved: Set[str] = set()  # frames with a transform on tf
 
     def subscribe(self, inbox: Inbox) -> None:
@@ -69,7 +66,7 @@ class Robots(Part):
         poses = (context.locate(context.frame_of(state.selected, base)) for base in BASES)
         context.state.change(pose=next((pose for pose in poses if pose is not None), None))
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in state.robots}
         self._links = {robot: links for robot, links in found.items() if links is not None}
 
@@ -83,20 +80,7 @@ class Robots(Part):
         if not isinstance(text, str) or not text:
             return None
         try:
-            return read_links(text, self._find_mesh)
+            return read_links(text)
         except RobotModelError as error:
             rospy.logwarn_throttle(60.0, "the robot %r is not drawn: %s", robot, error)
             return {}
-
-    def _find_mesh(self, uri: str) -> Optional[str]:
-        """The file of a mesh: package://NAME/PATH or file:///PATH."""
-        scheme, _, path = uri.partition("://")
-        if scheme == "file":
-            return path
-        if scheme != "package":
-            return None
-        package, _, path = path.partition("/")
-        try:
-            return f"{self._packages.get_path(package)}/{path}"
-        except rospkg.ResourceNotFound:
-            return None

@@ -3,23 +3,24 @@
 from dataclasses import replace
 from typing import Any, Optional
 
+import numpy as np
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
-from ...web.shapes import IMAGE, POINTS, Shape
+from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
 from ..names import SERVER, SIMULATOR, absolute
-from .images import map_image, scan_points
-from .inbox import Inbox
 from .marker_shapes import MarkerStore, to_pose
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 DRAWN_BY_MODEL = ("robots", "noses")  # markers of the simulator that stand for robots whose model is drawn
 DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
 SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
+LARGEST_MAP = 2000  # cells along a side; larger maps are thinned out
+UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 255)  # red, green, blue, opacity
 
 
 class Scenery(Part):
@@ -75,3 +76,27 @@ class Scenery(Part):
             half = Pose3D((width / 2.0, height / 2.0, MAP_HEIGHT))
             image = Shape(IMAGE, (width, height, 0.0), image=map_image(message.data, info.width, info.height))
             self.context.scene.show("map", {object(): (image, compose3(compose3(fixed_from_map, origin), half))})
+
+
+def scan_points(scan: LaserScan) -> np.ndarray:
+    """Points (n, 3) [m] of the valid returns, in the scanner's frame."""
+    ranges = np.array(scan.ranges, dtype=float)
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+    with np.errstate(invalid="ignore"):
+        valid = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max) & (ranges > 0.0)
+    ranges, angles = ranges[valid], angles[valid]
+    return np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
+
+
+def map_image(data: Any, columns: int, rows: int) -> np.ndarray:
+    """Cells of an occupancy grid, row by row from its origin -> an image (rows, columns, 4).
+
+    The first row has the lowest y in both: viser's images have x to the right and y down, as cameras do.
+    """
+    cells = np.array(data, dtype=np.int16).reshape(rows, columns)
+    stride = -(-max(rows, columns) // LARGEST_MAP)
+    cells = cells[::stride, ::stride]
+    share = np.clip(cells, 0, 100)[..., np.newaxis] / 100.0
+    image = np.array(FREE) * (1.0 - share) + np.array(OCCUPIED) * share
+    image[cells < 0] = UNKNOWN
+    return image.astype(np.uint8)

@@ -4,12 +4,18 @@ import contextlib
 import io
 import os
 import socket
-from typing import Any
+from typing import Any, Iterator, Optional
 
 from ...errors import WebError
 from ...web import access
 from ...web_params import WebParams
-from .viser_internals import checked_requests
+
+LARGEST_REQUEST = 1 << 20  # [byte] that a page may send at once
+HEADERS = {
+    "Content-Security-Policy": access.CONTENT_POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
 
 
 def start_server(p: WebParams) -> Any:
@@ -23,23 +29,42 @@ def start_server(p: WebParams) -> Any:
         listening = socket.socket(fileno=int(os.environ[access.SOCKET_VARIABLE]))
     else:
         _require_free(p.web_host, p.web_port)
-    names, origins = [socket.gethostname(), p.web_host], p.web_origins.split()
-
-    def refusal(headers: Any) -> str:
-        return access.refusal(headers.get_all("Host"), headers.get_all("Origin"), names, origins)
-
-    answers = {
-        "Content-Security-Policy": access.CONTENT_POLICY,
-        "X-Content-Type-Options": "nosniff",
-        "Referrer-Policy": "no-referrer",
-    }
-    with checked_requests(refusal, answers, listening):
-        with contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
-            server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
+    with _checked_requests(p, listening), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
+        server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
         server.stop()
         raise WebError(f"port {p.web_port} has just been taken by another program; choose another one with web_port:=N")
     return server
+
+
+@contextlib.contextmanager
+def _checked_requests(p: WebParams, listening: Optional[socket.socket]) -> Iterator[None]:
+    """A viser server made in this block answers only requests that are not refused, with HEADERS.
+
+    With a `listening` socket it accepts its connections, and opens no port itself. viser passes no such options on to
+    websockets' serve(), which it calls before its constructor returns.
+    """
+    from websockets.asyncio import server as websockets_server  # not installed where the page has never been used
+
+    serve = websockets_server.serve
+    names, origins = [socket.gethostname(), p.web_host], p.web_origins.split()
+
+    def checking_serve(handler: Any, host: str, port: int, process_request: Any, **options: Any) -> Any:
+        def process(connection: Any, request: Any) -> Any:
+            reason = access.refusal(request.headers.get_all("Host"), request.headers.get_all("Origin"), names, origins)
+            response = connection.respond(403, reason + "\n") if reason else process_request(connection, request)
+            if response is not None:
+                response.headers.update(HEADERS)
+            return response
+
+        options = {**options, "process_request": process, "max_size": LARGEST_REQUEST}
+        return serve(handler, host, port, **options) if listening is None else serve(handler, sock=listening, **options)
+
+    setattr(websockets_server, "serve", checking_serve)  # noqa: B010  mypy refuses to assign to a module's function
+    try:
+        yield
+    finally:
+        setattr(websockets_server, "serve", serve)  # noqa: B010
 
 
 def _require_free(host: str, port: int) -> None:

@@ -9,13 +9,11 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose3D
 from ...web import text
-from ...web.elements import Html, set_visible
 from ...web.page import LOOK_AT
-from ...web.shapes import TEXT, Shape
+from ...web.scene import TEXT, Shape
 from ...web.state import PageState
 from ..names import ACTION, BRIDGE, SIMULATOR, absolute
-from .inbox import Inbox
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 GROUPS = ("robots", "world", "server", "scan", "map")  # of the scene; while all are empty a notice takes their place
 SILENCE = 4.0  # [s, wall] without a report of the simulator, which sends one per second, until it counts as gone
@@ -27,7 +25,7 @@ class Status(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui = context.server.gui
-        self._master_alert, self._alert, self._overview, self._answer = Html(gui), Html(gui), Html(gui), Html(gui)
+        self._master_alert, self._alert, self._overview, self._answer = (gui.add_html("") for _ in range(4))
         self._robot = gui.add_dropdown("Robot", ("",), visible=False, hint="shown in detail and driven")
         self._sim: Optional[SimStatus] = None
         self._sim_at = 0.0  # [s, wall]
@@ -49,29 +47,30 @@ class Status(Part):
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
-        self.context.state.change(simulated=True, factor=message.factor_reached or 1.0)
+        self.context.state.change(
+            simulated=True, factor=message.factor_reached or 1.0, factor_asked=message.factor_asked
+        )
 
     def _on_bridge(self, _: float, message: String) -> None:
         self._bridge = message.data
 
     def show_master_problem(self, problem: str) -> None:
         """Why the ROS master does not answer, if it does not. Only one thread calls this, also while others hang."""
-        self._master_alert.show(text.alert(f"ROS does not answer: {problem}." if problem else ""))
+        self._master_alert.content = text.alert(f"ROS does not answer: {problem}." if problem else "")
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        self._alert.show(text.alert(gone if silence > SILENCE else ""))
+        self._alert.content = text.alert(gone if silence > SILENCE else "")
         self._show_notice()
         known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
-        self._overview.show(text.table(self._rows(state)) if known else "")
-        self._answer.show(text.answer(state.answer))
+        self._overview.content = text.table(self._rows(state)) if known else ""
+        self._answer.content = text.answer(state.answer)
         if self._robot.options != state.robots:
             self._robot.options = state.robots
-        if self._robot.value != state.selected:
-            self._robot.value = state.selected
-        set_visible(self._robot, len(state.robots) > 1)
+        self._robot.value = state.selected
+        self._robot.visible = len(state.robots) > 1
 
     def _show_notice(self) -> None:
         empty = not any(self.context.scene.draws(group) for group in GROUPS)
@@ -81,7 +80,7 @@ class Status(Part):
     def _rows(self, state: PageState) -> List[Tuple[str, str]]:
         rows, sim = [], self._sim
         if sim is not None:
-            asked = text.factor(sim.factor_asked)
+            asked = f"{sim.factor_asked:g}" if sim.factor_asked > 0.0 else "as fast as possible"
             speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, requested {asked}"
             rows += [
                 ("world", f"{sim.world} (seed {sim.seed}, {sim.drive}, {sim.sync})"),

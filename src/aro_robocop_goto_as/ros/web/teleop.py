@@ -9,7 +9,6 @@ from geometry_msgs.msg import Twist
 
 from ...geometry import Twist2D
 from ...web.dead_man import DeadMan
-from ...web.elements import Html, add_button
 from .. import convert
 from ..names import absolute
 from ..ticker import wait_until
@@ -50,29 +49,27 @@ class Teleop(Part):
     def __init__(self, context: Context, linear: float, angular: float) -> None:
         """Full speed: linear [m/s], angular [rad/s]."""
         super().__init__(context)
-        self._full = (linear, angular)
         self._dead_man = DeadMan()
         self._wake = threading.Condition()
         self._publishers: Dict[str, rospy.Publisher] = {}  # by robot
         self._used = 0.0  # [s, wall] when the last command was sent
         gui = context.server.gui
         with gui.add_folder("Drive", visible=context.state.now.live):
-            Html(gui).show(CROSS)
+            gui.add_html(CROSS)
             for label, key, share in PAD:
                 if share is None:
-                    add_button(gui, label, "hand-stop", self.stop)
+                    gui.add_button(label, icon="hand-stop").on_click(lambda _: self.stop())
                     continue
+                hold = self._holder(Twist2D(share.v * linear, share.w * angular))
                 button = gui.add_button(label, hint="drives while it is held")
-                button.on_hold(self._holder(share), callback_hz=HOLD_RATE)
+                button.on_hold(hold, callback_hz=HOLD_RATE)
                 button.on_click(self._on_release)  # over its button; if released elsewhere, the requests just stop
                 command = gui.add_command(label, hotkey=key, description="drives while the key is held")
-                command.on_trigger(self._holder(share))
+                command.on_trigger(hold)
         context.server.on_client_disconnect(self._on_release)
         start_daemon("driver", self._step)
 
-    def _holder(self, share: Twist2D) -> Callable[[Any], Any]:
-        twist = Twist2D(share.v * self._full[0], share.w * self._full[1])
-
+    def _holder(self, twist: Twist2D) -> Callable[[Any], Any]:
         # Coroutines run one after the other in viser's event loop; functions would run in its thread pool, where a late
         # request could overtake the release.
         async def hold(event: Any) -> None:

@@ -4,13 +4,10 @@ from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 from std_srvs.srv import Trigger
 
-from aro_robocop_goto_as.msg import SimStatus
 from aro_robocop_goto_as.srv import Reset, Step
 
-from ...web.elements import Slider, set_visible
+from ...web.slider import Slider
 from ...web.state import PageState
-from ..names import SIMULATOR, absolute
-from .inbox import Inbox
 from .part import Context, Part
 
 STEP = 0.1  # [s] of simulated time: one control tick
@@ -28,7 +25,6 @@ class TimeControls(Part):
             "Step": lambda: call("step", "step", Step, STEP),
             "Reset": lambda: call("reset", "reset", Reset, 0),
         }
-        self._factor_asked = 0.0
         self._folder = gui.add_folder("Time", visible=False)
         with self._folder:
             gui.add_button_group("Simulation", tuple(act)).on_click(lambda event: act[event.target.value]())
@@ -38,13 +34,7 @@ class TimeControls(Part):
         config = Config(doubles=[DoubleParameter("real_time_factor", factor)])
         self.context.requests.call(f"factor {factor:g}", "set_parameters", Reconfigure, config)
 
-    def subscribe(self, inbox: Inbox) -> None:
-        inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_status)
-
-    def _on_status(self, _: float, message: SimStatus) -> None:
-        self._factor_asked = message.factor_asked
-
     def show(self, state: PageState) -> None:
-        set_visible(self._folder, state.live and state.simulated)
-        if self._factor_asked > 0.0:
-            self._factor.show(self._factor_asked)
+        self._folder.visible = state.live and state.simulated
+        if state.factor_asked > 0.0:
+            self._factor.show(state.factor_asked)

@@ -2,22 +2,24 @@
 
 import time
 from collections import deque
-from typing import Any, Deque, Dict, Tuple
+from typing import Any, Deque, Dict, List, Optional, Tuple
 
+import genpy
+import roslib.message
 import rospy
 
 from ...web import text
-from ...web.elements import Html
 from ...web.state import PageState
 from ..names import absolute
-from .messages import brief, class_of, full
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 PERIOD = 0.5  # [s, wall] between two updates
 SPAN = 5.0  # [s, wall] over which a rate is measured
 MOST = 1000  # messages of this time: 200 Hz
 COSTLY = ("sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/PointCloud2")  # only where it is chosen
 DEFAULT = "cmd_vel"
+LINES, WIDTH = 60, 120  # of a message in full: lines, characters of a line
+BRIEF = 100  # characters of a message on one line
 
 
 class _Listener:
@@ -32,10 +34,15 @@ class _Listener:
         self.newest = message
         self._times.append(time.monotonic())
 
-    def rate(self) -> float:
-        """Messages per second [Hz, wall]; 0 while there are fewer than two."""
+    def rate(self, factor: float) -> str:
+        """Messages per simulated second, as `rostopic hz` shows them; empty while there are fewer than two.
+
+        factor: simulated seconds per second
+        """
         times = [at for at in list(self._times) if time.monotonic() - at <= SPAN]
-        return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 and times[-1] > times[0] else 0.0
+        if len(times) < 2 or times[-1] <= times[0]:
+            return ""
+        return f"{(len(times) - 1) / (times[-1] - times[0]) / factor:.1f} Hz"
 
     def close(self) -> None:
         self._subscriber.unregister()
@@ -48,14 +55,14 @@ class Topics(Part):
         super().__init__(context)
         gui = context.server.gui
         self._choice = gui.add_dropdown("Topic", (absolute("", DEFAULT),), hint="as rostopic hz and rostopic echo")
-        self._echo = Html(gui)
+        self._echo = gui.add_html("")
         self._all = gui.add_checkbox("Listen to all", False, hint="except cameras; takes some processor time")
-        self._list = Html(gui)
+        self._list = gui.add_html("")
         self._listeners: Dict[str, _Listener] = {}
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
-    def ask_master(self, state: PageState) -> None:
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
         """Subscribe to what is chosen; here, since this is done also after the last browser has gone."""
         visited, chosen, every = bool(self.context.server.get_clients()), self._choice.value, self._all.value
         wanted = {
@@ -71,9 +78,9 @@ class Topics(Part):
             return
         self._shown_at = time.monotonic()
         self._offer(state)
-        self._echo.show(text.block(self._full(state)))
+        self._echo.content = text.block(self._full(state))
         rows = [(topic, kind, *self._brief(topic, state)) for topic, kind in state.topics]
-        self._list.show(text.topics(rows))
+        self._list.content = text.topics(rows)
 
     def _offer(self, state: PageState) -> None:
         names, default = tuple(topic for topic, _ in state.topics), absolute(state.selected, DEFAULT)
@@ -82,22 +89,46 @@ class Topics(Part):
         options = tuple(sorted({*names, default, chosen}))
         if self._choice.options != options:
             self._choice.options = options
-        if self._choice.value != chosen:
-            self._choice.value = chosen
-
-    def _rate(self, listener: _Listener, state: PageState) -> str:
-        """As `rostopic hz` with simulated time."""
-        rate = listener.rate()
-        return f"{rate / state.factor:.1f} Hz" if rate else ""
+        self._choice.value = chosen
 
     def _full(self, state: PageState) -> str:
         listener = self._listeners.get(self._choice.value)
         if listener is None or listener.newest is None:
             return "no message yet"
-        return f"{self._rate(listener, state) or 'no message for some seconds'}\n{full(listener.newest)}"
+        return f"{listener.rate(state.factor) or 'no message for some seconds'}\n{full(listener.newest)}"
 
     def _brief(self, topic: str, state: PageState) -> Tuple[str, str]:
         listener = self._listeners.get(topic)
         if listener is None or listener.newest is None:
             return "", ""
-        return self._rate(listener, state), brief(listener.newest)
+        return listener.rate(state.factor), brief(listener.newest)
+
+
+def class_of(kind: str) -> Any:
+    """The class of a type, such as geometry_msgs/Twist; one of unread bytes where the type's package is not built here.
+
+    rospy has one class for all subscribers of a topic, so it has to be the one that other parts use.
+    """
+    return roslib.message.get_message_class(kind) or rospy.AnyMsg
+
+
+def _lines(message: Any, fields: Optional[Any] = None) -> List[str]:
+    if isinstance(message, rospy.AnyMsg):
+        return ["a message of a type that is not built here"]
+    return str(genpy.message.strify_message(message, field_filter=fields)).splitlines()
+
+
+def full(message: Any) -> str:
+    """As `rostopic echo` shows it, with long lines and long messages cut."""
+    lines = _lines(message)
+    return "\n".join([_cut(line, WIDTH) for line in lines[:LINES]] + ["…"] * (len(lines) > LINES))
+
+
+def brief(message: Any) -> str:
+    """On one line, without its header."""
+    lines = _lines(message, lambda part: [name for name in part.__slots__ if name != "header"])
+    return _cut(" ".join(" ".join(lines).split()), BRIEF)
+
+
+def _cut(line: str, width: int) -> str:
+    return line if len(line) <= width else line[: width - 1] + "…"

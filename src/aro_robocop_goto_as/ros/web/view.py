@@ -11,14 +11,11 @@ from sensor_msgs.msg import Image
 
 from ...geometry import Pose3D, Vector3
 from ...trail import Trail
-from ...web.elements import set_visible
 from ...web.page import set_theme
-from ...web.shapes import FRAME, LINE, Group, Shape
+from ...web.scene import FRAME, LINE, Group, Shape
 from ...web.state import PageState
 from ..names import absolute
-from .images import camera_image
-from .inbox import Inbox
-from .part import Context, Part
+from .part import Context, Inbox, Part
 
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
@@ -48,7 +45,7 @@ class View(Part):
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self.forget()
         self._message = None
-        set_visible(self._image, False)
+        self._image.visible = False
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
         inbox.subscribe(absolute(robot, CAMERA), Image, self._on_image)
 
@@ -90,7 +87,7 @@ class View(Part):
             self._message, self._image_at = None, now
             if image is not None:
                 self._image.image = image
-            set_visible(self._image, image is not None)
+            self._image.visible = image is not None
 
     def _move_cameras(self, robot: Optional[Pose3D]) -> None:
         if robot is None or not self._follow.value:
@@ -107,3 +104,15 @@ class View(Part):
 
     def forget(self) -> None:
         self._trail = Trail()
+
+
+def camera_image(message: Image) -> Optional[np.ndarray]:
+    """A colour or grey image (rows, columns, 3); None for other encodings."""
+    channels = {"rgb8": 3, "bgr8": 3, "mono8": 1}.get(message.encoding)
+    if channels is None or message.step < message.width * channels or len(message.data) < message.height * message.step:
+        return None
+    rows = np.frombuffer(message.data, np.uint8, message.height * message.step).reshape(message.height, message.step)
+    pixels = rows[:, : message.width * channels].reshape(message.height, message.width, channels)
+    if channels == 1:
+        return np.repeat(pixels, 3, axis=2)
+    return np.ascontiguousarray(pixels[..., ::-1] if message.encoding == "bgr8" else pixels)

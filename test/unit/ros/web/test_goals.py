@@ -69,11 +69,11 @@ def test_the_history_names_the_robot_whose_server_sent_the_result_until_another_
     goal.goal.position.x = 1.0
     result.status.status, result.result.message = GoalStatus.SUCCEEDED, "REACHED"
     part._on_goal(0.0, goal)
-    part._result_handler("blue")(0.0, result)
-    (ended,) = part._history.latest()
+    part._on_result("blue", 0.0, result)
+    (ended,) = part._history.latest
     assert (ended.robot, ended.state, ended.message, ended.goal) == ("blue", "SUCCEEDED", "REACHED", (1.0, 0.0))
     part.forget()
-    assert part._history.latest() == []
+    assert not part._history.latest
 
 
 def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names():
@@ -121,3 +121,29 @@ def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status
     assert drawn(part, context) == {"goal_circle": (rgb, (1.0, 0.0, 0.0)), "goal_pin": (rgb, (1.0, 0.0, 0.2))}
     context.scene.draws.return_value = True  # the server's markers
     assert drawn(part, context) == {}
+
+
+def test_the_history_holds_the_last_goals_with_their_positions():
+    history = goals.GoalHistory()
+    for number in range(3 * goals.REMEMBERED):
+        history.sent(f"goal {number}", float(number), 0.0)
+    last = 3 * goals.REMEMBERED - 1
+    history.ended("", f"goal {last}", "SUCCEEDED", "REACHED")
+    history.ended("", "goal 0", "ABORTED", "OBSTACLE")
+    newest, older = history.latest
+    assert older.goal == (float(last), 0.0) and newest.goal is None
+    for _ in range(3 * goals.REMEMBERED):
+        history.ended("", "x", "ABORTED", "")
+    assert len(history.latest) == goals.REMEMBERED
+
+
+def test_a_goal_without_an_id_is_recognised_by_the_one_that_its_server_gives_it():
+    history = goals.GoalHistory()
+    history.sent("named", 1.0, 0.0)
+    history.sent("", 2.0, 0.0)
+    assert history.position("named") == (1.0, 0.0)
+    assert history.position("first") == (2.0, 0.0)
+    history.sent("", 3.0, 0.0)
+    history.ended("", "first", "PREEMPTED", "")
+    history.ended("", "second", "SUCCEEDED", "")
+    assert [ended.goal for ended in history.latest] == [(3.0, 0.0), (2.0, 0.0)]

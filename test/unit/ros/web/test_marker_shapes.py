@@ -8,7 +8,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, lifted
 from aro_robocop_goto_as.ros.web.marker_shapes import MarkerStore, to_shape
-from aro_robocop_goto_as.web.shapes import BOX
+from aro_robocop_goto_as.web.scene import BOX
 
 
 def marker(number, action=Marker.ADD, kind=Marker.CUBE, namespace="walls", frame="map", **fields):

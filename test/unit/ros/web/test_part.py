@@ -2,7 +2,7 @@
 
 import pytest
 
-from aro_robocop_goto_as.ros.web import inbox
+from aro_robocop_goto_as.ros.web import part
 
 
 class Topic:
@@ -18,12 +18,12 @@ class Topic:
 
 @pytest.fixture
 def received(monkeypatch):
-    monkeypatch.setattr(inbox.rospy, "Subscriber", Topic)
+    monkeypatch.setattr(part.rospy, "Subscriber", Topic)
     return []
 
 
 def subscribed(received, keep):
-    made = inbox.Inbox()
+    made = part.Inbox()
     made.subscribe("/topic", object, lambda at, message: received.append(message), keep)
     return made, made._subscriptions[0][0]
 

@@ -1,12 +1,14 @@
-"""The failed checks of a recording, from the report beside it."""
+"""The failed checks of a recording, from the report beside it, and where it says that it is."""
 
 import json
 from pathlib import Path
 from typing import Any, Dict, Optional
+from unittest.mock import MagicMock
 
 import pytest
 
-from aro_robocop_goto_as.web.report import Failure, failures
+from aro_robocop_goto_as.ros.web.replay import Failure, Replay, failures
+from aro_robocop_goto_as.web.state import PageState
 
 
 def check(name: str, scenario: str, time: Optional[float]) -> Dict[str, Any]:
@@ -28,3 +30,13 @@ def test_there_are_none_without_a_report_or_with_another_file_of_its_name(tmp_pa
     if content is not None:
         (tmp_path / "report.json").write_text(content)
     assert failures(str(tmp_path / "server-left.bag")) == []
+
+
+@pytest.mark.parametrize(
+    "position, speed, text", [(12.3, 0.5, "12 of 60 s, factor 0.5"), (60.0, 0.0, "60 of 60 s, paused")]
+)
+def test_a_recording_says_where_it_is_and_how_fast_it_goes(position: float, speed: float, text: str) -> None:
+    context, slider = MagicMock(), MagicMock(min=0.0, max=60.0)
+    context.server.gui.add_slider.return_value = slider
+    Replay(context, MagicMock(position=position, speed=speed, duration=60.0), [], 1.0).show(PageState())
+    assert text in context.server.gui.add_html.return_value.content and slider.value == position

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from aro_robocop_goto_as.ros.web.lab import LAB, read_lab
 from aro_robocop_goto_as.web import text
-from aro_robocop_goto_as.web.lab import LAB, read_lab
 
 PAGE = """# The lab
 
@@ -42,7 +42,7 @@ def test_a_section_has_what_one_will_see_and_its_commands_with_what_they_print(t
     assert (first.title, first.expected) == ("1. First", "a list of `topics`.")
     assert first.steps == (("rostopic list\nrosnode list\n", "/clock\n"), ("import rospy\n", ""))
     assert (second.title, second.expected, second.steps) == ("2. Second", "", ())
-    shown = text.steps(first)
+    shown = text.steps(first.expected, first.steps)
     assert "You will see a list of <code>topics</code>." in shown and "user-select:all" in shown
 
 

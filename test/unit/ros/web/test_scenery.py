@@ -1,0 +1,26 @@
+"""Scans and maps as arrays."""
+
+import math
+
+import numpy as np
+import pytest
+from sensor_msgs.msg import LaserScan
+
+from aro_robocop_goto_as.ros.web.scenery import FREE, LARGEST_MAP, OCCUPIED, UNKNOWN, map_image, scan_points
+
+
+def test_a_scan_becomes_the_points_of_its_valid_returns():
+    ranges = [1.0, 0.0, math.nan, math.inf, 0.05, 9.0, 2.0]
+    scan = LaserScan(angle_increment=math.pi / 2.0, range_min=0.1, range_max=5.0, ranges=ranges)
+    assert scan_points(scan) == pytest.approx(np.array([(1.0, 0.0, 0.0), (-2.0, 0.0, 0.0)]))
+    assert scan_points(LaserScan()).shape == (0, 3)
+
+
+def test_a_map_has_its_own_colours_and_its_lowest_row_first():
+    image = map_image([-1, 0, 100, 100, 100, 100], 3, 2)
+    assert image.shape == (2, 3, 4)
+    assert [tuple(pixel) for pixel in image[0]] == [UNKNOWN, FREE, OCCUPIED]
+
+
+def test_a_map_that_is_too_large_is_thinned_out():
+    assert map_image(np.zeros(LARGEST_MAP + 1), LARGEST_MAP + 1, 1).shape == (1, LARGEST_MAP // 2 + 1, 4)
