@@ -74,7 +74,7 @@ def running(
 def kill_tree(pid: int) -> None:
     """SIGKILL a child that has not been waited for, its descendants, and its process group if it leads one.
 
-    A descendant in another session whose parent has already ended is not found; see subreaper.py for those.
+    A descendant in another session whose parent has already ended is not found; see orphans.py for those.
     """
     _kill(pid, _family(pid))
 

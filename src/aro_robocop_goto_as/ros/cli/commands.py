@@ -4,11 +4,9 @@ The shell script `robocop` starts it when nothing may be installed yet, so it us
 """
 
 import os
-import re
 import subprocess
 import sys
 import time
-from pathlib import Path
 from typing import Callable, Dict, List, NoReturn, Sequence, Tuple
 
 from ...bootstrap import doctor, master
@@ -258,12 +256,6 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
 OWN_HELP = ("goto", "teleop", "new", "grade", "grade-class", "bench", "test", "shell")  # they read --help themselves
 
 
-def describe(command: str) -> str:
-    """What help.txt says about a command."""
-    text = Path(__file__).with_name("help.txt").read_text()
-    return "\n".join(re.findall(rf"^  {re.escape(command)}(?= |$).*(?:\n {{4,}}.*)*", text, re.MULTILINE))
-
-
 def main(words: Sequence[str]) -> None:
     """Do what a command and its arguments say."""
     command, *arguments = words
@@ -272,7 +264,7 @@ def main(words: Sequence[str]) -> None:
         say(f"unknown command '{command}' (./robocop help lists them){hint}")
         sys.exit(UNKNOWN_COMMAND)
     if command not in OWN_HELP and {"-h", "--help"} & set(arguments):
-        print(describe(command))
+        print(completion.described().get(command, ""), end="")
         return
     try:
         COMMANDS[command](arguments)
