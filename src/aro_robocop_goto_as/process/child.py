@@ -6,7 +6,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Any, Dict, Iterator, Mapping, Optional, Sequence, Set
+from typing import Any, Dict, Mapping, Optional, Sequence, Set
 
 import psutil
 
@@ -58,17 +58,6 @@ def end(child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: floa
             with contextlib.suppress(BrokenPipeError):
                 pipe.close()
     return status
-
-
-@contextlib.contextmanager
-def running(
-    child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: float = GRACE
-) -> "Iterator[Child[Any]]":
-    """End a child when the block ends."""
-    try:
-        yield child
-    finally:
-        end(child, number, grace)
 
 
 def kill_tree(pid: int) -> None:

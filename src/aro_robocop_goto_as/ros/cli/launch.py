@@ -25,7 +25,7 @@ from ...process import signals
 from ...robot.model_names import urdf_of
 from .. import log_handlers
 from ..names import RVIZ_LOG, SIMULATOR, absolute
-from .roslaunch_internals import Launcher, end_processes_with_roslaunch, install_roslaunch_signal_handlers
+from .roslaunch_internals import Launcher
 
 FAILED = 1  # exit status
 READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
@@ -62,9 +62,7 @@ def launch(arguments: List[str]) -> int:
             force_log=options.quiet,
             show_summary=not options.no_summary,
         )
-        end_processes_with_roslaunch()
-        install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
-        with deferred:
+        with deferred:  # after the launcher has installed its signal handlers, which are restored
             with buffered_stderr(deferred):
                 launcher.load()
             _check(launcher.config)

@@ -31,6 +31,12 @@ class Launcher(ROSLaunchParent, ProcessListener):
     failed = False  # whether a required node of PACKAGES did; RViz crashing when it closes is no failure
     _master: Optional[XmlRpcNode] = None
 
+    def __init__(self, *args: Any, **options: Any) -> None:
+        """Arguments as those of ROSLaunchParent."""
+        super().__init__(*args, **options)
+        pmon._init_signal_handlers()  # roslaunch does it when it starts the first process
+        nodeprocess.subprocess = SimpleNamespace(Popen=_popen)  # roslaunch has no hook between fork and exec
+
     def load(self) -> None:
         """Load the launch files; start() loads them only if nobody has.
 
@@ -64,7 +70,10 @@ class Launcher(ROSLaunchParent, ProcessListener):
         Then, or if another process has the port, roslaunch uses that master, or says why it can't.
         """
         host, port = rosgraph.network.parse_http_host_and_port(uri)
-        if not rosgraph.network.is_local_address(host) or _is_taken(uri):
+        try:
+            if not rosgraph.network.is_local_address(host) or master.master_answers(uri):
+                return False
+        except MasterError:  # something else answers there
             return False
         failed = threading.Event()
         self._master = XmlRpcNode(port, ROSMasterHandler(NUM_WORKERS), on_run_error=lambda _: failed.set())
@@ -87,33 +96,15 @@ class Launcher(ROSLaunchParent, ProcessListener):
             self.failed = True
 
 
-def _is_taken(uri: str) -> bool:
-    """Whether a master answers there, or something else."""
-    try:
-        return master.master_answers(uri)
-    except MasterError:
-        return True
+def _popen(*args: Any, preexec_fn: Callable[[], None], **options: Any) -> "subprocess.Popen[Any]":
+    """Start a node that Linux ends when this process ends without doing so, as by SIGKILL.
 
-
-def install_roslaunch_signal_handlers() -> None:
-    """Install roslaunch's signal handlers now; roslaunch does it when it starts the first process."""
-    pmon._init_signal_handlers()
-
-
-def end_processes_with_roslaunch() -> None:
-    """Have Linux end all nodes when this process ends without doing so, as by SIGKILL.
-
-    roslaunch starts them in the main thread, and again, with respawn, in one that lives as long as they do. It has no
-    hook between fork and exec.
+    roslaunch starts nodes in the main thread, and again, with respawn, in one that lives as long as they do.
     """
     terminate = end_with_parent()
-    start: Any = subprocess.Popen
 
-    def popen(*args: Any, preexec_fn: Callable[[], None], **options: Any) -> Any:
-        def between_fork_and_exec() -> None:
-            preexec_fn()
-            terminate()
+    def between_fork_and_exec() -> None:
+        preexec_fn()
+        terminate()
 
-        return start(*args, preexec_fn=between_fork_and_exec, **options)
-
-    nodeprocess.subprocess = SimpleNamespace(Popen=popen)
+    return subprocess.Popen(*args, preexec_fn=between_fork_and_exec, **options)

@@ -8,6 +8,7 @@ import argparse
 import os
 import time
 from dataclasses import replace
+from pathlib import Path
 from typing import List, Optional, Tuple
 
 import numpy as np
@@ -119,14 +120,9 @@ def _start(robot: str) -> Tuple[float, float]:
 
 def _written(text: str) -> str:
     """Write the configuration to the folder of this run's logs; its path, one for each namespace."""
-    try:
-        run_id = str(rosgraph.Master("/robocop_rviz").getParam("/run_id"))
-    except (rosgraph.MasterException, OSError):
-        run_id = ""
-    robot = rosgraph.names.get_ros_namespace().strip("/").replace("/", "_")
-    folder = os.path.join(rospkg.get_log_dir(), run_id)
-    os.makedirs(folder, exist_ok=True)
-    path = os.path.join(folder, f"robocop_{robot}.rviz" if robot else "robocop.rviz")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
-    return path
+    run_id = rospy.get_param("/run_id", "") if rosgraph.is_master_online() else ""
+    folder = Path(rospkg.get_log_dir(), run_id)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"robocop{rosgraph.names.get_ros_namespace().rstrip('/').replace('/', '_')}.rviz"
+    path.write_text(text, encoding="utf-8")
+    return str(path)

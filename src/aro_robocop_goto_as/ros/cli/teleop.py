@@ -160,14 +160,6 @@ def _speed(text: str) -> float:
     return value
 
 
-def _require_terminal_and_master(terminal: int) -> None:
-    """Raise TeleopError unless there are a terminal and a ROS master."""
-    if not os.isatty(terminal):
-        raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
-    if not master.master_answers(master.master_uri()):
-        raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
-
-
 def main() -> None:
     """Entry point; exit status 0 when it was ended by a key or signal, 1 when it could not start."""
     args = _parse(rospy.myargv()[1:])
@@ -175,7 +167,10 @@ def main() -> None:
     terminal = sys.stdin.fileno()
     teleop = None
     try:
-        _require_terminal_and_master(terminal)
+        if not os.isatty(terminal):
+            raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
+        if not master.master_answers(master.master_uri()):
+            raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
         # Wall time: a paused simulator must not keep keys from being read.
         log_handlers.use()
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
