@@ -5,11 +5,11 @@ import shlex
 from pathlib import Path
 from typing import Dict, List
 
-from . import launch_arguments
+from .launch_arguments import REPLAY, RUN, SIM, names
+from .program import ROOT
 
 HELP = Path(__file__).with_name("help.txt")
 SCRIPT = Path(__file__).with_name("completion.bash")
-LAUNCH_FILES = {"run": "robocop_goto_as.launch", "sim": "robocop_sim.launch", "replay": "replay.launch"}
 
 
 def described() -> Dict[str, str]:
@@ -25,14 +25,12 @@ def options() -> Dict[str, List[str]]:
     return {command: list(dict.fromkeys(re.findall(r"--[a-z]+", text))) for command, text in described().items()}
 
 
-def completion(root: Path) -> str:
+def completion() -> str:
     """The script for bash, with the values that it needs."""
-    arguments = {
-        command: [f"{name}:=" for name in launch_arguments.names(root / "launch" / file)]
-        for command, file in LAUNCH_FILES.items()
-    }
+    files = {"run": RUN, "sim": SIM, "replay": REPLAY}
+    arguments = {command: [f"{name}:=" for name in names(file)] for command, file in files.items()}
     tables = _table("_robocop_options", options()) + _table("_robocop_arguments", arguments)
-    return f"_robocop_root={shlex.quote(str(root))}\n{tables}{SCRIPT.read_text(encoding='utf-8')}"
+    return f"_robocop_root={shlex.quote(str(ROOT))}\n{tables}{SCRIPT.read_text(encoding='utf-8')}"
 
 
 def _table(name: str, words: Dict[str, List[str]]) -> str:

@@ -96,7 +96,7 @@ class Launcher(ROSLaunchParent, ProcessListener):
             self.failed = True
 
 
-def _popen(*args: Any, preexec_fn: Callable[[], None], **options: Any) -> "subprocess.Popen[Any]":
+def _popen(command: Any, preexec_fn: Callable[[], None], **options: Any) -> "subprocess.Popen[Any]":
     """Start a node that Linux ends when this process ends without doing so, as by SIGKILL.
 
     roslaunch starts nodes in the main thread, and again, with respawn, in one that lives as long as they do.
@@ -107,4 +107,4 @@ def _popen(*args: Any, preexec_fn: Callable[[], None], **options: Any) -> "subpr
         preexec_fn()
         terminate()
 
-    return subprocess.Popen(*args, preexec_fn=between_fork_and_exec, **options)
+    return subprocess.Popen(command, preexec_fn=between_fork_and_exec, **options)

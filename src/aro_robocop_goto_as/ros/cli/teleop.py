@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import os
+import re
 import select
 import sys
 import termios
@@ -55,12 +56,7 @@ def command(key: str, linear: float, angular: float) -> Twist2D:
 
 def keys_of(text: str) -> List[str]:
     """The keys in what a terminal has sent: single characters and escape sequences of three, such as an arrow's."""
-    keys = []
-    while text:
-        length = 3 if text[:2] in ("\x1b[", "\x1bO") else 1
-        keys.append(text[:length])
-        text = text[length:]
-    return keys
+    return re.findall(r"\x1b[\[O].|.", text, re.DOTALL)
 
 
 @contextlib.contextmanager
@@ -87,10 +83,6 @@ class HeldKey:
         repeats = key == self.at(now)
         self._key, self._until = key, now + (NEXT_REPEAT if repeats else FIRST_REPEAT)
 
-    def release(self) -> None:
-        """No key counts as held from now on."""
-        self._key = ""
-
     def at(self, now: float) -> str:
         """The key that is held at a time [s]; empty if none is."""
         return self._key if now < self._until else ""
@@ -113,10 +105,9 @@ class KeyboardTeleop:
         while not rospy.is_shutdown():
             ready, _, _ = select.select([terminal], [], [], PERIOD)
             if ready:
-                try:
+                read = b""
+                with contextlib.suppress(OSError):  # the terminal is gone
                     read = os.read(terminal, MOST_READ)
-                except OSError:  # the terminal is gone
-                    return
                 if not read:
                     return
                 for key in keys_of(read.decode(errors="replace")):
@@ -125,7 +116,6 @@ class KeyboardTeleop:
 
     def stop(self) -> None:
         """Publish a zero velocity if the robot was commanded to move."""
-        self._keys.release()
         self._send(STANDSTILL)
 
     def _send(self, twist: Twist2D) -> None:
