@@ -12,7 +12,7 @@ import rosgraph
 
 from ..errors import BenchError
 from ..process import child
-from ..process.parent_death import end_with_parent
+from ..process.orphans import end_with_parent
 from ..process.ports import free_port
 
 TIMEOUT = 120.0  # [s, wall] for a process to start or to answer, on a busy machine too

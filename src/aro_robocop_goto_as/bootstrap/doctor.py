@@ -1,12 +1,13 @@
 """robocop doctor: reports the system, the versions, what answers, and what is missing and how to install it."""
 
+import contextlib
 import json
 import os
 import platform
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Tuple
 
 from ..errors import MasterError
 from ..process import x_display
@@ -50,12 +51,8 @@ Row = Tuple[str, str]
 def system() -> str:
     """Distribution, architecture and size of this machine."""
     name = platform.system()
-    try:
-        with open("/etc/os-release", encoding="utf-8") as release:
-            entries = dict(line.rstrip().partition("=")[::2] for line in release)
-        name = entries["PRETTY_NAME"].strip('"')
-    except (OSError, KeyError):
-        pass
+    with contextlib.suppress(OSError, KeyError), open("/etc/os-release", encoding="utf-8") as release:
+        name = dict(line.rstrip().partition("=")[::2] for line in release)["PRETTY_NAME"].strip('"')
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
     return f"{name}, {platform.machine()}, {os.cpu_count()} cores, {memory:.1f} GB of memory"
 
@@ -70,21 +67,15 @@ def versions(python: str) -> Dict[str, str]:
         return {name: f"unknown, {python} failed: {error}" for name in PACKAGES}
 
 
-def master_row() -> Tuple[str, Optional[str]]:
-    """What answers at ROS_MASTER_URI, and what to do about it if it is a problem."""
+def master_row() -> Tuple[str, str]:
+    """What answers at ROS_MASTER_URI, and what to do about it; empty if it is no problem."""
     uri = master.master_uri()
     try:
         if not master.master_answers(uri):
-            return f"none at {uri}", None
-        return f"answers at {uri}; {master.running_simulator(uri) or 'no simulator is running'}", None
+            return f"none at {uri}", ""
+        return f"answers at {uri}; {master.running_simulator(uri) or 'no simulator is running'}", ""
     except MasterError as error:
         return "does not answer", str(error)
-
-
-def apt_line(packages: str) -> str:
-    """The command that installs Debian packages."""
-    sudo = "" if os.geteuid() == 0 else "sudo "
-    return f"{sudo}apt-get update && {sudo}apt-get install --no-install-recommends {packages}"
 
 
 def ros_in_opt() -> str:
@@ -129,7 +120,9 @@ def examine(
     if unsupported:
         problems.append(("this system is not supported", unsupported))
     elif missing.get("run"):
-        problems.append((f"{len(missing['run'].split())} Debian packages", apt_line(missing["run"])))
+        sudo = "" if os.geteuid() == 0 else "sudo "
+        install = f"{sudo}apt-get update && {sudo}apt-get install --no-install-recommends {missing['run']}"
+        problems.append((f"{len(missing['run'].split())} Debian packages", install))
     if missing.get("modules"):
         problems.append((f"Python modules of ROS: {missing['modules']}", "install ros-noetic-* or python3-* packages"))
     if not complete or not installed["pybullet"][:1].isdigit():

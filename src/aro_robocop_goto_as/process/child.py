@@ -6,7 +6,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Any, Dict, Iterator, Mapping, Optional, Sequence, Set
+from typing import Any, Dict, Mapping, Optional, Sequence, Set
 
 import psutil
 
@@ -60,21 +60,10 @@ def end(child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: floa
     return status
 
 
-@contextlib.contextmanager
-def running(
-    child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: float = GRACE
-) -> "Iterator[Child[Any]]":
-    """End a child when the block ends."""
-    try:
-        yield child
-    finally:
-        end(child, number, grace)
-
-
 def kill_tree(pid: int) -> None:
     """SIGKILL a child that has not been waited for, its descendants, and its process group if it leads one.
 
-    A descendant in another session whose parent has already ended is not found; see subreaper.py for those.
+    A descendant in another session whose parent has already ended is not found; see orphans.py for those.
     """
     _kill(pid, _family(pid))
 

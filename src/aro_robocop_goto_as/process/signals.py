@@ -26,9 +26,7 @@ def _interrupt(_number: int, _frame: object) -> None:
     global _interrupted
     _interrupted = True
     threading.excepthook = lambda _: None  # threads fail when the system that they use is ended
-    sys.unraisablehook = lambda _: (
-        None
-    )  # when it is raised in a callback that may raise nothing: reraise_if_interrupted()
+    sys.unraisablehook = lambda _: None  # for callbacks that may raise nothing, there is reraise_if_interrupted()
     begin_cleanup()
     raise KeyboardInterrupt
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Iterator, Optional
 
 from aro_robocop_goto_as.errors import HostingError
-from aro_robocop_goto_as.process import signals, subreaper
+from aro_robocop_goto_as.process import orphans, signals
 from aro_robocop_goto_as.process.signals import Deferred
 
 from . import tree
@@ -26,7 +26,7 @@ def scratch_folder() -> Iterator[None]:
     nobody locks, as their owner was killed, are removed at the beginning.
     """
     previous, folder, lock = os.environ.get("TMPDIR"), None, -1
-    subreaper.adopt_orphans()
+    orphans.adopt_orphans()
     _remove_abandoned(Path(tempfile.gettempdir()))
     try:
         with Deferred():
@@ -38,7 +38,7 @@ def scratch_folder() -> Iterator[None]:
         yield
     finally:
         signals.begin_cleanup()
-        subreaper.kill_descendants()
+        orphans.kill_descendants()
         _set_tmpdir(previous)
         if folder is not None:
             tree.remove(folder)

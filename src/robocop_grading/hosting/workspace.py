@@ -30,8 +30,10 @@ MOST_SHOWN = 4_000  # bytes of them
 def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
     """Run a command without a sandbox."""
     process = child.start(command, environment=environment, stdout=output, stderr=errors)
-    with child.running(process, None, 0.0):
+    try:
         return process.wait()
+    finally:
+        child.end(process, None, 0.0)
 
 
 def output_of(run: Run, command: Sequence[str], environment: Environment, limit: int = -1) -> Tuple[int, bytes, str]:

@@ -58,12 +58,6 @@ def test_end_of_an_exited_child_returns_its_status_again(alive):
     assert (child.end(started, None, DEADLINE), child.end(started)) == (3, 3)
 
 
-def test_child_is_ended_when_its_block_raises():
-    with pytest.raises(ValueError), child.running(child.start(["sleep", "600"])) as started:
-        raise ValueError
-    assert started.returncode == -signal.SIGTERM
-
-
 def test_kill_tree_ends_children_in_sessions_of_their_own(alive):
     started = shell("setsid sh -c 'setsid sh -c \"echo ready; sleep 600\"' & sleep 600", alive)
     child.kill_tree(started.pid)

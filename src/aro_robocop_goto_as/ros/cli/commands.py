@@ -4,11 +4,9 @@ The shell script `robocop` starts it when nothing may be installed yet, so it us
 """
 
 import os
-import re
 import subprocess
 import sys
 import time
-from pathlib import Path
 from typing import Callable, Dict, List, NoReturn, Sequence, Tuple
 
 from ...bootstrap import doctor, master
@@ -17,7 +15,7 @@ from ...process import x_display
 from ...suggestions import did_you_mean
 from ..names import PACKAGE
 from . import completion, container_image, program
-from .launch_arguments import TRUE, LaunchArguments
+from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments
 from .program import ROOT, refuse, say
 
 UNKNOWN_COMMAND = 2  # exit status
@@ -57,7 +55,7 @@ def refuse_second_simulator() -> None:
 
 def run(arguments: List[str]) -> None:
     """Simulator, server, bridge and RViz, or the web page where there is no display."""
-    given = LaunchArguments.parse(ROOT / "launch" / "robocop_goto_as.launch", arguments)
+    given = LaunchArguments.parse(RUN, arguments)
     program.need()  # also what finds out whether the display answers
     if given.value("sim") not in ("false", "False", "0"):  # without one, it may be another's
         refuse_second_simulator()
@@ -83,7 +81,7 @@ def run(arguments: List[str]) -> None:
 def sim(arguments: List[str]) -> None:
     """The simulator alone, or with somebody else's package."""
     if arguments[:1] != ["--with"]:
-        given = LaunchArguments.parse(ROOT / "launch" / "robocop_sim.launch", arguments)
+        given = LaunchArguments.parse(SIM, arguments)
         refuse_second_simulator()
         program.need(*["gui"] * given.is_true("gui"))
         launch(given)
@@ -135,7 +133,7 @@ def replay(arguments: List[str]) -> None:
     bag = arguments[0] if arguments else ""
     if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
         refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
-    given = LaunchArguments.parse(ROOT / "launch" / "replay.launch", arguments[1:])
+    given = LaunchArguments.parse(REPLAY, arguments[1:])
     shown = x_display.answers()
     program.need("web", *["rviz"] * shown)
     refuse_second_simulator()
@@ -199,7 +197,7 @@ def shell(arguments: List[str]) -> None:
         program.start(*arguments)
     settings, words = program.state() / "bashrc", program.state() / "completion.bash"
     if not program.is_dry_run():
-        words.write_text(completion.completion(ROOT), encoding="utf-8")
+        words.write_text(completion.completion(), encoding="utf-8")
         workspace, venv = os.environ["ROBOCOP_WS"], program.state() / "venv"
         settings.write_text(SHELL_SETTINGS.format(venv=venv, workspace=workspace, completion=words), encoding="utf-8")
     program.start("bash", "--rcfile", str(settings))
@@ -253,15 +251,9 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
     "version": lambda _: print(program.version()),
     "--version": lambda _: print(program.version()),
-    "completion": lambda _: print(completion.completion(ROOT), end=""),
+    "completion": lambda _: print(completion.completion(), end=""),
 }
 OWN_HELP = ("goto", "teleop", "new", "grade", "grade-class", "bench", "test", "shell")  # they read --help themselves
-
-
-def describe(command: str) -> str:
-    """What help.txt says about a command."""
-    text = Path(__file__).with_name("help.txt").read_text()
-    return "\n".join(re.findall(rf"^  {re.escape(command)}(?= |$).*(?:\n {{4,}}.*)*", text, re.MULTILINE))
 
 
 def main(words: Sequence[str]) -> None:
@@ -272,7 +264,7 @@ def main(words: Sequence[str]) -> None:
         say(f"unknown command '{command}' (./robocop help lists them){hint}")
         sys.exit(UNKNOWN_COMMAND)
     if command not in OWN_HELP and {"-h", "--help"} & set(arguments):
-        print(describe(command))
+        print(completion.described().get(command, ""), end="")
         return
     try:
         COMMANDS[command](arguments)

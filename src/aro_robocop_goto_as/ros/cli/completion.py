@@ -1,33 +1,36 @@
-"""What `./robocop completion` prints for bash: the options and launch arguments of each command."""
+"""The help text of each command, and from it what `./robocop completion` prints for bash."""
 
 import re
 import shlex
 from pathlib import Path
 from typing import Dict, List
 
-from . import launch_arguments
+from .launch_arguments import REPLAY, RUN, SIM, names
+from .program import ROOT
 
 HELP = Path(__file__).with_name("help.txt")
 SCRIPT = Path(__file__).with_name("completion.bash")
-LAUNCH_FILES = {"run": "robocop_goto_as.launch", "sim": "robocop_sim.launch", "replay": "replay.launch"}
+
+
+def described() -> Dict[str, str]:
+    """What the help text says about each command."""
+    parts: Dict[str, str] = {}
+    for part, command in re.findall(r"(?m)^(  ([a-z][a-z-]*).*\n(?:    .*\n)*)", HELP.read_text(encoding="utf-8")):
+        parts[command] = parts.get(command, "") + part
+    return parts
 
 
 def options() -> Dict[str, List[str]]:
-    """The options that the help text gives each command, in the lines that describe it."""
-    found: Dict[str, List[str]] = {}
-    for command, text in re.findall(r"(?m)^  ([a-z][a-z-]*)(.*(?:\n   .*)*)", HELP.read_text(encoding="utf-8")):
-        found[command] = list(dict.fromkeys([*found.get(command, []), *re.findall(r"--[a-z]+", text)]))
-    return found
+    """The options that the help text names for each command."""
+    return {command: list(dict.fromkeys(re.findall(r"--[a-z]+", text))) for command, text in described().items()}
 
 
-def completion(root: Path) -> str:
+def completion() -> str:
     """The script for bash, with the values that it needs."""
-    arguments = {
-        command: [f"{name}:=" for name in launch_arguments.names(root / "launch" / file)]
-        for command, file in LAUNCH_FILES.items()
-    }
+    files = {"run": RUN, "sim": SIM, "replay": REPLAY}
+    arguments = {command: [f"{name}:=" for name in names(file)] for command, file in files.items()}
     tables = _table("_robocop_options", options()) + _table("_robocop_arguments", arguments)
-    return f"_robocop_root={shlex.quote(str(root))}\n{tables}{SCRIPT.read_text(encoding='utf-8')}"
+    return f"_robocop_root={shlex.quote(str(ROOT))}\n{tables}{SCRIPT.read_text(encoding='utf-8')}"
 
 
 def _table(name: str, words: Dict[str, List[str]]) -> str:

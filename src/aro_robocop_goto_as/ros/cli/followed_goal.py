@@ -1,6 +1,7 @@
 """A goal that is sent from the command line and followed to its end, with its progress on the screen."""
 
 import argparse
+import math
 import sys
 import time
 from typing import Callable, List, Optional
@@ -55,15 +56,14 @@ class _PauseNotice:
 
     def __init__(self) -> None:
         self.time = rospy.get_rostime()
-        self.since = time.monotonic()
-        self.printed = False
+        self.since = time.monotonic()  # [s, wall]; infinite once the notice is printed
 
     def poll(self) -> None:
         now = rospy.get_rostime()
         if now != self.time:
-            self.time, self.since, self.printed = now, time.monotonic(), False
-        elif time.monotonic() - self.since > PAUSE_PATIENCE and not self.printed:
-            self.printed = True
+            self.time, self.since = now, time.monotonic()
+        elif time.monotonic() - self.since > PAUSE_PATIENCE:
+            self.since = math.inf
             complain(PAUSED)
 
 

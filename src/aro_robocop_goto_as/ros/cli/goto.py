@@ -1,21 +1,30 @@
-"""robocop goto: send one goal from the command line, show its progress, report the result as exit status."""
+"""robocop goto: send one goal from the command line, show its progress, report the result as exit status.
+
+Where no ROS system runs, it starts one on a free port, which ends with all its processes when the goal has.
+"""
 
 import argparse
+import contextlib
 import os
 import re
 import sys
+import time
 from pathlib import Path
-from typing import Callable, List
+from typing import Any, Callable, Iterator, List
 
 import rosgraph
 import rospkg
 
 from ...bootstrap import master
 from ...errors import MasterError
-from ...process import signals
-from ..names import COMMAND_VARIABLE
+from ...process import child, orphans, signals
+from ...process.ports import free_port
+from ..names import COMMAND_VARIABLE, PACKAGE
 from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, complain, parse
-from .own_system import own_system, wait_for_master
+
+LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs
+END_PATIENCE = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
+POLL = 0.05  # [s, wall]
 
 
 def main() -> None:
@@ -51,9 +60,9 @@ def _run(args: argparse.Namespace) -> int:
         arguments.append(f"world:={world}")
     log = Path(rospkg.get_ros_home(), "robocop_goto.log")
     status = NOT_REACHED
-    with own_system("robocop_goto_as.launch", arguments, log) as system:
+    with _own_system(arguments, log) as system:
         go_to = _import_go_to()  # while the system starts, on another processor
-        started = wait_for_master(system)
+        started = _wait_for_master(system)
         if started:
             status = go_to(args, START_PATIENCE, ended=lambda: system.poll() is not None)
     errors = [line for line in _lines(log) if "[FATAL]" in line]
@@ -71,6 +80,40 @@ def _import_go_to() -> Callable[..., int]:
     with signals.Deferred():
         from .followed_goal import go_to
     return go_to
+
+
+@contextlib.contextmanager
+def _own_system(arguments: List[str], log: Path) -> "Iterator[child.Child[Any]]":
+    """Launch the system with a master of its own; yields its process, which starts. Output goes to `log`.
+
+    Sets ROS_MASTER_URI of this process. The system ends with the block, also when a signal ends the block.
+    """
+    port = free_port()
+    os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    command = [str(LAUNCHER), "--no-summary", "-p", str(port), PACKAGE, "robocop_goto_as.launch", *arguments]
+    orphans.adopt_orphans()
+    system = None
+    try:
+        with signals.Deferred():
+            system = child.start(command, log, preexec_fn=orphans.end_with_parent())  # this thread is the main one
+        yield system
+    finally:
+        signals.begin_cleanup()  # a second Ctrl-C must not leave half of the system behind
+        if system is not None:
+            child.end(system, grace=END_PATIENCE)
+            orphans.kill_descendants()
+
+
+def _wait_for_master(system: "child.Child[Any]") -> bool:
+    """Whether the system's master answers, before the system ends or its time is over."""
+    deadline = time.monotonic() + START_PATIENCE
+    while time.monotonic() < deadline and system.poll() is None:
+        with contextlib.suppress(MasterError):  # on a loaded machine it may open its port long before it answers
+            if master.master_answers(master.master_uri()):
+                return True
+        time.sleep(POLL)
+    return False
 
 
 def _lines(log: Path) -> List[str]:

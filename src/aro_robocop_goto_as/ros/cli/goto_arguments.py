@@ -2,15 +2,16 @@
 
 import argparse
 import math
+import re
 import sys
 from typing import List
 
 from ...limits import FARTHEST
-from .argparse_internals import accept_scientific_notation
 
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a running system
 START_PATIENCE = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
 REACHED, NOT_REACHED = 0, 1
+NEGATIVE = re.compile(r"-[\d.]+([eE][-+]?\d+)?")
 DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 
 
@@ -21,7 +22,6 @@ def parse(argv: List[str]) -> argparse.Namespace:
         description="Send one goal and follow it; exit status 0 when it is reached, 1 when not.",
         epilog="Uses the running ROS system; without one it starts a headless simulator for this goal.",
     )
-    accept_scientific_notation(parser)
     parser.add_argument("x", type=_metres, help="[m]")
     parser.add_argument("y", type=_metres, help="[m]")
     parser.add_argument(
@@ -31,7 +31,8 @@ def parse(argv: List[str]) -> argparse.Namespace:
     )
     parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
     parser.add_argument("--world", help="world of the simulator, if one has to be started")
-    return parser.parse_args(argv)
+    # argparse takes -5e-1 for an option, but not with a space before it.
+    return parser.parse_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
 
 
 def _metres(text: str) -> float:
@@ -40,7 +41,7 @@ def _metres(text: str) -> float:
     except ValueError:
         value = math.nan
     if not abs(value) <= FARTHEST:  # true for NaN
-        raise argparse.ArgumentTypeError(f"expected a number of metres within +-{FARTHEST:g}, got {text!r}")
+        raise argparse.ArgumentTypeError(f"expected a number of metres within +-{FARTHEST:g}, got {text.strip()!r}")
     return value
 
 

@@ -18,40 +18,20 @@ import roslaunch
 import rospkg
 from roslaunch import rlutil
 from roslaunch.core import printerrlog
-from roslaunch.parent import ROSLaunchParent
-from roslaunch.pmon import ProcessListener
 from rospkg import get_log_dir
 
 from ...errors import RobocopError, RobotModelError
 from ...process import signals
 from ...robot.model_names import urdf_of
 from .. import log_handlers
-from ..names import PACKAGE, RVIZ_LOG, SIMULATOR, absolute
-from . import roslaunch_internals
-from .inner_master import inner_master
+from ..names import RVIZ_LOG, SIMULATOR, absolute
+from .roslaunch_internals import Launcher
 
-PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
 FAILED = 1  # exit status
 READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
 READY_PATIENCE = 30.0  # [s, wall] for a simulator with a large world on a slow machine
 POLL = 0.05  # [s, wall]
 STDOUT, STDERR = 1, 2  # file descriptors
-
-
-class RequiredNodes(ProcessListener):
-    """Notes whether a required node of these packages failed; RViz crashing when it closes is no failure."""
-
-    def __init__(self, parent: ROSLaunchParent) -> None:
-        self.parent = parent
-        self.failed = False
-
-    def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
-        """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
-        process = self.parent.pm.get_process(process_name)
-        if process is None or process.name.rpartition("/")[2].startswith("rviz"):
-            return
-        if exit_code != 0 and process.required and process.package in PACKAGES:
-            self.failed = True
 
 
 def launch(arguments: List[str]) -> int:
@@ -74,7 +54,7 @@ def launch(arguments: List[str]) -> int:
         log_handlers.use()
         roslaunch.configure_logging(run_id)
         rlutil.change_terminal_name(files, False)
-        parent = ROSLaunchParent(
+        launcher = Launcher(
             run_id,
             files,
             port=options.port,
@@ -82,28 +62,20 @@ def launch(arguments: List[str]) -> int:
             force_log=options.quiet,
             show_summary=not options.no_summary,
         )
-        required = RequiredNodes(parent)
-        roslaunch_internals.add_early_listener(parent, required)
-        roslaunch_internals.end_processes_with_roslaunch()
-        roslaunch_internals.install_roslaunch_signal_handlers()  # before Deferred, which restores the handlers it finds
-        uri = rosgraph.network.create_local_xmlrpc_uri(options.port) if options.port else rosgraph.get_master_uri()
-        with contextlib.ExitStack() as until_the_end:
-            with deferred:
-                with buffered_stderr(deferred):
-                    roslaunch_internals.load_launch_files(parent)
-                _check(parent.config)
-                if until_the_end.enter_context(inner_master(uri)):
-                    roslaunch_internals.start_core_nodes(parent)
-                parent.start()
-            if options.quiet or options.overview:
-                simulator = _simulator(parent, expected=options.overview)
-                if not parent.pm.is_shutdown:
-                    from .overview import overview  # now that everything else has started
+        with deferred:  # after the launcher has installed its signal handlers, which are restored
+            with buffered_stderr(deferred):
+                launcher.load()
+            _check(launcher.config)
+            launcher.start()
+        if options.quiet or options.overview:
+            simulator = _simulator(launcher, expected=options.overview)
+            if not launcher.pm.is_shutdown:
+                from .overview import overview  # now that everything else has started
 
-                    print(overview(parent.config, simulator, logs, not options.quiet), file=screen, flush=True)
-            if not options.no_summary:
-                rlutil.check_log_disk_usage()
-            parent.spin()
+                print(overview(launcher.config, simulator, logs, not options.quiet), file=screen, flush=True)
+        if not options.no_summary:
+            rlutil.check_log_disk_usage()
+        launcher.spin()
     except RobocopError as error:
         print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
         return FAILED
@@ -111,7 +83,7 @@ def launch(arguments: List[str]) -> int:
         if not deferred.interrupted:
             printerrlog(_explained(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
         return FAILED
-    return FAILED if required.failed else 0
+    return FAILED if launcher.failed else 0
 
 
 def _simulators(config: Any) -> List[str]:
@@ -129,19 +101,19 @@ def _check(config: Any) -> None:
             preflight.check(given, name)
 
 
-def _simulator(parent: ROSLaunchParent, expected: bool) -> Optional[Dict[str, Any]]:
+def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
     """Wait until the simulator runs, if the launch file starts one or another process is `expected` to; its parameters.
 
     So the reason why a simulator can't start is not preceded by what to do with it.
     """
-    names = _simulators(parent.config) or ([absolute("", SIMULATOR)] if expected else [])
-    master = rosgraph.Master("/robocop_launch", parent.config.master.uri)
+    names = _simulators(launcher.config) or ([absolute("", SIMULATOR)] if expected else [])
+    master = rosgraph.Master("/robocop_launch", launcher.config.master.uri)
     deadline = time.monotonic() + READY_PATIENCE
-    while names and not parent.pm.is_shutdown and time.monotonic() < deadline:
+    while names and not launcher.pm.is_shutdown and time.monotonic() < deadline:
         with contextlib.suppress(rosgraph.MasterException, OSError):
             master.lookupService(f"{names[0]}/{READY_SERVICE}")
             return dict(master.getParam(names[0])) if master.hasParam(names[0]) else {}
-        parent.spin_once()
+        launcher.spin_once()
         time.sleep(POLL)
     return None
 

@@ -7,8 +7,10 @@ from typing import List, Sequence, Tuple
 from xml.etree import ElementTree
 
 from ...suggestions import did_you_mean
-from .program import refuse
+from .program import ROOT, refuse
 
+# The files whose arguments a command takes.
+RUN, SIM, REPLAY = (ROOT / "launch" / f"{name}.launch" for name in ("robocop_goto_as", "robocop_sim", "replay"))
 TRUE = ("true", "True", "1")
 # What other simulators, and people, call an argument.
 OTHER_NAMES = {

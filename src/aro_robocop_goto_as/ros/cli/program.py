@@ -13,6 +13,7 @@ from typing import List, NoReturn
 from xml.etree import ElementTree
 
 from ...bootstrap import doctor
+from ...process import signals
 from ..names import PACKAGE
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -62,13 +63,8 @@ def set_up(*parts: str) -> bool:
     if missing:
         say(f"ROS is at {ros}, but these Python modules are missing: {missing} (in ros-noetic-* or python3-* packages)")
         return False
-    interrupted: List[int] = []  # Ctrl-C also ends the set-up, which is waited for
-    handler = signal.signal(signal.SIGINT, lambda number, _: interrupted.append(number))
-    status = subprocess.call([SCRIPT, "_set_up", *parts])
-    signal.signal(signal.SIGINT, handler)
-    if interrupted:
-        os.kill(os.getpid(), signal.SIGINT)
-    return status == 0
+    with signals.Deferred():  # Ctrl-C also ends the set-up, which is waited for
+        return subprocess.call([SCRIPT, "_set_up", *parts]) == 0
 
 
 def need(*parts: str) -> None:

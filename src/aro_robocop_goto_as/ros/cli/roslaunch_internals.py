@@ -1,79 +1,110 @@
 """Everything that uses private parts of roslaunch, each with the reason."""
 
 import subprocess
+import threading
 from types import SimpleNamespace
-from typing import Any, Callable
+from typing import Any, Callable, Optional
 
+import rosgraph
+from rosgraph.xmlrpc import XmlRpcNode
 from roslaunch import nodeprocess, pmon
+from roslaunch.parent import ROSLaunchParent
+from roslaunch.pmon import ProcessListener
+from rosmaster.master_api import NUM_WORKERS, ROSMasterHandler
 
-from ...errors import ParameterError
-from ...process.parent_death import end_with_parent
+from ...bootstrap import master
+from ...errors import MasterError, ParameterError
+from ...process.orphans import end_with_parent
+from ..names import PACKAGE
+
+PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
+POLL = 0.001  # [s, wall]
 
 
-def load_launch_files(parent: Any) -> None:
-    """Load the files of a ROSLaunchParent that is not started yet; its start() loads them only if nobody has.
+class Launcher(ROSLaunchParent, ProcessListener):
+    """roslaunch's parent of all nodes, with a ROS master in its own process where none answers.
 
-    ParameterError for so many robots that the files, one within another for each robot, are nested too deeply.
+    roslaunch would start one as a process of its own, which takes as long to start as a node, and outlives a launcher
+    that is killed. It has imported rosmaster in any case, and uses a master that answers.
     """
-    try:
-        parent._load_config()
-    except RecursionError as error:
-        raise ParameterError("robots: too many for a launch file, or launch files that include themselves") from error
+
+    failed = False  # whether a required node of PACKAGES did; RViz crashing when it closes is no failure
+    _master: Optional[XmlRpcNode] = None
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        """Arguments as those of ROSLaunchParent."""
+        super().__init__(*args, **options)
+        pmon._init_signal_handlers()  # roslaunch does it when it starts the first process
+        nodeprocess.subprocess = SimpleNamespace(Popen=_popen)  # roslaunch has no hook between fork and exec
+
+    def load(self) -> None:
+        """Load the launch files; start() loads them only if nobody has.
+
+        ParameterError for so many robots that the files, one within another for each robot, are nested too deeply.
+        """
+        try:
+            self._load_config()
+        except RecursionError as error:
+            raise ParameterError(
+                "robots: too many for a launch file, or launch files that include themselves"
+            ) from error
+
+    def _start_pm(self) -> None:
+        """Listen from the first process on: roslaunch adds listeners when all run, and one may have ended by then."""
+        super()._start_pm()
+        self.pm.add_process_listener(self)
+
+    def _init_runner(self) -> None:
+        super()._init_runner()
+        find_master = self.runner._launch_master
+
+        def start_or_find_master() -> bool:
+            is_own = self._start_master(self.config.master.uri)
+            return find_master() or is_own  # if so, roslaunch starts rosout, which gathers all logs in /rosout_agg
+
+        self.runner._launch_master = start_or_find_master
+
+    def _start_master(self, uri: str) -> bool:
+        """Whether this process has a master at this address now: not if one answers there or it is another machine's.
+
+        Then, or if another process has the port, roslaunch uses that master, or says why it can't.
+        """
+        host, port = rosgraph.network.parse_http_host_and_port(uri)
+        try:
+            if not rosgraph.network.is_local_address(host) or master.master_answers(uri):
+                return False
+        except MasterError:  # something else answers there
+            return False
+        failed = threading.Event()
+        self._master = XmlRpcNode(port, ROSMasterHandler(NUM_WORKERS), on_run_error=lambda _: failed.set())
+        self._master.start()
+        while self._master.uri is None and not failed.wait(POLL):
+            pass
+        return not failed.is_set()
+
+    def _stop_infrastructure(self) -> None:
+        super()._stop_infrastructure()
+        if self._master:
+            self._master.shutdown("the launcher ends")
+
+    def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
+        """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
+        process = self.pm.get_process(process_name)
+        if process is None or process.name.rpartition("/")[2].startswith("rviz"):
+            return
+        if exit_code != 0 and process.required and process.package in PACKAGES:
+            self.failed = True
 
 
-def add_early_listener(parent: Any, listener: Any) -> None:
-    """Add a process listener to a ROSLaunchParent that is not started yet, so that it misses no process.
+def _popen(command: Any, preexec_fn: Callable[[], None], **options: Any) -> "subprocess.Popen[Any]":
+    """Start a node that Linux ends when this process ends without doing so, as by SIGKILL.
 
-    ROSLaunchParent itself adds listeners when all nodes are up; one may have ended by then.
-    """
-    start_process_monitor = parent._start_pm
-
-    def start_process_monitor_with_listener() -> None:
-        start_process_monitor()
-        parent.pm.add_process_listener(listener)
-
-    parent._start_pm = start_process_monitor_with_listener
-
-
-def start_core_nodes(parent: Any) -> None:
-    """Have a ROSLaunchParent that is not started yet start rosout, which gathers the logs of all nodes in /rosout_agg.
-
-    roslaunch does so only with a master that it started itself.
-    """
-    init_runner = parent._init_runner
-
-    def init_runner_as_with_own_master() -> None:
-        init_runner()
-        find_master = parent.runner._launch_master
-
-        def find_own_master() -> bool:
-            find_master()
-            return True
-
-        parent.runner._launch_master = find_own_master
-
-    parent._init_runner = init_runner_as_with_own_master
-
-
-def install_roslaunch_signal_handlers() -> None:
-    """Install roslaunch's signal handlers now; roslaunch does it when it starts the first process."""
-    pmon._init_signal_handlers()
-
-
-def end_processes_with_roslaunch() -> None:
-    """Have Linux end all nodes when this process ends without doing so, as by SIGKILL.
-
-    roslaunch starts them in the main thread, and again, with respawn, in one that lives as long as they do. It has no
-    hook between fork and exec.
+    roslaunch starts nodes in the main thread, and again, with respawn, in one that lives as long as they do.
     """
     terminate = end_with_parent()
-    start: Any = subprocess.Popen
 
-    def popen(*args: Any, preexec_fn: Callable[[], None], **options: Any) -> Any:
-        def between_fork_and_exec() -> None:
-            preexec_fn()
-            terminate()
+    def between_fork_and_exec() -> None:
+        preexec_fn()
+        terminate()
 
-        return start(*args, preexec_fn=between_fork_and_exec, **options)
-
-    nodeprocess.subprocess = SimpleNamespace(Popen=popen)
+    return subprocess.Popen(command, preexec_fn=between_fork_and_exec, **options)

@@ -6,8 +6,7 @@ OpenGL add warnings of their own.
 
 import argparse
 import os
-import time
-from dataclasses import replace
+from pathlib import Path
 from typing import List, Optional, Tuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...geometry import rotation_matrix
 from ...process import x_display
 from .. import log_handlers
-from ..names import RVIZ_LOG
+from ..names import RVIZ_LOG, prefixed
 from .rviz_config import SHARE, Observed, adapted
 
 STDERR = 2  # file descriptor
@@ -29,7 +28,6 @@ WORLD_TOPIC = "/robocop_sim/world"
 ODOM_TF = "/robocop_sim/odom_tf"  # parameter of the simulator
 MESSAGE_TIMEOUT = 5.0  # [s, wall] for a latched message of a topic that is published
 START_TIMEOUT = 1.0  # [s, wall] for map -> odom, which localization:=none does not publish
-POLL = 0.05  # [s, wall]
 UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
 
@@ -41,8 +39,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
     parser.add_argument("--trail", action="store_true", help="of odometry: no server is there that publishes one")
     options, rest = parser.parse_known_args(arguments)
-    seen = replace(observe(options.frame, options.wait), server=not options.trail)
-    config = options.config or _written(adapted(seen))
+    config = options.config or _written(adapted(observe(options.frame, options.wait, not options.trail)))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
     again = str(SHARE / "launch" / "restart_after_crash")
     log = os.environ.get(RVIZ_LOG)
@@ -52,11 +49,11 @@ def main(arguments: Optional[List[str]] = None) -> None:
     os.execv(again, [again, program, "-d", config, "-f", options.frame, *rest])
 
 
-def observe(frame: str, wait: float) -> Observed:
+def observe(frame: str, wait: float, server: bool) -> Observed:
     """What the system on ROS_MASTER_URI has, waiting up to `wait` [s] for the simulator to publish its world."""
     screen = x_display.screen_size() or Observed.screen
     if not rosgraph.is_master_online():
-        return Observed(frame, screen=screen)
+        return Observed(frame, server=server, screen=screen)
     # Not under the name that RViz will have; on the wall clock, as simulated time may not run yet.
     log_handlers.use()
     rospy.init_node("robocop_rviz_config", argv=[], anonymous=True, disable_rostime=True, disable_signals=True)
@@ -68,6 +65,7 @@ def observe(frame: str, wait: float) -> Observed:
         robot,
         dict(rospy.get_published_topics()),
         description=rospy.search_param("robot_description") is not None,
+        server=server,
         odom_tf=markers is None or bool(rospy.get_param(ODOM_TF, True)),
         obstacles=None if markers is None else np.vstack([np.zeros((0, 3)), *corners])[:, :2],
         start=(0.0, 0.0) if markers is None else _start(robot),
@@ -79,13 +77,10 @@ def observe(frame: str, wait: float) -> Observed:
 
 def _world(wait: float) -> Optional[MarkerArray]:
     """The markers of the simulator's world; None if they are not published within `wait` [s]."""
-    end = time.monotonic() + wait
-    while WORLD_TOPIC not in dict(rospy.get_published_topics()):
-        if time.monotonic() >= end:
-            return None
-        time.sleep(POLL)
+    if not wait and WORLD_TOPIC not in dict(rospy.get_published_topics()):
+        return None
     try:
-        return rospy.wait_for_message(WORLD_TOPIC, MarkerArray, MESSAGE_TIMEOUT)
+        return rospy.wait_for_message(WORLD_TOPIC, MarkerArray, max(wait, MESSAGE_TIMEOUT))
     except rospy.ROSException:
         return None
 
@@ -108,7 +103,7 @@ def _start(robot: str) -> Tuple[float, float]:
     transforms = tf2_ros.Buffer()
     listener = tf2_ros.TransformListener(transforms)
     try:
-        odom = f"{robot}/odom".lstrip("/")
+        odom = prefixed(robot, "odom")
         found = transforms.lookup_transform("map", odom, rospy.Time(), rospy.Duration.from_sec(START_TIMEOUT))
     except tf2_ros.TransformException:
         return 0.0, 0.0
@@ -119,14 +114,9 @@ def _start(robot: str) -> Tuple[float, float]:
 
 def _written(text: str) -> str:
     """Write the configuration to the folder of this run's logs; its path, one for each namespace."""
-    try:
-        run_id = str(rosgraph.Master("/robocop_rviz").getParam("/run_id"))
-    except (rosgraph.MasterException, OSError):
-        run_id = ""
-    robot = rosgraph.names.get_ros_namespace().strip("/").replace("/", "_")
-    folder = os.path.join(rospkg.get_log_dir(), run_id)
-    os.makedirs(folder, exist_ok=True)
-    path = os.path.join(folder, f"robocop_{robot}.rviz" if robot else "robocop.rviz")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
-    return path
+    run_id = rospy.get_param("/run_id", "") if rosgraph.is_master_online() else ""
+    folder = Path(rospkg.get_log_dir(), run_id)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"robocop{rosgraph.names.get_ros_namespace().rstrip('/').replace('/', '_')}.rviz"
+    path.write_text(text, encoding="utf-8")
+    return str(path)

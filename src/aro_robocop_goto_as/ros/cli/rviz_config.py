@@ -8,6 +8,8 @@ from typing import Any, Dict, Optional, Tuple
 import numpy as np
 import yaml
 
+from ..names import prefixed
+
 SHARE = Path(__file__).resolve().parents[4]
 IN_WORLD = ("world", "map", "odom")  # frames that do not move with the robot
 PITCH = 1.05  # [rad] x points to the right, y up the screen, seen steeply from above
@@ -51,11 +53,10 @@ def adapted(seen: Observed) -> str:
     """The text of the configuration."""
     config = yaml.safe_load((SHARE / "rviz" / "robocop.rviz").read_text(encoding="utf-8"))
     manager = config["Visualization Manager"]
-    manager["Global Options"]["Fixed Frame"] = seen.frame
     displays = {entry["Name"]: entry for entry in manager["Displays"]}
     in_world = seen.frame.rpartition("/")[2] in IN_WORLD
     image = image_topic(seen.topics, f"/{seen.robot}/".replace("//", "/"))
-    odom = f"{seen.robot}/odom".lstrip("/")
+    odom = prefixed(seen.robot, "odom")
 
     # A robot that has a name is one of the world's markers.
     shown = {"Map": "/map" in seen.topics, "Robot": seen.description and not seen.robot, "Trail": not seen.server}

@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import os
+import re
 import select
 import sys
 import termios
@@ -21,11 +22,13 @@ from .. import log_handlers
 from ..names import absolute
 from ..publishing import publisher
 from ..ticker import wait_until
-from .held_key import HeldKey
 
 LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models
 PERIOD = 0.1  # [s, wall] between two commands, well below the simulator's command timeout
 CONNECT_PATIENCE = 5.0  # [s, wall]
+# Terminals report presses and their repetition, but no releases.
+FIRST_REPEAT = 0.8  # [s] a held key repeats first after 0.25 s (console) to 0.66 s (X server, `xset q`)
+NEXT_REPEAT = 0.3  # [s] and then 10 to 30 times a second, less evenly over a slow connection
 MOST_READ = 4096  # [byte] so that a read never ends within a key's escape sequence
 # Factors of the linear and angular speed.
 KEYS = {
@@ -53,12 +56,7 @@ def command(key: str, linear: float, angular: float) -> Twist2D:
 
 def keys_of(text: str) -> List[str]:
     """The keys in what a terminal has sent: single characters and escape sequences of three, such as an arrow's."""
-    keys = []
-    while text:
-        length = 3 if text[:2] in ("\x1b[", "\x1bO") else 1
-        keys.append(text[:length])
-        text = text[length:]
-    return keys
+    return re.findall(r"\x1b[\[O].|.", text, re.DOTALL)
 
 
 @contextlib.contextmanager
@@ -71,6 +69,23 @@ def _raw_keys(terminal: int) -> Iterator[None]:
     finally:
         with contextlib.suppress(termios.error):  # the terminal is gone
             termios.tcsetattr(terminal, termios.TCSANOW, before)
+
+
+class HeldKey:
+    """The last key that was pressed, for as long as its repetition shows that it is held."""
+
+    def __init__(self) -> None:
+        self._key = ""
+        self._until = 0.0  # [s]
+
+    def press(self, key: str, now: float) -> None:
+        """A key was pressed or has repeated, at a time [s]."""
+        repeats = key == self.at(now)
+        self._key, self._until = key, now + (NEXT_REPEAT if repeats else FIRST_REPEAT)
+
+    def at(self, now: float) -> str:
+        """The key that is held at a time [s]; empty if none is."""
+        return self._key if now < self._until else ""
 
 
 class KeyboardTeleop:
@@ -90,10 +105,9 @@ class KeyboardTeleop:
         while not rospy.is_shutdown():
             ready, _, _ = select.select([terminal], [], [], PERIOD)
             if ready:
-                try:
+                read = b""
+                with contextlib.suppress(OSError):  # the terminal is gone
                     read = os.read(terminal, MOST_READ)
-                except OSError:  # the terminal is gone
-                    return
                 if not read:
                     return
                 for key in keys_of(read.decode(errors="replace")):
@@ -102,7 +116,6 @@ class KeyboardTeleop:
 
     def stop(self) -> None:
         """Publish a zero velocity if the robot was commanded to move."""
-        self._keys.release()
         self._send(STANDSTILL)
 
     def _send(self, twist: Twist2D) -> None:
@@ -137,14 +150,6 @@ def _speed(text: str) -> float:
     return value
 
 
-def _require_terminal_and_master(terminal: int) -> None:
-    """Raise TeleopError unless there are a terminal and a ROS master."""
-    if not os.isatty(terminal):
-        raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
-    if not master.master_answers(master.master_uri()):
-        raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
-
-
 def main() -> None:
     """Entry point; exit status 0 when it was ended by a key or signal, 1 when it could not start."""
     args = _parse(rospy.myargv()[1:])
@@ -152,7 +157,10 @@ def main() -> None:
     terminal = sys.stdin.fileno()
     teleop = None
     try:
-        _require_terminal_and_master(terminal)
+        if not os.isatty(terminal):
+            raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
+        if not master.master_answers(master.master_uri()):
+            raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
         # Wall time: a paused simulator must not keep keys from being read.
         log_handlers.use()
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)

@@ -14,9 +14,6 @@ from aro_robocop_goto_as.ros.cli.commands import COMMANDS, web_arguments
 LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
 
 
-LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
-
-
 def test_help_lists_every_command():
     """With the two that the shell script does itself."""
     described = set(re.findall(r"(?m)^  ([a-z][a-z-]*)", robocop("help").stdout))

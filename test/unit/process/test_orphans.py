@@ -9,12 +9,12 @@ DEADLINE = 30.0  # [s, wall]
 # Every descendant holds the pipe open, so it reads as ended once none is left.
 ENDED = """
 import os, subprocess
-from aro_robocop_goto_as.process import subreaper
-subreaper.adopt_orphans()
+from aro_robocop_goto_as.process import orphans
+orphans.adopt_orphans()
 ended, alive = os.pipe()
 subprocess.Popen(["sh", "-c", {family!r}], pass_fds=[alive], env={{"PATH": os.environ["PATH"], "SLEEP": "sleep 600"}})
 os.close(alive)
-subreaper.kill_descendants()
+orphans.kill_descendants()
 assert os.read(ended, 1) == b""
 """
 
@@ -35,5 +35,5 @@ def test_no_descendant_survives(family):
 
 
 def test_process_without_children_does_not_wait():
-    code = "from aro_robocop_goto_as.process import subreaper; subreaper.adopt_orphans(); subreaper.kill_descendants()"
+    code = "from aro_robocop_goto_as.process import orphans; orphans.adopt_orphans(); orphans.kill_descendants()"
     assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0

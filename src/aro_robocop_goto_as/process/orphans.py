@@ -1,0 +1,54 @@
+"""No process is left behind: the end of a child when its parent ends, and of every descendant of this process."""
+
+import contextlib
+import ctypes
+import os
+import signal
+import time
+from typing import Callable
+
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # options of Linux' prctl(2)
+LIBC = ctypes.CDLL(None, use_errno=True)  # loaded here: between fork and exec little is allowed
+POLL = 0.02  # [s, wall]
+
+
+def end_with_parent() -> Callable[[], None]:
+    """A preexec_fn for subprocess.Popen: Linux sends the child SIGTERM when this process ends, however that ends.
+
+    Linux sends it already when the thread ends that starts the child, so that must live as long as this process. What
+    the child starts itself is not affected; that is the child's business.
+    """
+    parent = os.getpid()
+
+    def between_fork_and_exec() -> None:
+        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+        if os.getppid() != parent:  # it has ended already
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    return between_fork_and_exec
+
+
+def adopt_orphans() -> None:
+    """From now on, a descendant that loses its parent becomes a child of this process instead of init's.
+
+    A search by process group, session or environment would miss some: the environment is empty during an exec.
+    Raises OSError when the kernel refuses.
+    """
+    if LIBC.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "the kernel does not let this process adopt orphans")
+
+
+def kill_descendants() -> None:
+    """Kill all children, then those they leave behind; returns when there are none. Requires adopt_orphans()."""
+    import psutil  # not needed by the launcher, which starts as fast as it can
+
+    while True:
+        for child in psutil.Process().children():
+            with contextlib.suppress(psutil.NoSuchProcess):
+                child.send_signal(signal.SIGKILL)
+        try:
+            while os.waitpid(-1, os.WNOHANG) != (0, 0):
+                pass
+        except ChildProcessError:
+            return
+        time.sleep(POLL)
