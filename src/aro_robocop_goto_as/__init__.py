@@ -32,9 +32,8 @@ From a world file to a scan:
 
     world.load                    by world.sdf or world.grid_map -> world.model.World
     raycast.cross_section         the world at a scanner's height: segments and circles
-    raycast.scene                 the cross-sections and all robots, laid out for caster.c
     raycast.scanners              + robot poses -> exact distances along all beams
-        raycast.beams             calls caster.c, which caster_library loads
+        raycast.beams             lays these out as a Scene for caster.c, which caster_library loads, and calls it
     sensors.lidar                 noise, range limits -> ranges
 
 From the system to a browser and back, by viser:

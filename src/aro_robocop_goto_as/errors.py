@@ -1,10 +1,15 @@
 """Errors shown to users. Subclasses differ by what the caller can do; programming errors: ValueError or TypeError."""
 
+import re
+
 
 class RobocopError(Exception):
-    """Base of all errors that a user can meet; `code` stays the same from release to release."""
+    """Base of all errors that a user can meet."""
 
-    code = "ROBOCOP"
+    @property
+    def code(self) -> str:
+        """The class's name as messages show it: ROBOT_MODEL for a RobotModelError."""
+        return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(self).__name__)[: -len("_Error")].upper()
 
 
 # -- The input is wrong: correct the file or parameter that the message names. --
@@ -13,19 +18,13 @@ class RobocopError(Exception):
 class ParameterError(RobocopError):
     """A parameter is unknown, of the wrong type, or impossible."""
 
-    code = "PARAMETER"
-
 
 class WorldError(RobocopError):
     """A world, map or model file is missing, malformed, or contains something that is not supported."""
 
-    code = "WORLD"
-
 
 class RobotModelError(RobocopError):
     """A robot description lacks a link, joint or figure that the simulator needs."""
-
-    code = "ROBOT_MODEL"
 
 
 # -- A request is refused and nothing has changed: send another request. --
@@ -34,19 +33,13 @@ class RobotModelError(RobocopError):
 class FrameError(RobocopError):
     """A pose can't be transformed into the frame that is needed."""
 
-    code = "FRAME"
-
 
 class PlaceError(RobocopError):
     """A robot can't be placed at a pose, because something is there."""
 
-    code = "PLACE"
-
 
 class CommandError(RobocopError):
     """A velocity command contains NaN or infinity."""
-
-    code = "COMMAND"
 
 
 # -- The system is ending, or the machine lacks something: nothing to correct in the request. --
@@ -55,31 +48,21 @@ class CommandError(RobocopError):
 class ShutdownError(RobocopError):
     """The simulation ended before a request was carried out."""
 
-    code = "SHUTDOWN"
-
 
 class InstallationError(RobocopError):
     """A part of this package is missing or of another version; the message says what to run."""
-
-    code = "INSTALLATION"
 
 
 class MasterError(RobocopError):
     """The port of the ROS master is used by something that does not answer like a master."""
 
-    code = "MASTER"
-
 
 class TeleopError(RobocopError):
     """No robot can be driven from here; the message says what is missing."""
 
-    code = "TELEOP"
-
 
 class WebError(RobocopError):
     """The web page can't be served at its address."""
-
-    code = "WEB"
 
 
 # -- Measurements: name a case that exists, or look at the process that the message names. --
@@ -88,8 +71,6 @@ class WebError(RobocopError):
 class BenchError(RobocopError):
     """A measurement can't be made."""
 
-    code = "BENCH"
-
 
 # -- Other people's packages. --
 
@@ -97,13 +78,9 @@ class BenchError(RobocopError):
 class HostingError(RobocopError):
     """A package can't be found, built or started."""
 
-    code = "HOSTING"
-
 
 class GradingError(RobocopError):
     """A submission can't be graded; the subclasses say who can correct that."""
-
-    code = "GRADING"
 
 
 class PlanError(GradingError):

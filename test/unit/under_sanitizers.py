@@ -16,9 +16,8 @@ from support import model_named
 from aro_robocop_goto_as import compiled
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
-from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.grid_index import Tiles
-from aro_robocop_goto_as.raycast.scene import ScanPlane, Scene
 from aro_robocop_goto_as.robot.base_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch

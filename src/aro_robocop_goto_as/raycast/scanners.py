@@ -1,39 +1,31 @@
 """Exact distances seen by the scanners of all robots, which also see each other."""
 
 import math
-from typing import List, Sequence, Tuple
+from typing import Sequence
 
 import numpy as np
 
+from ..geometry import Pose3D
 from ..robot.model import RobotModel
 from ..world.model import Box, Cylinder, Obstacle, World
-from .beams import Fan
-from .cross_section import CrossSection
-from .scene import ScanPlane, Scene
+from .beams import Fan, ScanPlane, Scene
+from .cross_section import NO_CIRCLES, CrossSection, outline
 
 
 def circles_at(model: RobotModel, height: float) -> np.ndarray:
     """What a scanner at a height [m] sees of a robot: circles (k, [x, y, radius]) [m] in base_footprint.
 
-    Cylinders are exact. Boxes are approximated by a circle of equal area, independent of yaw.
+    Cylinders are exact, and upright. Boxes are approximated by a circle of equal area, independent of yaw. Spheres are
+    wheels and casters, inside the outline of the base, and left out.
     """
-    circles: List[Tuple[float, float, float]] = []
+    circles = [NO_CIRCLES]
     for obstacle in model.collisions:
-        x, y, z = obstacle.pose.position
-        radius = _radius_at(obstacle, height - z)
-        if radius > 0.0:
-            circles.append((x, y, radius))
-    return np.array(circles).reshape(-1, 3)
-
-
-def _radius_at(obstacle: Obstacle, above: float) -> float:
-    """Radius [m] of an upright shape's circle at a height [m] above its centre; 0 above or below the shape."""
-    shape = obstacle.geometry
-    if isinstance(shape, Box):
-        return math.sqrt(shape.size[0] * shape.size[1] / math.pi) if abs(above) < shape.size[2] / 2.0 else 0.0
-    if isinstance(shape, Cylinder):
-        return shape.radius if abs(above) < shape.length / 2.0 else 0.0
-    return 0.0  # spheres are wheels and casters, inside the outline of the base
+        shape = obstacle.geometry
+        if isinstance(shape, Box):
+            shape = Cylinder(math.sqrt(shape.size[0] * shape.size[1] / math.pi), shape.size[2])
+        if isinstance(shape, Cylinder):
+            circles.append(outline(Obstacle(obstacle.name, Pose3D(obstacle.pose.position), shape), height)[1])
+    return np.concatenate(circles)
 
 
 class Scanners:

@@ -1,8 +1,9 @@
 """The distance from a point on the floor to the nearest obstacle within a robot's height."""
 
+import itertools
 import math
 from dataclasses import replace
-from typing import List, NamedTuple, Tuple
+from typing import NamedTuple, Tuple
 
 import numpy as np
 
@@ -35,25 +36,16 @@ class Surroundings:
     """
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float = 0.0) -> None:
-        self._names: List[str] = []  # of the outlines: one for each obstacle and height
-        solid: List[bool] = []
-        segments, circles, owners, circle_owners = [NO_SEGMENTS], [NO_CIRCLES], [], []
-        for obstacle in world.obstacles:
-            placed = replace(obstacle, pose=obstacle.at(time))
-            for height in heights:
-                of_one, circles_of_one = outline(placed, height)
-                segments.append(of_one)
-                circles.append(circles_of_one)
-                owners.append(np.full(len(of_one), len(self._names)))
-                circle_owners.append(np.full(len(circles_of_one), len(self._names)))
-                self._names.append(obstacle.name)
-                solid.append(not isinstance(obstacle.geometry, (Mesh, Plane)))
-        self._is_solid = np.array(solid, dtype=bool)
-        self._start, end = np.moveaxis(np.concatenate(segments), 1, 0)
+        placed = [replace(obstacle, pose=obstacle.at(time)) for obstacle in world.obstacles for _ in heights]
+        self._names = [obstacle.name for obstacle in placed]  # of the outlines: one for each obstacle and height
+        self._is_solid = np.array([not isinstance(obstacle.geometry, (Mesh, Plane)) for obstacle in placed], dtype=bool)
+        outlines = [outline(obstacle, height) for obstacle, height in zip(placed, itertools.cycle(heights))]
+        self._start, end = np.moveaxis(np.concatenate([NO_SEGMENTS, *(segments for segments, _ in outlines)]), 1, 0)
         self._along = end - self._start
         self._squares = np.maximum((self._along**2).sum(axis=1), 1e-18)
-        self._circles = np.concatenate(circles)
-        self._owners = np.concatenate([np.zeros(0, int), *owners, *circle_owners]).astype(int)
+        self._circles = np.concatenate([NO_CIRCLES, *(circles for _, circles in outlines)])
+        sizes = [len(part[kind]) for kind in (0, 1) for part in outlines]  # of the segments, then of the circles
+        self._owners = np.repeat(2 * list(range(len(outlines))), np.array(sizes, dtype=int))
 
     def nearest(self, x: float, y: float) -> Nearest:
         """The obstacle nearest to a point [m] in the world."""

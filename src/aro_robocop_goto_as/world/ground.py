@@ -67,7 +67,19 @@ def levelled(world: World) -> World:
     below = [slab for slab in slabs if slab.covers(world.spawn.x, world.spawn.y)]
     found = below or sorted(slabs, key=lambda slab: slab.length * slab.width)[-1:]
     ground = max([0.0, *(slab.top + world.ground for slab in found)])
-    return world if abs(ground - world.ground) <= LEVEL else _with_ground(world, ground)
+    if abs(ground - world.ground) <= LEVEL:
+        return world
+
+    def raised(pose: Pose3D) -> Pose3D:
+        x, y, z = pose.position
+        return Pose3D((x, y, z + world.ground - ground), pose.orientation)
+
+    return replace(
+        world,
+        obstacles=tuple(replace(obstacle, pose=raised(obstacle.pose)) for obstacle in world.obstacles),
+        models={name: raised(pose) for name, pose in world.models.items()},
+        ground=ground,
+    )
 
 
 def _slab(obstacle: Obstacle) -> Optional[_Slab]:
@@ -99,18 +111,3 @@ def _slab_of_mesh(pose: Pose3D, mesh: Mesh, height: float) -> Optional[_Slab]:
         return None
     x, y = ((low + high) / 2.0).tolist()
     return _Slab(height, compose(axes, Pose2D(x, y)), length, width)
-
-
-def _with_ground(world: World, ground: float) -> World:
-    """The same world with z = 0 at another height [m] of its file."""
-
-    def raised(pose: Pose3D) -> Pose3D:
-        x, y, z = pose.position
-        return Pose3D((x, y, z + world.ground - ground), pose.orientation)
-
-    return replace(
-        world,
-        obstacles=tuple(replace(obstacle, pose=raised(obstacle.pose)) for obstacle in world.obstacles),
-        models={name: raised(pose) for name, pose in world.models.items()},
-        ground=ground,
-    )

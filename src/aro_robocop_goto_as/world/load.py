@@ -6,7 +6,7 @@ import re
 from ..errors import WorldError
 from ..reading import reading
 from ..suggestions import did_you_mean
-from .grid_map.walls import read_map
+from .grid_map.reader import read_map
 from .ground import levelled
 from .model import World
 from .sdf.reader import read_world

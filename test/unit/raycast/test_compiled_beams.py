@@ -9,10 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from reference_beams import bounds, circles, cut_of, cuts, fans, lattice, poses, segments
 
-from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.grid_index import Tiles
-from aro_robocop_goto_as.raycast.scene import ScanPlane, Scene
 
 Pose = Tuple[float, float, float]
 LAB = Fan(0.0, 6.28319 / 359, 360)

@@ -2,7 +2,7 @@
 
 import os
 from dataclasses import dataclass
-from typing import Any, Dict, Sequence, Tuple
+from typing import Any, Dict, Tuple
 
 import yaml
 
@@ -65,33 +65,31 @@ class _Entries:
             raise self.error(key, expected)
         return str(node.value)
 
-    def number(self, key: str, low: float, high: float, expected: str) -> float:
-        """A key's number; WorldError if it is not one or out of bounds."""
-        (value,) = self._numbers(key, [self.nodes[key]], 1, expected)
-        if not low <= value <= high:
-            raise self.error(key, expected)
-        return value
-
-    def pose(self, key: str, expected: str) -> Pose2D:
-        """A key's pose, a list of three numbers [m, m, rad]; WorldError if it is anything else."""
+    def numbers(self, key: str, count: int, expected: str) -> Tuple[float, ...]:
+        """A key's number, or the numbers of its list; WorldError if they are not finite, or not `count`."""
         node = self.nodes[key]
-        x, y, yaw = self._numbers(key, node.value if isinstance(node, yaml.SequenceNode) else [], 3, expected)
-        if max(abs(x), abs(y)) > FARTHEST:
-            raise self.error(key, f"{expected}, within +-{FARTHEST:g} m")
-        return Pose2D(x, y, wrap_angle(yaw))
-
-    def _numbers(self, key: str, nodes: Sequence[Any], count: int, expected: str) -> Tuple[float, ...]:
+        nodes = [node] if count == 1 else node.value if isinstance(node, yaml.SequenceNode) else []
         try:
             return finite_numbers(" ".join(str(node.value) for node in nodes), count)
         except ValueError as exc:
             raise self.error(key, expected) from exc
+
+    def number(self, key: str, low: float, high: float, expected: str) -> float:
+        """A key's number; WorldError if it is not one or out of bounds."""
+        (value,) = self.numbers(key, 1, expected)
+        if not low <= value <= high:
+            raise self.error(key, expected)
+        return value
 
 
 def read_spec(path: str) -> MapSpec:
     """Read a map's YAML file; WorldError names file, line, key, the value found and what was expected."""
     entries = _Entries(path)
     resolution = entries.number("resolution", 1e-6, 1e3, "metres per cell, greater than 0")
-    origin = entries.pose("origin", "three numbers [x, y, yaw] of the lower left corner [m, m, rad]")
+    expected = "three numbers [x, y, yaw] of the lower left corner [m, m, rad]"
+    x, y, yaw = entries.numbers("origin", 3, expected)
+    if max(abs(x), abs(y)) > FARTHEST:
+        raise entries.error("origin", f"{expected}, within +-{FARTHEST:g} m")
     negate = entries.text("negate", "0 or 1").lower()
     if negate not in _BOOLEANS:
         raise entries.error("negate", "0 or 1")
@@ -104,4 +102,4 @@ def read_spec(path: str) -> MapSpec:
     if not os.path.isfile(image):
         raise entries.error("image", f"a {SUPPORTED} file, but there is no file {image}")
     unknown = tuple(key for key in entries.nodes if key not in (*_REQUIRED, "mode"))
-    return MapSpec(image, resolution, origin, _BOOLEANS[negate], occupied, free, mode, unknown)
+    return MapSpec(image, resolution, Pose2D(x, y, wrap_angle(yaw)), _BOOLEANS[negate], occupied, free, mode, unknown)

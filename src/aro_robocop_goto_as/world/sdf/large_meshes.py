@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from typing import Optional
 
 import numpy as np
@@ -36,22 +37,16 @@ def load_triangles(path: str) -> np.ndarray:
         if size < LARGE:
             return read_triangles(path)
         folder = os.path.join(rospkg.get_ros_home(), "robocop_meshes")
-        kept = os.path.join(folder, _hash(path) + ".npy")
+        digest = hashlib.sha256((FORMAT + os.path.splitext(path)[1].lower()).encode())
+        with open(path, "rb") as file:
+            digest.update(file.read())
+        kept = os.path.join(folder, digest.hexdigest() + ".npy")
         triangles = _kept_triangles(kept)
         if triangles is None:
             _log.warning("reading %s, %.1f MB, which may take minutes the first time", path, size / 1e6)
             triangles = _read_in_child(path)
             _keep(triangles, kept)
         return triangles
-
-
-def _hash(path: str) -> str:
-    """Of a file's content and format."""
-    digest = hashlib.sha256((FORMAT + os.path.splitext(path)[1].lower()).encode())
-    with open(path, "rb") as file:
-        for block in iter(lambda: file.read(1 << 20), b""):
-            digest.update(block)
-    return digest.hexdigest()
 
 
 def _kept_triangles(kept: str) -> Optional[np.ndarray]:
@@ -83,15 +78,17 @@ def _keep(triangles: np.ndarray, kept: str) -> None:
 def _read_in_child(path: str) -> np.ndarray:
     """Read a file in a process of its own, which writes the triangles, or its error, to an open file."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    command = [sys.executable, "-m", __name__, path, str(TIME_LIMIT)]
     with tempfile.TemporaryFile() as result:
-        child = subprocess.Popen(
-            [sys.executable, "-m", __name__, path, str(TIME_LIMIT)],
-            stdout=result,
-            stderr=subprocess.PIPE,
-            env=environment,
-        )
+        child = subprocess.Popen(command, stdout=result, stderr=subprocess.PIPE, env=environment)
+        errors: Optional[bytes] = None
+        started = time.monotonic()
         try:
-            error = _wait(child, path)
+            while errors is None:
+                try:
+                    _, errors = child.communicate(timeout=PERIOD)
+                except subprocess.TimeoutExpired:
+                    _log.warning("still reading %s after %.0f s", path, time.monotonic() - started)
         finally:
             child.kill()
             child.wait()
@@ -100,21 +97,10 @@ def _read_in_child(path: str) -> np.ndarray:
                 f"{path}: not read within {TIME_LIMIT} s of processor time; expected a simpler mesh, or .stl"
             )
         if child.returncode != 0:
+            error = errors.decode("utf-8", "replace").strip().rpartition("\n")[2]
             raise WorldError(error or f"{path}: reading it was ended by signal {-child.returncode}")
         result.seek(0)
         return np.asarray(np.load(result, allow_pickle=False))
-
-
-def _wait(child: "subprocess.Popen[bytes]", path: str) -> str:
-    """Wait for the child's end, and say at times that it is still at work; the last line of its errors."""
-    waited = 0.0
-    while True:
-        try:
-            errors = child.communicate(timeout=PERIOD)[1].decode("utf-8", "replace")
-            return errors.strip().rpartition("\n")[2]
-        except subprocess.TimeoutExpired:
-            waited += PERIOD
-            _log.warning("still reading %s after %.0f s", path, waited)
 
 
 def _main() -> None:

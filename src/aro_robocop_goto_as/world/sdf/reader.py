@@ -4,6 +4,8 @@ import os
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
+import numpy as np
+
 from ...errors import WorldError
 from ...geometry import Pose2D, Pose3D
 from ...reading import Element, file_of, parse_xml
@@ -12,7 +14,7 @@ from ..model import Obstacle, World
 from ..scripted_motion import Motion
 from . import frames, uris, xml
 from .motion_plugin import is_motion, motion_of, require_movable_shape
-from .shapes import Shapes
+from .shapes import read_shape
 from .state import SavedPoses, state_poses
 
 SPAWN_FRAME = "robot_spawn"
@@ -48,7 +50,7 @@ def read_world(path: str) -> World:
 
     WorldError names the file, line and element, what is wrong with it, and what is supported.
     """
-    root = xml.read_root(path, ("world", "model"))
+    root = xml.root_of(xml.parse(path), ("world", "model"))
     reader = _Reader(path)
     if root.tag == "model":
         reader.model(root, _Parent())
@@ -64,8 +66,7 @@ def read_world(path: str) -> World:
 def read_model(root: Element, name: str, pose: Pose3D) -> World:
     """A world that contains only the <model> of an <sdf>, at another pose and under a name; empty: its own name."""
     reader = _Reader(file_of(root))
-    model_name = reader.model(xml.root_of(root, ("model",)), _Parent(), _Override(name or None, pose))
-    return reader.world(model_name)
+    return reader.world(reader.model(xml.root_of(root, ("model",)), _Parent(), new_name=name, new_pose=pose))
 
 
 def _spawn(world: Element) -> Optional[Pose2D]:
@@ -90,23 +91,12 @@ class _Parent:
 
     pose: world_from_parent
     names: of the models and links, the outermost first
-    static: whether one of the models is static, or its motion has already been reported as ignored
     motion: the scripted motion of the innermost model that has one
     """
 
     pose: Pose3D = Pose3D()
     names: Tuple[str, ...] = ()
-    static: bool = False
     motion: Optional[Motion] = None
-
-
-@dataclass(frozen=True)
-class _Override:
-    """What an <include> or request overrides; None: keep the file's value."""
-
-    name: Optional[str] = None
-    pose: Optional[Pose3D] = None  # in the world
-    static: Optional[bool] = None
 
 
 class _Reader:
@@ -120,7 +110,7 @@ class _Reader:
         self.approximated: List[str] = []
         self.used: Set[Tuple[str, ...]] = set()  # names of models, each with those of the models around it
         self.state: SavedPoses = {}  # poses of models and links that have not been read yet
-        self.shapes = Shapes()
+        self.triangles: Dict[str, np.ndarray] = {}  # of the mesh files, by path
         self.open_files = [os.path.realpath(path)]  # the world's file and the chain of includes being read
 
     def world(self, name: str, spawn: Optional[Pose2D] = None) -> World:
@@ -175,18 +165,17 @@ class _Reader:
         uri = xml.text_of(xml.required_child(include, "uri"))
         name = xml.optional_child(include, "name")
         pose = xml.optional_child(include, "pose")
-        override = _Override(
-            None if name is None else xml.text_of(name),
-            None if pose is None else frames.placed(include, parent.pose),
-            xml.boolean(include, "static"),
-        )
+        new_name = "" if name is None else xml.text_of(name)
+        new_pose = None if pose is None else frames.placed(include, parent.pose)
+        static = xml.boolean(include, "static")
         model_name = uris.model_name(uri)
         if model_name in _BUILT_IN:
             content = _BUILT_IN[model_name]
             if content is None:
                 self.report(f"include '{model_name}'", include)
             else:
-                self.model(xml.root_of(parse_xml(content, uri, WorldError), ("model",)), parent, override, include)
+                model = xml.root_of(parse_xml(content, uri, WorldError), ("model",))
+                self.model(model, parent, include, new_name, new_pose, static)
             return
         with xml.about(include):
             path = uris.locate_model(uri, file_of(include))
@@ -194,7 +183,8 @@ class _Reader:
             raise xml.error(include, f"'{uri}' is {path} again, within itself; expected another model")
         self.open_files.append(os.path.realpath(path))
         try:
-            self.model(xml.read_root(path, ("model",)), parent, override, include)
+            model = xml.root_of(xml.parse(path), ("model",))
+            self.model(model, parent, include, new_name, new_pose, static)
         except WorldError as exc:
             raise WorldError(f"{exc}; included by {file_of(include)}:{include.sourceline}") from exc
         finally:
@@ -204,26 +194,31 @@ class _Reader:
         self,
         model: Element,
         parent: _Parent,
-        override: _Override = _Override(),
         include: Optional[Element] = None,
+        new_name: str = "",
+        new_pose: Optional[Pose3D] = None,
+        static: Optional[bool] = None,
     ) -> str:
-        """Read a model, maybe an included one, with its links and nested models; returns its name."""
+        """Read a model, maybe an included one, with its links and nested models; returns its name.
+
+        new_name, new_pose (in the world), static: in place of the model's own, unless empty or None
+        """
         self.check_children(model, "include", "link", "model", "pose", "static")
         if model.get("placement_frame"):
             raise xml.error(
                 model, "the attribute placement_frame is not supported; expected a model placed by its origin"
             )
-        name = self.unused_name(override.name or xml.name_of(model), parent, model if include is None else include)
+        name = self.unused_name(new_name or xml.name_of(model), parent, model if include is None else include)
         names = (*parent.names, name)
-        pose = frames.placed(model, parent.pose) if override.pose is None else override.pose
-        pose = self.saved_pose("/".join(names), pose)
+        pose = frames.placed(model, parent.pose) if new_pose is None else new_pose
+        pose, _ = self.state.pop("/".join(names), (pose, None))
         if not parent.names:
             self.models[name] = pose
         motion = motion_of(model, pose) or parent.motion
-        static = xml.boolean(model, "static") if override.static is None else override.static
-        if not (static or parent.static or motion):
+        static = xml.boolean(model, "static") if static is None else static
+        if not (static or parent.names or motion):
             self.report(f"motion of model '{name}', which is not static", model)
-        inherited = _Parent(pose, names, static=True, motion=motion)
+        inherited = _Parent(pose, names, motion)
         xml.require_unique_names(model.iterchildren("link"))
         for link in model.iterchildren("link"):
             self.link(link, inherited)
@@ -243,16 +238,12 @@ class _Reader:
             raise xml.error(element, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
         return unused
 
-    def saved_pose(self, name: str, pose: Pose3D) -> Pose3D:
-        """The pose of a model or link in the world's <state>, or the given one if the <state> has none."""
-        return self.state.pop(name, (pose, None))[0]
-
     def link(self, link: Element, parent: _Parent) -> None:
         """Read a link's collisions."""
         self.check_children(link, "collision", "pose")
         xml.require_unique_names(link.iterchildren("collision"))
         names = (*parent.names, xml.name_of(link))
-        pose = self.saved_pose("/".join(names), frames.placed(link, parent.pose))
+        pose, _ = self.state.pop("/".join(names), (frames.placed(link, parent.pose), None))
         for collision in link.iterchildren("collision"):
             self.collision(collision, replace(parent, pose=pose, names=names))
 
@@ -264,7 +255,7 @@ class _Reader:
         if shape.find("heightmap") is not None:
             self.report_difference(f"heightmap of '{name}' is left out", shape)
             return
-        geometry = self.shapes.read(shape)
+        geometry = read_shape(shape, self.triangles)
         if geometry is None:
             return
         pose = frames.placed(collision, parent.pose)

@@ -1,7 +1,7 @@
 """Read the <geometry> of a collision."""
 
 import math
-from typing import Callable, Dict, Optional
+from typing import Dict, Optional
 
 import numpy as np
 
@@ -11,55 +11,48 @@ from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml
 from .large_meshes import load_triangles
 
-
-class Shapes:
-    """A reader of geometries that reads each mesh file only once."""
-
-    def __init__(self) -> None:
-        self._triangles: Dict[str, np.ndarray] = {}
-        self._readers: Dict[str, Callable[[Element], Optional[Geometry]]] = {
-            "box": _box,
-            "cylinder": _cylinder,
-            "empty": lambda _: None,
-            "mesh": self._mesh,
-            "plane": _plane,
-            "sphere": _sphere,
-        }
-
-    def read(self, geometry: Element) -> Optional[Geometry]:
-        """The shape in a <geometry>; None for <empty>. WorldError for unsupported shapes, such as <heightmap>."""
-        xml.require_known_children(geometry, read=self._readers)
-        shapes = [child for child in geometry if child.tag in self._readers]
-        if len(shapes) != 1:
-            known = ", ".join(self._readers)
-            raise xml.error(geometry, f"<geometry> has {len(shapes)} shapes; supported: exactly one of {known}")
-        return self._readers[shapes[0].tag](shapes[0])
-
-    def _mesh(self, mesh: Element) -> Mesh:
-        xml.require_known_children(mesh, read=("scale", "uri"))
-        uri = xml.required_child(mesh, "uri")
-        with xml.about(uri):
-            path = uris.locate(xml.text_of(uri), file_of(uri))
-            if path not in self._triangles:
-                self._triangles[path] = load_triangles(path)
-        scale = xml.optional_child(mesh, "scale")
-        factors = (1.0, 1.0, 1.0) if scale is None else xml.numbers(scale, 3)
-        if 0.0 in factors:
-            raise xml.error(mesh, f"<scale> is '{' '.join(f'{f:g}' for f in factors)}', expected factors other than 0")
-        with np.errstate(over="ignore"):
-            corners = self._triangles[path] * factors
-        if np.abs(corners).max() > FARTHEST:
-            raise xml.error(mesh, f"{path} has corners beyond +-{FARTHEST:g} m")
-        return Mesh(corners, path)
+_SHAPES = ("box", "cylinder", "empty", "mesh", "plane", "sphere")
 
 
-def _box(box: Element) -> Box:
-    x, y, z = xml.numbers(xml.required_child(box, "size"), 3, positive=True)
-    return Box((x, y, z))
+def read_shape(geometry: Element, triangles: Dict[str, np.ndarray]) -> Optional[Geometry]:
+    """The shape in a <geometry>; None for <empty>. WorldError for unsupported shapes.
+
+    triangles: by path, those of the mesh files that the world has used so far; others are read and added
+    """
+    xml.require_known_children(geometry, read=_SHAPES)
+    shapes = [child for child in geometry if child.tag in _SHAPES]
+    if len(shapes) != 1:
+        known = ", ".join(_SHAPES)
+        raise xml.error(geometry, f"<geometry> has {len(shapes)} shapes; supported: exactly one of {known}")
+    (shape,) = shapes
+    if shape.tag == "box":
+        x, y, z = xml.numbers(xml.required_child(shape, "size"), 3, positive=True)
+        return Box((x, y, z))
+    if shape.tag == "cylinder":
+        return Cylinder(_length(shape, "radius"), _length(shape, "length"))
+    if shape.tag == "sphere":
+        return Sphere(_length(shape, "radius"))
+    if shape.tag == "plane":
+        return _plane(shape)
+    return _mesh(shape, triangles) if shape.tag == "mesh" else None
 
 
-def _cylinder(cylinder: Element) -> Cylinder:
-    return Cylinder(_length(cylinder, "radius"), _length(cylinder, "length"))
+def _mesh(mesh: Element, triangles: Dict[str, np.ndarray]) -> Mesh:
+    xml.require_known_children(mesh, read=("scale", "uri"))
+    uri = xml.required_child(mesh, "uri")
+    with xml.about(uri):
+        path = uris.locate(xml.text_of(uri), file_of(uri))
+        if path not in triangles:
+            triangles[path] = load_triangles(path)
+    scale = xml.optional_child(mesh, "scale")
+    factors = (1.0, 1.0, 1.0) if scale is None else xml.numbers(scale, 3)
+    if 0.0 in factors:
+        raise xml.error(mesh, f"<scale> is '{' '.join(f'{f:g}' for f in factors)}', expected factors other than 0")
+    with np.errstate(over="ignore"):
+        corners = triangles[path] * factors
+    if np.abs(corners).max() > FARTHEST:
+        raise xml.error(mesh, f"{path} has corners beyond +-{FARTHEST:g} m")
+    return Mesh(corners, path)
 
 
 def _plane(plane: Element) -> Plane:
@@ -70,10 +63,6 @@ def _plane(plane: Element) -> Plane:
     if not 0.0 < length < math.inf:
         raise xml.error(plane, f"<normal> is '{x} {y} {z}', expected a vector that is not zero")
     return Plane((x / length, y / length, z / length))
-
-
-def _sphere(sphere: Element) -> Sphere:
-    return Sphere(_length(sphere, "radius"))
 
 
 def _length(shape: Element, tag: str) -> float:

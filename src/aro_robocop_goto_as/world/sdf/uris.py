@@ -3,7 +3,7 @@
 import os
 import re
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Tuple
+from typing import Callable, Dict, Iterable, Iterator, List, Tuple
 from urllib.parse import unquote
 
 import rospkg
@@ -23,22 +23,26 @@ _DEFAULT = "model.sdf"
 
 def model_name(uri: str) -> str:
     """The name of the model that a model:// URI, or an address of Gazebo Fuel, refers to as a whole; else empty."""
-    scheme, _, path = _local(uri).partition("://")
+    scheme, (path, *_) = _split(uri)
     path = path[: -len(_DEFAULT) - 1] if path.endswith(f"/{_DEFAULT}") else path
     return path if scheme == "model" and "/" not in path else ""
 
 
-def _local(uri: str) -> str:
-    """A URI without slashes at its end and, for model:// and package://, after the scheme: Gazebo ignores them too.
+def _split(uri: str) -> Tuple[str, Tuple[str, ...]]:
+    """The scheme of a URI, "file" for a plain path, and the path; two paths for an address of Gazebo Fuel.
 
-    An address of Gazebo Fuel becomes that of the local model with the usual name: "Ground Plane" is ground_plane.
+    Slashes at the end and, for model:// and package://, after the scheme are left out: Gazebo ignores them too. A model
+    on Fuel is a local one, under the usual name or its own: "Ground Plane" is ground_plane.
     """
-    uri = uri.rstrip("/")
+    whole, uri = uri, uri.rstrip("/")
     on_fuel = _FUEL.fullmatch(unquote(uri))
     if on_fuel:
-        return f"model://{on_fuel['name'].lower().replace(' ', '_')}{on_fuel['rest'] or ''}"
+        name, rest = on_fuel["name"], on_fuel["rest"] or ""
+        return "model", (name.lower().replace(" ", "_") + rest, name + rest)
     scheme, separator, path = uri.partition("://")
-    return uri if scheme not in ("model", "package") else scheme + separator + path.lstrip("/")
+    if not separator:
+        return "file", (whole,)
+    return scheme, (path.lstrip("/") if scheme in ("model", "package") else path,)
 
 
 def locate(uri: str, file: str) -> str:
@@ -47,22 +51,18 @@ def locate(uri: str, file: str) -> str:
     Nothing is downloaded: a model on Gazebo Fuel is searched under its name, as by model://. WorldError lists the
     places searched, or the supported kinds of URI.
     """
-    scheme, separator, path = _local(uri).partition("://")
-    if not separator:
-        scheme, path = "file", uri
+    scheme, paths = _split(uri)
     if scheme.lower() in _REMOTE:
         raise WorldError(f"'{uri}' is a web address, and nothing is downloaded; expected model://NAME of a local model")
-    if scheme not in _CANDIDATES or not path:
+    if scheme not in _CANDIDATES or not paths[0]:
         raise WorldError(f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
-    on_fuel = _FUEL.fullmatch(unquote(uri.rstrip("/")))
-    names = [path, f"{on_fuel['name']}{on_fuel['rest'] or ''}"] if on_fuel else [path]
     looked_for: List[str] = []
-    for name in names:
-        for candidate, why in _CANDIDATES[scheme](name, os.path.abspath(file)):
+    for path in paths:
+        for candidate, why in _CANDIDATES[scheme](path, os.path.abspath(file)):
             if os.path.exists(candidate):
                 return os.path.normpath(candidate)
             looked_for.append(f"{os.path.normpath(candidate)} ({why})")
-    where = " is on Gazebo Fuel, and nothing is downloaded; it" if on_fuel else ""
+    where = " is on Gazebo Fuel, and nothing is downloaded; it" if len(paths) > 1 else ""
     raise WorldError(f"'{uri}'{where} was not found; looked for: {', '.join(dict.fromkeys(looked_for))}")
 
 
@@ -98,14 +98,14 @@ def _from_variable(variable: str, path: str) -> Iterator[Candidate]:
         yield os.path.join(directory, path), variable
 
 
-def _beside(file: str, *relative: str) -> Candidate:
-    return os.path.join(os.path.dirname(file), *relative), f"beside {os.path.basename(file)}"
+def _beside(file: str, folders: Iterable[str], path: str) -> Iterator[Candidate]:
+    for folder in folders:
+        yield os.path.join(os.path.dirname(file), folder, path), f"beside {os.path.basename(file)}"
 
 
 def _model_candidates(path: str, file: str) -> Iterator[Candidate]:
     yield from _from_variable("GAZEBO_MODEL_PATH", path)
-    for folder in (".", "..", "models", os.path.join("..", "models")):
-        yield _beside(file, folder, path)
+    yield from _beside(file, (".", "..", "models", "../models"), path)
     yield os.path.expanduser(os.path.join("~", ".gazebo", "models", path)), "Gazebo's default"
     yield from _package_candidates(path, file)
     yield from _exported_candidates("gazebo_model_path", path)
@@ -135,8 +135,7 @@ def _package_candidates(path: str, _file: str) -> Iterator[Candidate]:
 
 
 def _file_candidates(path: str, file: str) -> Iterator[Candidate]:
-    for folder in (".", "..", os.path.join("..", "..")):  # a world's is often beside models/, in a package's folder
-        yield _beside(file, folder, path)
+    yield from _beside(file, (".", "..", "../.."), path)  # a world's is often beside models/, in a package's folder
     yield from _from_variable("GAZEBO_RESOURCE_PATH", path)
     yield from _exported_candidates("gazebo_media_path", path)
 

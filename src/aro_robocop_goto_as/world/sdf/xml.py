@@ -32,16 +32,11 @@ def about(element: Element) -> Iterator[None]:
         raise error(element, str(exc)) from exc
 
 
-def read_root(path: str, expected: Sequence[str]) -> Element:
-    """The only element within <sdf>; `expected` lists the tags it may have, such as world and model.
-
-    WorldError if the file can't be read, is not XML, has a DOCTYPE, or is not SDF 1.4 to 1.8 with one such element.
-    """
-    return root_of(parse(path), expected)
-
-
 def root_of(root: Element, expected: Sequence[str]) -> Element:
-    """The only element within a parsed <sdf>; WorldError as read_root."""
+    """The only element within a parsed <sdf>; `expected` lists the tags it may have, such as world and model.
+
+    WorldError if it is not SDF 1.4 to 1.8 with one such element.
+    """
     if root.tag != "sdf":
         raise error(root, f"the outermost element is <{root.tag}>, expected <sdf>")
     if root.get("version") not in VERSIONS:

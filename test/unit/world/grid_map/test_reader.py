@@ -14,7 +14,7 @@ from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.world.grid_map.walls import outline
+from aro_robocop_goto_as.world.grid_map.reader import outline
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Walls
 
