@@ -43,7 +43,7 @@ class Controllers:
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
         self.timeout = params.lockstep_timeout
-        self.lockstep: Lockstep[ControllerId] = Lockstep()
+        self.lockstep = Lockstep()
         self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
         self._clock = clock
