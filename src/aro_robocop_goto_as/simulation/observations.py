@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry import Pose2D, compose, compose3, inverse
 from ..physics.engine import Engine
 from ..raycast.scanners import Scanners
-from ..robot.model import BodyState, RobotSpec
+from ..robot.model import BodyState
 from ..sensors import imu, magnetometer
 from ..sensors.camera import CameraImage, CameraSpec
 from ..sensors.lidar import Lidar
@@ -49,8 +49,8 @@ class Observations:
     scans: ranges (n, n_beams) [m] in base_scan; another array where the number of beams varies
     """
 
-    def __init__(self, p: SimParams, world: World, engine: Engine, robots: Sequence[RobotSpec]) -> None:
-        n, models = len(robots), [robot.model for robot in robots]
+    def __init__(self, p: SimParams, world: World, engine: Engine) -> None:
+        n, models = len(engine.fleet), engine.fleet.models
         self._p, self._world, self._engine, self._models = p, world, engine, models
         self._rate = p.rates.physics_rate  # [Hz]
         self.stamp_ns, self.due = 0, Due()  # of the last step on which something was due [ns]

@@ -33,7 +33,7 @@ class Simulator:
         self.rate = p.rates.physics_rate  # [Hz]
         self.engine = engine
         self.fleet = engine.fleet  # up to date after engine.update_fleet()
-        self.observed = Observations(p, world, engine, self.robots)
+        self.observed = Observations(p, world, engine)
         self.lidar = self.observed.lidar
         rates = _rates(p)
         self._usual = Schedule({name: rate for name, rate in rates.items() if name not in DUE_OFTEN}, self.rate)
@@ -42,6 +42,7 @@ class Simulator:
         self._subscriptions: Subscriptions = {}
         self._dues: Dict[Tuple[str, ...], Due] = {}  # by the names of what is due, for these subscriptions
         self._newly_placed: Set[int] = set()
+        self.moving = False  # whether any obstacle of the world moves
         self.reset()
 
     # -- time --
@@ -65,11 +66,6 @@ class Simulator:
     def seed(self) -> int:
         """The seed of all noise."""
         return self.observed.seed
-
-    @property
-    def moving(self) -> bool:
-        """Whether any obstacle of the world moves."""
-        return bool(self._moving)
 
     # -- steps --
 
@@ -105,11 +101,11 @@ class Simulator:
         return self.observed
 
     def _run(self, steps: int) -> None:
-        for at_once in [1] * steps if self._moving else [steps]:
+        for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
             self.observed.step += at_once
-            if self._moving:
+            if self.moving:
                 self.engine.move_obstacles(self.world_time)
 
     def _due(self, names: Tuple[str, ...]) -> Due:
@@ -172,7 +168,7 @@ class Simulator:
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
         self.world = world if self.p.world.moving else world.without_motion()
-        self._moving = self.world.moving()
+        self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
@@ -218,7 +214,7 @@ class Simulator:
         Simulated time continues, unless `restart_time` sets it back to zero.
         """
         spawns = [robot.spawn for robot in self.robots]
-        self._moving = self.world.moving()
+        self.moving = bool(self.world.moving())
         self.engine.reset(spawns)
         self.engine.update_fleet()
         self.observed.reset(self.seed if seed is None else seed, spawns)
