@@ -9,7 +9,7 @@ From a velocity command to odometry, scan, tf and clock:
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
-    simulation.simulator          measures what is due and subscribed to -> Observations
+    simulation.observations       measures what is due and subscribed to
         sensors                   models of odometry, scanner, IMU, magnetometer and camera
     ros.sim.node                  the loop
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last

@@ -8,13 +8,13 @@ from support import ORIGIN, kept, model_named, world_named
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.jobs import Job, Queue
+from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulation import Simulation
 
 
-class FakeClock:
+class FakeClock(Clock):
     """Waiting takes no real time; actions may be scheduled at a time [s] of this clock."""
 
     def __init__(self) -> None:

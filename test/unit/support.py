@@ -1,9 +1,9 @@
 """Shared by the unit tests: the package's folders, a ready simulator, an analytic ray cast."""
 
+import copy
 import functools
 import math
 import os
-from dataclasses import replace
 from typing import Callable, Dict, Iterable, Iterator, List, Sequence
 
 import numpy as np
@@ -74,7 +74,9 @@ def drive(
 
 def kept(observed: Observations) -> Observations:
     """A copy of what the simulator changes in place with its next step, but for its fleet and its odometry."""
-    return replace(observed, scans=observed.scans.copy(), imus=observed.imus.copy())
+    kept = copy.copy(observed)
+    kept.scans, kept.imus = observed.scans.copy(), observed.imus.copy()
+    return kept
 
 
 def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The limits of base controllers; commands are clamped to them here, base_controller.c accelerates within them."""
 
 import math
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 from ..errors import CommandError
 from ..geometry import Twist2D
@@ -22,19 +22,14 @@ class Limits(NamedTuple):
 def limits_from(params: LimitParams, figures: ModelFigures) -> Limits:
     """The limits of a model: the parameters' where they are given, else the model's own figures."""
     firmware = params.velocity_limits == "firmware"
-    own_v = figures.firmware_linear_velocity if firmware else figures.max_linear_velocity
-    own_w = figures.firmware_angular_velocity if firmware else figures.max_angular_velocity
-    return Limits(
-        _given_or(params.max_linear_velocity, own_v),
-        _given_or(params.max_angular_velocity, own_w),
-        _given_or(params.max_linear_acceleration, figures.max_linear_acceleration),
-        _given_or(params.max_angular_acceleration, figures.max_angular_acceleration),
-        _given_or(params.cmd_vel_timeout, figures.cmd_vel_timeout),
+    pairs = (
+        (params.max_linear_velocity, figures.firmware_linear_velocity if firmware else figures.max_linear_velocity),
+        (params.max_angular_velocity, figures.firmware_angular_velocity if firmware else figures.max_angular_velocity),
+        (params.max_linear_acceleration, figures.max_linear_acceleration),
+        (params.max_angular_acceleration, figures.max_angular_acceleration),
+        (params.cmd_vel_timeout, figures.cmd_vel_timeout),
     )
-
-
-def _given_or(given: Optional[float], default: float) -> float:
-    return default if given is None else given
+    return Limits(*(own if given is None else given for given, own in pairs))
 
 
 def clamp(value: float, limit: float) -> float:

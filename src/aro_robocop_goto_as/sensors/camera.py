@@ -5,11 +5,9 @@ Images have shape (height, width), row 0 at the top; the optical frame has z for
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Protocol, Sequence, Tuple
+from typing import Dict, List, Tuple
 
 import numpy as np
-
-from ..geometry import Pose3D
 
 Figures = Tuple[int, int, float]  # width, height [pixels], horizontal field of view [rad]
 
@@ -82,15 +80,3 @@ def points_of(depth: np.ndarray, spec: CameraSpec) -> np.ndarray:
     columns, rows = np.arange(spec.width), np.arange(spec.height)[:, None]
     x, y = z * (columns - spec.centre_x) / spec.focal, z * (rows - spec.centre_y) / spec.focal
     return np.stack([x, y, z], axis=-1).astype(np.float32)
-
-
-class ImageRenderer(Protocol):
-    """Renders what cameras see of one world and its robots; camera_renderer.py does it with Bullet."""
-
-    def render(
-        self, spec: CameraSpec, world_from_optical: Pose3D, robot: int, world_from_bases: Sequence[Pose3D], time: float
-    ) -> CameraImage:
-        """What the camera of one robot sees of the others and of the world, at `time` [s]."""
-
-    def close(self) -> None:
-        """Free the renderer's resources."""

@@ -15,9 +15,8 @@ DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controll
 SECOND_LOOK = 0.005  # [s, wall] during which what has arrived meanwhile is processed
 
 NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
-IsKept = Callable[
-    [ControllerId, float], bool
-]  # from answering, for want of a processor, of which it may use so much [s]
+# Whether a controller is kept from answering, for want of a processor, of which it may use so much [s].
+IsKept = Callable[[ControllerId, float], bool]
 
 
 class _Pending(NamedTuple):
@@ -43,7 +42,7 @@ class Controllers:
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
         self.timeout = params.lockstep_timeout
-        self.lockstep: Lockstep[ControllerId] = Lockstep()
+        self.lockstep = Lockstep()
         self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
         self._clock = clock
@@ -159,4 +158,4 @@ class Controllers:
 
     def awaited(self) -> List[ControllerId]:
         """The controllers that lockstep waits for; empty without lockstep."""
-        return self.lockstep.awaited() if self.in_lockstep else []
+        return self.lockstep.awaited()

@@ -4,7 +4,7 @@ import contextlib
 import queue
 import time
 from concurrent.futures import Future, TimeoutError
-from typing import Callable, Protocol, TypeVar
+from typing import Callable, TypeVar
 
 from ..errors import RobocopError, ShutdownError
 
@@ -16,21 +16,8 @@ CALL_POLL = 0.1  # [s, wall] between two checks for a shutdown while another thr
 T = TypeVar("T")
 
 
-class Clock(Protocol):
-    """A monotonic clock, and the ways in which the owner waits; tests have one that they move themselves."""
-
-    def now(self) -> float:
-        """Seconds from an arbitrary origin."""
-
-    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
-        """The next job; raises queue.Empty when none has come within `timeout` [s]."""
-
-    def sleep(self, seconds: float) -> None:
-        """Wait without looking for jobs."""
-
-
-class WallClock:
-    """The machine's own clock."""
+class Clock:
+    """The machine's monotonic clock, and the ways in which the owner waits; tests have one that they move."""
 
     def now(self) -> float:
         """Seconds from an arbitrary origin."""

@@ -11,7 +11,7 @@ its answer to tick k + 1. The gaps between its answers show its period: a 4 Hz l
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, Generic, List, NamedTuple, Optional, Tuple, TypeVar
+from typing import Dict, List, NamedTuple, Optional, Tuple
 
 LONGEST_GAP = 20  # ticks; a controller that is silent for longer has stopped, and counts as new when it returns
 LONGEST_PATTERN = 12  # gaps until they repeat
@@ -69,19 +69,16 @@ class ControllerId(NamedTuple):
     node: str
 
 
-Name = TypeVar("Name", str, ControllerId)
-
-
-class Lockstep(Generic[Name]):
+class Lockstep:
     """Controllers by name, and the tick at which time stands or towards which it runs; the owner sets `tick`."""
 
     def __init__(self, tick: int = 0) -> None:
         self.tick = tick
         self.misses = 0  # answers given up on so far
-        self._controllers: Dict[Name, _AnswerRecord] = {}
-        self._slower: List[Tuple[Name, int]] = []
+        self._controllers: Dict[ControllerId, _AnswerRecord] = {}
+        self._slower: List[Tuple[ControllerId, int]] = []
 
-    def commanded(self, name: Name) -> None:
+    def commanded(self, name: ControllerId) -> None:
         """Note a velocity command that does not name its tick."""
         known = self._controllers.get(name)
         if known is None:
@@ -91,7 +88,7 @@ class Lockstep(Generic[Name]):
             gaps = (known.gaps + [gap])[-2 * LONGEST_PATTERN - 1 :] if gap <= LONGEST_GAP else []
             self._controllers[name] = _AnswerRecord(self.tick, gaps=gaps, mistaken=known.mistaken)
 
-    def answered(self, name: Name, tick: int) -> None:
+    def answered(self, name: ControllerId, tick: int) -> None:
         """Note an answer, which names its tick; one for an earlier tick only shows that its sender is alive."""
         known = self._controllers.get(name)
         if known is None or not known.stamped:
@@ -104,21 +101,21 @@ class Lockstep(Generic[Name]):
             if known.stamps == STAMPED_AFTER + 1 and period > 1:
                 self._slower.append((name, period))
 
-    def enroll(self, name: Name) -> None:
+    def enroll(self, name: ControllerId) -> None:
         """Wait from now on for a controller that stamps its answers and has connected."""
         if not self.is_stamped(name):
             self._controllers[name] = _AnswerRecord(self.tick - 1, stamped=True)
 
-    def is_stamped(self, name: Name) -> bool:
+    def is_stamped(self, name: ControllerId) -> bool:
         """Whether this controller stamps its answers, so that its plain commands have to be ignored."""
         known = self._controllers.get(name)
         return known is not None and known.stamped
 
-    def gone(self, name: Name) -> None:
+    def gone(self, name: ControllerId) -> None:
         """Forget a controller that has disconnected."""
         self._controllers.pop(name, None)
 
-    def missing(self) -> List[Name]:
+    def missing(self) -> List[ControllerId]:
         """The controllers that still have to answer the current tick, sorted."""
         return sorted(name for name, known in self._controllers.items() if known.missing(self.tick))
 
@@ -126,7 +123,7 @@ class Lockstep(Generic[Name]):
         """How long to wait for the missing controllers, as a share of the timeout."""
         return max((known.patience() for known in self._controllers.values() if known.missing(self.tick)), default=0.0)
 
-    def give_up(self) -> List[Name]:
+    def give_up(self) -> List[ControllerId]:
         """Stop waiting at this tick; returns and counts the controllers that were due, dropped until heard again."""
         late = []
         for name in self.missing():
@@ -140,12 +137,12 @@ class Lockstep(Generic[Name]):
         self.misses += len(late)
         return late
 
-    def take_slower(self) -> List[Tuple[Name, int]]:
+    def take_slower(self) -> List[Tuple[ControllerId, int]]:
         """Controllers that answer only each N-th tick, with N, of which that became known since the last call."""
         slower, self._slower = self._slower, []
         return slower
 
-    def awaited(self) -> List[Name]:
+    def awaited(self) -> List[ControllerId]:
         """The controllers that are waited for, sorted."""
         return sorted(name for name, known in self._controllers.items() if known.awaited)
 

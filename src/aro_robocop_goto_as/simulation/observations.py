@@ -1,17 +1,27 @@
 """What one step yields: the names of the sensors, what is due, and the measurements."""
 
+import functools
 from dataclasses import dataclass, field
-from typing import Mapping, Sequence
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ..robot.fleet import Fleet
-from ..sensors.camera import CameraImage
+from ..geometry import Pose2D, compose, compose3, inverse
+from ..physics.engine import Engine
+from ..raycast.scanners import Scanners
+from ..robot.model import BodyState
+from ..sensors import imu, magnetometer
+from ..sensors.camera import CameraImage, CameraSpec
+from ..sensors.lidar import Lidar
+from ..sensors.noise_streams import NoiseStreams
 from ..sensors.odometry import Odometers
+from ..sim_params import SimParams
+from ..world.model import World
 
 SCAN, ODOM, JOINTS, IMU, GROUND_TRUTH = "scan", "odom", "joints", "imu", "ground_truth"
 BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA, TF = "bumper", "battery", "magnetic_field", "camera", "tf"
 SENSORS = (SCAN, ODOM, TF, JOINTS, IMU, GROUND_TRUTH, BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA)
+SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
 Robots = Sequence[int]  # indices
 Subscriptions = Mapping[str, Robots]  # sensor -> the robots for which somebody subscribes to it
@@ -24,27 +34,148 @@ class Due:
     clock: bool = False  # a clock tick: /clock is due
     control: bool = False  # a control tick: the controllers' period is over
     sensors: Subscriptions = field(default_factory=dict)  # those that are due, for whom they are subscribed to
+    measures: Sequence[Callable[[], object]] = ()  # the calls that measure them
 
 
-@dataclass(eq=False)
 class Observations:
-    """The measurements of the last step that had any, all taken at one simulated time; one object, changed in place.
+    """The sensors of all robots, and what they measured last; one object, changed in place.
 
     The rows of the arrays are those of all robots. A row is of this step where its sensor is due for its robot.
+
+    fleet: ground truth
+    map_from_odom: (n, 3) x, y [m], yaw [rad]
+    joint_angles: (n, 2) [rad] as the encoders read them
+    imus: (n, 10) as sensors.imu describes
+    scans: ranges (n, n_beams) [m] in base_scan; another array where the number of beams varies
     """
 
-    fleet: Fleet  # ground truth
-    odometry: Odometers
-    map_from_odom: np.ndarray  # (n, 3) x, y [m], yaw [rad]
-    joint_angles: np.ndarray  # (n, 2) [rad] as the encoders read them
-    imus: np.ndarray  # (n, 10) as sensors.imu describes
-    scans: np.ndarray  # ranges (n, n_beams) [m] in base_scan; another array where the number of beams varies
-    stamp_ns: int = 0  # simulated time [ns]
-    due: Due = field(default_factory=Due)
-    bumpers: Mapping[int, bool] = field(default_factory=dict)  # touches anything but the floor
-    magnetic_fields: Mapping[int, np.ndarray] = field(default_factory=dict)  # (3,) [T] in imu_link
-    images: Mapping[int, CameraImage] = field(default_factory=dict)
+    def __init__(self, p: SimParams, world: World, engine: Engine) -> None:
+        n, models = len(engine.fleet), engine.fleet.models
+        self._p, self._world, self._engine, self._models = p, world, engine, models
+        self._rate = p.rates.physics_rate  # [Hz]
+        self.stamp_ns, self.due = 0, Due()  # of the last step on which something was due [ns]
+        self.seed, self.step = p.world.seed, 0  # of the noise; steps since the last reset
+        self.lidar = Lidar(p.scan.lidar())
+        self.scanners = Scanners(models, world, engine.fleet.poses)
+        self.fleet, self.odometry = engine.fleet, Odometers(p.odometry, engine.fleet, p.rates.odom_rate)
+        self.map_from_odom, self.joint_angles, self.imus = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 10))
+        self._ranges: Dict[int, np.ndarray] = {}
+        self.scans = self.ranges(self.lidar.spec.samples)
+        self.bumpers: Mapping[int, bool] = {}  # whether a robot touches anything but the floor
+        self.magnetic_fields: Mapping[int, np.ndarray] = {}  # (3,) [T] in imu_link
+        self.images: Mapping[int, CameraImage] = {}
+        self.cameras: Sequence[Optional[CameraSpec]] = [  # None: a model without a camera
+            None if model.base_from_camera is None else p.camera.spec(model.name) for model in models
+        ]
+        self._noise = NoiseStreams()
+        self._make_renderer: Any = None
+        if any(self.cameras):
+            from ..sensors.camera_renderer import CameraRenderer  # imports pybullet
+
+            self._make_renderer = CameraRenderer
+        self._renderer: Any = None  # a CameraRenderer of this world, made for the first image
+        self._measures: Dict[str, Callable[[Robots], object]] = {
+            GROUND_TRUTH: lambda _: engine.update_fleet(),
+            JOINTS: self._read_joints,
+            ODOM: self._update_odometry,
+            SCAN: self._scan,
+            BUMPER: self._read_bumpers,
+            MAGNETIC_FIELD: self._measure_magnetic_fields,
+            CAMERA: self._take_images,
+        }
 
     def of(self, sensor: str) -> Robots:
         """The robots for which a sensor is due and subscribed to."""
         return self.due.sensors.get(sensor, ())
+
+    def measures_of(self, names: Sequence[str], due: Subscriptions) -> Sequence[Callable[[], object]]:
+        """What measures these sensors, but for IMUs. Odometry is integrated whether or not anybody subscribes."""
+        measured = [name for name in names if name in self._measures and (name in due or name == ODOM)]
+        return [functools.partial(self._measures[name], due.get(name, ())) for name in measured]
+
+    @property
+    def world_time(self) -> float:
+        """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
+        return self.step / self._rate
+
+    # -- sensors --
+
+    def _noise_of(self, stream: int) -> np.random.Generator:
+        """Noise of one stream on this step, counted from the last reset."""
+        return self._noise.at(self.seed, stream, self.step)
+
+    def ranges(self, beams: int) -> np.ndarray:
+        """The array (n, beams) [m] to which scans with so many beams are written."""
+        return self._ranges.setdefault(beams, np.zeros((len(self._models), beams)))
+
+    def _scan(self, robots: Robots) -> None:
+        lidar = self.lidar.next_turn(self._noise_of(0)) if self.lidar.spec.varying else self.lidar
+        distances = self.exact_distances(lidar, robots)
+        self.scans = self.ranges(lidar.spec.samples)
+        lidar.measure(distances, robots, self.seed, self.step, self.scans)
+
+    def exact_distances(self, lidar: Lidar, robots: Robots) -> np.ndarray:
+        """What scanners of this kind would measure now without noise and range_min: (r, n_beams) [m]; none: +inf."""
+        self._engine.update_fleet()
+        return self.scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
+
+    def _update_odometry(self, _robots: Robots) -> None:
+        self._engine.update_fleet()
+        shape = len(self._models), 2
+        self.odometry.update(self._noise_of(SLIP_STREAM).standard_normal(shape) if self.odometry.slipping else None)
+        if self._p.topics.localization == "truth":
+            for robot, pose in enumerate(self.odometry.poses.tolist()):
+                self.map_from_odom[robot] = compose(self.fleet.pose(robot), inverse(Pose2D(*pose)))
+
+    def _read_joints(self, _robots: Robots) -> None:
+        self._engine.update_fleet()
+        self.joint_angles[:] = self.odometry.joint_angles()
+
+    def _read_bumpers(self, robots: Robots) -> None:
+        self.bumpers = {robot: self._engine.touching(robot) for robot in robots}
+
+    def _measure_magnetic_fields(self, robots: Robots) -> None:
+        self.magnetic_fields = {robot: self._magnetic_field(robot) for robot in robots}
+
+    def _magnetic_field(self, robot: int) -> np.ndarray:
+        world_from_imu = compose3(self._engine.body(robot).world_from_base, self._models[robot].base_from_imu)
+        return magnetometer.measure(world_from_imu.orientation)
+
+    def measure_imus(self, robots: Robots, bodies_before: Sequence[BodyState]) -> None:
+        """Measure the IMUs of these robots, whose states before the last step are given."""
+        for robot, before in zip(robots, bodies_before):
+            after, mount, noise = self._engine.body(robot), self._models[robot].base_from_imu, self._noise_of(1 + robot)
+            self.imus[robot] = imu.measure(before, after, 1.0 / self._rate, mount, self._p.imu, noise)
+
+    def _take_images(self, robots: Robots) -> None:
+        bases = [self._engine.body(robot).world_from_base for robot in range(len(self._models))]
+        images = {}
+        for robot in robots:
+            spec, base_from_camera = self.cameras[robot], self._models[robot].base_from_camera
+            if spec is not None and base_from_camera is not None:
+                world_from_camera = compose3(bases[robot], base_from_camera)
+                images[robot] = self._renderer_now().render(spec, world_from_camera, robot, bases, self.world_time)
+        self.images = images
+
+    def _renderer_now(self) -> Any:
+        if self._renderer is None:
+            self._renderer = self._make_renderer(self._world, self._models)
+        return self._renderer
+
+    def reset(self, seed: int, spawns: Sequence[Pose2D]) -> None:
+        """Odometry to zero where the robots are, at their spawn poses; noise and moving obstacles to their start."""
+        self.odometry.reset()
+        self.map_from_odom[:] = 0.0 if self.odometry.in_world else spawns
+        self.seed, self.step = seed, 0
+
+    def change_world(self, world: World) -> None:
+        """Replace the world."""
+        self.close()
+        self._world = world
+        self.scanners.change_world(world)
+
+    def close(self) -> None:
+        """Free the renderer; the next image makes a new one."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None

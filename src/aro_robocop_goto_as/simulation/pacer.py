@@ -1,6 +1,5 @@
 """Paces simulated time against the wall clock and measures the real-time factor reached."""
 
-import time
 from dataclasses import dataclass
 from typing import Callable, Optional
 
@@ -33,38 +32,37 @@ class Pacer:
     does, begins these 5 ms anew each time, and the others, too slow to wake up, can wait for minutes.
     """
 
-    def __init__(self, factor: float, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, factor: float, rate: int, now: Callable[[], float]) -> None:
+        """`rate` [Hz] of the steps; `now`: the wall clock [s]."""
         self.factor = factor
-        self.now = now  # [s, wall]
-        self.restart(0.0)
+        self.now = now
+        self._rate = rate
+        self.restart(0)
 
-    def restart(self, simulated: float) -> None:
-        """Start counting at this simulated time [s], as after a pause."""
-        wall = self.now()
-        self._anchor_wall, self._anchor_simulated = wall, simulated
-        self._report_wall, self._report_simulated = wall, simulated
-        self._report_steps: Optional[int] = None
-        self._waited = 0.0
-        self._rested = wall
-        self._lag = 0.0
+    def restart(self, step: int) -> None:
+        """Start counting at this step, as after a pause."""
+        self._anchor_wall, self._anchor_step = self.now(), step
+        self._report_wall, self._report_step = self._anchor_wall, step
+        self._rested = self._anchor_wall
+        self._waited = self._lag = 0.0
 
-    def ahead(self, simulated: float) -> float:
-        """How long to wait [s, wall] before simulated time `simulated` [s]: until it is due, or for a rest."""
+    def ahead(self, step: int) -> float:
+        """How long to wait [s, wall] before going on from a step: until it is due, or for a rest."""
         wall = self.now()
-        ahead = self._until_due(simulated, wall)
+        ahead = self._until_due(step, wall)
         if ahead == 0.0 and wall - self._rested >= REST_PERIOD:
             ahead = REST
         if ahead > 0.0:
             self._rested = wall + ahead
         return ahead
 
-    def _until_due(self, simulated: float, wall: float) -> float:
+    def _until_due(self, step: int, wall: float) -> float:
         if self.factor == 0.0:
             return 0.0
-        due = self._anchor_wall + (simulated - self._anchor_simulated) / self.factor
+        due = self._anchor_wall + (step - self._anchor_step) / self._rate / self.factor
         self._lag = max(0.0, wall - due)
         if wall - due > MOST_BEHIND:
-            self._anchor_wall, self._anchor_simulated = wall, simulated
+            self._anchor_wall, self._anchor_step = wall, step
         return max(0.0, due - wall)
 
     def waited(self, seconds: float) -> None:
@@ -73,14 +71,13 @@ class Pacer:
         if seconds >= REST:
             self._rested = self.now()
 
-    def report(self, simulated: float, steps: int) -> Optional[FactorReport]:
+    def report(self, step: int) -> Optional[FactorReport]:
         """The factor since the last report; None until a report period has passed."""
         wall = self.now()
         elapsed = wall - self._report_wall
         if elapsed < REPORT_PERIOD:
             return None
-        reached = (simulated - self._report_simulated) / elapsed
-        done = steps - self._report_steps if self._report_steps is not None else 0
+        done = step - self._report_step
         step_time = max(0.0, elapsed - self._waited) / done if done > 0 else 0.0
-        self._report_wall, self._report_simulated, self._report_steps, self._waited = wall, simulated, steps, 0.0
-        return FactorReport(reached, self.factor, step_time, self._lag)
+        self._report_wall, self._report_step, self._waited = wall, step, 0.0
+        return FactorReport(done / self._rate / elapsed, self.factor, step_time, self._lag)

@@ -15,7 +15,7 @@ from ..geometry import Pose2D
 from ..sim_params import SimParams
 from ..world.model import World
 from .controllers import Controllers
-from .jobs import Clock, Jobs, WallClock
+from .jobs import Clock, Jobs
 from .simulator import Simulator
 from .time_control import TimeControl
 
@@ -37,7 +37,7 @@ class Simulation:
     ) -> None:
         """`stopped`: whether the owner's loop has ended; by the wall clock unless another one is given."""
         p: SimParams = simulator.p
-        clock = clock or WallClock()
+        clock = clock or Clock()
         self.simulator = simulator
         self.jobs = Jobs(clock, stopped)
         self.time_control = TimeControl(p.time, simulator.rate, clock)

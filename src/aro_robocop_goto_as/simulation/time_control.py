@@ -17,7 +17,7 @@ class TimeControl:
     def __init__(self, params: TimeParams, rate: int, clock: Clock) -> None:
         """`rate` [Hz] of the steps."""
         self.paused = params.start_paused
-        self.pacer = Pacer(params.real_time_factor, clock.now)
+        self.pacer = Pacer(params.real_time_factor, rate, clock.now)
         self._rate = rate
         self._clock = clock
         self._span_end = 0  # step at which a requested span ends; 0 = none
@@ -27,7 +27,7 @@ class TimeControl:
 
     def restart(self, step: int) -> None:
         """Pace from this step on, as after a pause."""
-        self.pacer.restart(step / self._rate)
+        self.pacer.restart(step)
 
     @property
     def standing(self) -> bool:
@@ -38,7 +38,7 @@ class TimeControl:
         """How long to hold simulated time at a step [s, wall] before asking again; 0: it may go on."""
         if self.standing:
             return PAUSED_PERIOD
-        return min(LONGEST_HOLD, self.pacer.ahead(step / self._rate))
+        return min(LONGEST_HOLD, self.pacer.ahead(step))
 
     def repetition_due(self) -> bool:
         """While simulated time stands still: whether /clock has to be repeated now."""

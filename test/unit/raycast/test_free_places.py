@@ -15,7 +15,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.free_places import free_place, free_places
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.robots import robots_from
+from aro_robocop_goto_as.simulation.factory import robots_from
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 

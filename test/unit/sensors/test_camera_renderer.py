@@ -52,7 +52,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
     description = world_named(world)
     walls = World(world, tuple(o for o in description.obstacles if isinstance(o.geometry, Box)), pose, (), "")
     sim = simulator(world, pose, model=model, **KINEMATIC)
-    camera, spec = _world_from_camera(model, pose), sim.cameras.spec(0)
+    camera, spec = _world_from_camera(model, pose), sim.observed.cameras[0]
     points = _points(_image(sim), camera, spec)
     x, y, _ = camera.position
     away = np.hypot(points[..., 0] - x, points[..., 1] - y)
@@ -70,7 +70,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
 
 def test_cylinders_are_seen_with_their_radius(simulator: Make) -> None:
     sim = simulator("stage_2", Pose2D(0.0, 0.0, math.pi / 4.0), model="burger_rgbd", **KINEMATIC)
-    camera, spec = _world_from_camera("burger_rgbd", Pose2D(0.0, 0.0, math.pi / 4.0)), sim.cameras.spec(0)
+    camera, spec = _world_from_camera("burger_rgbd", Pose2D(0.0, 0.0, math.pi / 4.0)), sim.observed.cameras[0]
     points = _points(_image(sim), camera, spec)[60]
     radii = np.hypot(points[:, 0] - 0.6, points[:, 1] - 0.6)
     on_it = radii < 0.2
@@ -80,7 +80,7 @@ def test_cylinders_are_seen_with_their_radius(simulator: Make) -> None:
 
 def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
     sim = simulator("empty", model="waffle", **KINEMATIC)
-    image, spec = _image(sim), sim.cameras.spec(0)
+    image, spec = _image(sim), sim.observed.cameras[0]
     points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
     assert np.abs(points[70:, :, 2]).max() < 0.001
     assert np.isinf(image.depth[:58]).all()
@@ -97,7 +97,7 @@ def _see_a_box(simulator: Make, model: str, place: Vector3) -> "tuple[float, flo
             RobotSpec("", model_named(model), Pose2D())
         ],
     )
-    points = _points(_image(sim), _world_from_camera(model, Pose2D()), sim.cameras.spec(0))
+    points = _points(_image(sim), _world_from_camera(model, Pose2D()), sim.observed.cameras[0])
     sim.close()
     on_it = (np.abs(points - place) < 0.026).all(axis=-1)
     rows, columns = np.nonzero(on_it)

@@ -7,12 +7,12 @@ import pytest
 from fakes import FakeClock
 
 from aro_robocop_goto_as.errors import ShutdownError, WorldError
-from aro_robocop_goto_as.simulation.jobs import Jobs, WallClock
+from aro_robocop_goto_as.simulation.jobs import Clock, Jobs
 
 
 def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() -> None:
     done = threading.Event()
-    jobs = Jobs(WallClock(), done.is_set)
+    jobs = Jobs(Clock(), done.is_set)
     outcomes: List[object] = []
 
     def refuse() -> None:

@@ -152,7 +152,7 @@ def _answer_and_count_misses(lockstep: Lockstep, period: int, ticks: int) -> int
 
 
 def test_stamping_controller_slower_than_the_ticks_is_soon_awaited_at_its_own_ticks_only() -> None:
-    lockstep: Lockstep[str] = Lockstep()
+    lockstep = Lockstep()
     lockstep.enroll("/a")
     assert 1 <= _answer_and_count_misses(lockstep, 3, 30) <= 5
     assert lockstep.take_slower() == [("/a", 3)] and lockstep.take_slower() == []
@@ -162,7 +162,7 @@ def test_stamping_controller_slower_than_the_ticks_is_soon_awaited_at_its_own_ti
 
 
 def test_stamping_controller_that_missed_ticks_is_awaited_at_each_one_again() -> None:
-    lockstep: Lockstep[str] = Lockstep()
+    lockstep = Lockstep()
     lockstep.enroll("/a")
     for lockstep.tick in (2, 4, 8, 12):  # it hung in between
         lockstep.answered("/a", lockstep.tick)
@@ -174,13 +174,13 @@ def test_stamping_controller_that_missed_ticks_is_awaited_at_each_one_again() ->
 
 
 def test_stamping_controller_at_the_rate_of_the_ticks_is_never_called_slower() -> None:
-    lockstep: Lockstep[str] = Lockstep()
+    lockstep = Lockstep()
     lockstep.enroll("/a")
     assert _answer_and_count_misses(lockstep, 1, 50) == 0 and lockstep.take_slower() == []
 
 
 def test_period_is_learned_again_after_a_reset() -> None:
-    lockstep: Lockstep[str] = Lockstep()
+    lockstep = Lockstep()
     lockstep.enroll("/a")
     _answer_and_count_misses(lockstep, 2, 30)
     lockstep.restart(0)

@@ -7,7 +7,7 @@ from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.robots import robots_from
+from aro_robocop_goto_as.simulation.factory import robots_from
 from aro_robocop_goto_as.world.spawn import parse_spawn
 
 

@@ -23,6 +23,8 @@ from ..timer import start_timer
 RESULTS_KEPT = 10_000
 # Ended goals in the status. actionlib keeps all for 5 s and looks through them for each goal, cancel and status.
 ENDED_KEPT = 200
+# The result of goals that were cancelled or replaced before they were accepted.
+NOT_STARTED = GoToPositionResult(False, f"{Outcome.PREEMPTED.value}: it was cancelled or replaced before it started")
 UNFINISHED = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING)
 
 
@@ -37,11 +39,9 @@ class GoalServer(actionlib.ActionServer):
     status_list: List[Any]
     status_timer: Any
 
-    def __init__(self, not_started: GoToPositionResult) -> None:
-        """`not_started` is the result of goals that were cancelled or replaced before they were accepted."""
+    def __init__(self) -> None:
         super().__init__(ACTION, GoToPositionAction, self._on_new_goal, self._on_cancel, auto_start=False)
-        self.ActionResultType = lambda: not_started  # of goals that actionlib ends; its own is empty
-        self._not_started = not_started
+        self.ActionResultType = lambda: NOT_STARTED  # of goals that actionlib ends; its own is empty
         self.current: Any = None  # ServerGoalHandle, or None
         self.waiting: Any = None
         self.is_cancelled = False  # the current goal
@@ -119,7 +119,7 @@ class GoalServer(actionlib.ActionServer):
 
     def _recall(self) -> None:
         if self.waiting is not None:
-            self.waiting.set_canceled(self._not_started, self._not_started.message)
+            self.waiting.set_canceled(NOT_STARTED, NOT_STARTED.message)
         self.waiting = None
 
     def accept(self) -> GoToPositionGoal:

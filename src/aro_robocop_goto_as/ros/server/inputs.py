@@ -113,15 +113,12 @@ class Inputs:
             if valid is not None and valid.at <= self._ros_time():
                 last = max(started, valid.at)
             overdue = now - last > self._tuning.params.data_timeout
-            if overdue and not self._may_be_connecting(newest, accepted) and not self._arrives_late():
+            connecting = newest is None or newest.wall < accepted
+            if connecting and self._wall() - accepted < FIRST_MESSAGE:
+                continue
+            if overdue and not self._await(self._has_data, LATE_DATA):
                 return outcome, self._absence(name, valid, now)
         return None
-
-    def _may_be_connecting(self, newest: Optional[Received], accepted: float) -> bool:
-        return (newest is None or newest.wall < accepted) and self._wall() - accepted < FIRST_MESSAGE
-
-    def _arrives_late(self) -> bool:
-        return self._await(self._has_data, LATE_DATA)
 
     def _absence(self, name: str, valid: Optional[Received], now: float) -> str:
         # By the present time, as scans have arrived since the control period began.

@@ -34,7 +34,6 @@ from .tuning import Tuning
 MARKER_PERIOD = 0.1  # [s]
 SHUTDOWN_PATIENCE = 1.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
 SEND_TIME = 0.1  # [s, wall] for rospy's sender threads to write what was just published
-NOT_STARTED = Ending(Outcome.PREEMPTED, "it was cancelled or replaced before it started")
 
 
 class GotoNode:
@@ -55,7 +54,7 @@ class GotoNode:
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
-        self.goals = GoalServer(GoToPositionResult(False, NOT_STARTED.message))
+        self.goals = GoalServer()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
         # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
         rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)

@@ -9,9 +9,7 @@ import rospy
 from ...errors import PlaceError, WorldError
 from ...robot.catalog import load_model
 from ...sim_params import SimParams
-from ...simulation.factory import make_simulator
-from ...simulation.robots import robots_from
-from ...simulation.room import require_room
+from ...simulation.factory import make_simulator, robots_from
 from ...simulation.simulator import Simulator
 from ...world.load import RANDOM, find_world, load_world
 from ...world.model import World
@@ -72,7 +70,7 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
         )
     if p.robots.spawn.strip() and len(simulator.robots) == 1:
         try:
-            require_room(simulator.world, 0.0, simulator.robots, simulator.fleet, first, 0)
+            simulator.require_room(first)
         except PlaceError as error:
             rospy.logwarn("the robot starts where it has no room: %s", error)
     given = p.scan.given()

@@ -64,7 +64,7 @@ class RobotTopics:
         if p.rates.magnetic_field_rate:
             topic(observations.MAGNETIC_FIELD, "magnetic_field", MagneticField)
             self.publish[observations.MAGNETIC_FIELD] = self._publish_magnetic_field
-        camera = simulator.cameras.spec(index)
+        camera = observed.cameras[index]
         if camera is not None and p.rates.camera_rate:
             from .camera_topics import CameraTopics
 

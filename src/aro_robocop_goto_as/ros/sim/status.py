@@ -39,7 +39,7 @@ class StatusTopics:
     def report(self) -> bool:
         """Publish what is due; cheap when nothing is. Returns whether a second has passed."""
         simulator = self._simulation.simulator
-        report = self._simulation.time_control.pacer.report(simulator.time, simulator.steps)
+        report = self._simulation.time_control.pacer.report(simulator.steps)
         if report is not None:
             self._report = report
             self._factor.publish(report.reached)

@@ -6,7 +6,7 @@ from typing import Callable
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalID
-from aro_robocop_goto_as.msg import GoToPositionActionResult, GoToPositionResult
+from aro_robocop_goto_as.msg import GoToPositionActionResult
 from subscriber_links import Link
 
 from aro_robocop_goto_as.ros.rospy_internals import lengthen_queue
@@ -43,7 +43,7 @@ def test_cancels_of_goals_that_have_not_come_are_kept_and_left_alone_by_a_cancel
     errors = []
     monkeypatch.setattr(rospy, "logerr", lambda *text: errors.append(text))
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(1))
-    server = GoalServer(GoToPositionResult())
+    server = GoalServer()
     server.started = True
     monkeypatch.setattr(server, "publish_status", lambda: None)
     for number in range(ENDED_KEPT):
