@@ -146,7 +146,7 @@ class SimNode:
         if Change.TIME in changes:
             self._topics.publish_clock(self._simulator.stamp_ns)
         if Change.FRAMES in changes:
-            self._topics.transforms.publish_static()
+            self._topics.publish_static()
         if Change.WORLD in changes:
             self._world.publish(self._simulator)
         if Change.STATUS in changes:
