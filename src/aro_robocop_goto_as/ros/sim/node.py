@@ -15,9 +15,7 @@ from .. import param_server
 from ..names import SIMULATOR
 from ..node_main import node
 from ..publishing import resume
-from .awaited_nodes import AwaitedNodes
 from .loading import load_simulator
-from .lockstep_warnings import warn_of
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
 from .status import StatusTopics
@@ -39,8 +37,7 @@ class SimNode:
         self._topics = StepTopics(simulator)
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
-        self._inputs = [RobotInputs(self._simulation, index) for index in range(len(robots))]
-        self._awaited = AwaitedNodes(self._inputs)
+        self._inputs = RobotInputs(self._simulation)
         self._pose_inputs = PoseInputs(self._simulation, p.frames, p.topics.has_initialpose)
         self._time_services = TimeServices(self._simulation)
         world_services = WorldServices(self._simulation)
@@ -90,11 +87,11 @@ class SimNode:
 
     def _await_controllers(self) -> None:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
-        controllers = self._simulation.controllers
-        controllers.begin_tick(self._answering)
-        self._awaited.begin_tick()
-        self._hold(lambda: controllers.hold(self._connected, self._awaited.is_kept))
-        warn_of(controllers.end_tick(), self._simulator, controllers.timeout)
+        controllers, inputs = self._simulation.controllers, self._inputs
+        controllers.begin_tick(inputs.answering)
+        inputs.begin_tick()
+        self._hold(lambda: controllers.hold(inputs.connected, inputs.is_kept))
+        self._status.warn_of(controllers.end_tick())
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
@@ -106,7 +103,7 @@ class SimNode:
             self._publish_changes()
             if time.repetition_due():  # for nodes that start while simulated time stands still
                 self._topics.publish_clock(self._simulator.stamp_ns)
-                self._simulation.controllers.enroll(self._answering)
+                self._simulation.controllers.enroll(self._inputs.answering)
             self._report()
             wait = hold()
         time.pacer.waited(time.pacer.now() - started)
@@ -116,12 +113,6 @@ class SimNode:
         if self._status.report():
             self._topics.count()
             resume()
-
-    def _connected(self, robot: int) -> AbstractSet[str]:
-        return self._inputs[robot].connected()
-
-    def _answering(self, robot: int) -> AbstractSet[str]:
-        return self._inputs[robot].answering()
 
     # -- publishing --
 
@@ -176,7 +167,7 @@ def _serve_gazebo(simulation: Simulation, world_services: WorldServices, set_fac
     except ImportError as error:
         advice = "link compat/gazebo_msgs into the workspace, and build"
         raise ParameterError(f"gazebo_services: {error}; {advice}") from error
-    GazeboServices(simulation, world_services, set_factor=set_factor)
+    GazeboServices(simulation, world_services, "", set_factor)
 
 
 def main() -> None:
