@@ -42,20 +42,20 @@ def message_type(name: str) -> Any:
 class GazeboTopics:
     """Published by the owner's thread at clock ticks, while somebody subscribes."""
 
-    def __init__(self, robots: List[str]) -> None:
-        """`robots`: their names; one without a name goes by its model's."""
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
         self._types: Dict[str, Any] = {name: message_type(name) for name in ("ModelStates", "LinkStates")}
         self._models = publisher("/gazebo/model_states", self._types["ModelStates"])
         self._links = publisher("/gazebo/link_states", self._types["LinkStates"])
-        for robot in robots:
-            rospy.Service(prefixed(robot, "imu_service"), Empty, _calibrate)
+        for robot in simulator.robots:
+            rospy.Service(prefixed(robot.name, "imu_service"), Empty, _calibrate)
 
-    def publish(self, simulator: Simulator) -> None:
+    def publish(self) -> None:
         """All models and robots as they are now."""
         if self._models.get_num_connections():
-            self._models.publish(to_message(self._types["ModelStates"], models(simulator)))
+            self._models.publish(to_message(self._types["ModelStates"], models(self._simulator)))
         if self._links.get_num_connections():
-            self._links.publish(to_message(self._types["LinkStates"], links(simulator)))
+            self._links.publish(to_message(self._types["LinkStates"], links(self._simulator)))
 
 
 def to_message(kind: Any, states: List[State]) -> Any:
@@ -90,7 +90,7 @@ def _world_twist(state: RobotState) -> Twist:
 
 
 def raised(pose: Pose3D, height: float) -> Pose3D:
-    """A pose that is higher by `height` [m]; Gazebo has the ground where the world's file has it, the simulator at 0."""
+    """A pose higher by `height` [m]: Gazebo has the ground where the world's file has it, the simulator at z = 0."""
     x, y, z = pose.position
     return Pose3D((x, y, z + height), pose.orientation)
 

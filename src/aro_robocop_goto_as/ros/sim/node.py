@@ -1,19 +1,17 @@
 """robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
-from typing import AbstractSet, Any, Callable, Sequence
+from typing import AbstractSet, Any, Callable
 
 import rospy
 
 from ...errors import ParameterError
-from ...robot.model import RobotSpec
-from ...sim_params import SimParams
+from ...sim_params import SimParams, TopicParams
 from ...simulation.observations import Observations
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
-from .. import param_server
 from ..names import SIMULATOR
-from ..node_main import node
+from ..node_main import load_params, node
 from ..publishing import resume
 from .loading import load_simulator
 from .pose_inputs import PoseInputs
@@ -31,19 +29,31 @@ class SimNode:
     """One thread runs the loop and publishes; rospy's threads only post jobs to it."""
 
     def __init__(self, simulator: Simulator) -> None:
-        p, robots = simulator.p, simulator.robots
         self._simulator = simulator
         self._simulation = Simulation(simulator, stopped=rospy.is_shutdown)
         self._topics = StepTopics(simulator)
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
         self._inputs = RobotInputs(self._simulation)
-        self._pose_inputs = PoseInputs(self._simulation, p.frames, p.topics.has_initialpose)
+        self._pose_inputs = PoseInputs(self._simulation)
         self._time_services = TimeServices(self._simulation)
-        world_services = WorldServices(self._simulation)
-        self._gazebo = _gazebo_topics(robots) if p.topics.gazebo_topics else None
-        if p.topics.gazebo_services:
-            _serve_gazebo(self._simulation, world_services, self._time_services.set_factor)
+        self._world_services = WorldServices(self._simulation)
+        self._gazebo: Any = None
+        self._offer_gazebo(simulator.p.topics)
+
+    def _offer_gazebo(self, topics: TopicParams) -> None:
+        """Gazebo's topics and services, imported only where they are asked for."""
+        if topics.gazebo_topics:
+            from .gazebo_topics import GazeboTopics
+
+            self._gazebo = GazeboTopics(self._simulator)
+        if topics.gazebo_services:
+            try:  # the types of services exist only where somebody has built them
+                from .gazebo_services import GazeboServices
+            except ImportError as error:
+                advice = "link compat/gazebo_msgs into the workspace, and build"
+                raise ParameterError(f"gazebo_services: {error}; {advice}") from error
+            GazeboServices(self._simulation, self._world_services, "", self._time_services.set_factor)
 
     # -- the loop --
 
@@ -119,9 +129,9 @@ class SimNode:
     def _publish_step(self, observed: Observations) -> None:
         """All of one step with its stamp."""
         if observed.due.control and self._simulator.moving:
-            self._world.publish_moving(self._simulator)
+            self._world.publish_moving()
         if observed.due.clock and self._gazebo is not None:
-            self._gazebo.publish(self._simulator)
+            self._gazebo.publish()
         time, steps = self._simulation.time_control, self._simulator.steps
         on_the_way = self._simulation.controllers.in_lockstep and not observed.due.control
         unheld = time.pacer.factor == 0.0 and time.steps_left(steps) > 0
@@ -139,7 +149,7 @@ class SimNode:
         if Change.FRAMES in changes:
             self._topics.publish_static()
         if Change.WORLD in changes:
-            self._world.publish(self._simulator)
+            self._world.publish()
         if Change.STATUS in changes:
             self._status.publish()
 
@@ -153,26 +163,9 @@ class SimNode:
             rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
 
-def _gazebo_topics(robots: Sequence[RobotSpec]) -> Any:
-    """Gazebo's topics, whose module is imported only where they are asked for."""
-    from .gazebo_topics import GazeboTopics
-
-    return GazeboTopics([robot.name for robot in robots])
-
-
-def _serve_gazebo(simulation: Simulation, world_services: WorldServices, set_factor: Callable[[float], None]) -> None:
-    """Gazebo's services; their types exist only where somebody has built them."""
-    try:
-        from .gazebo_services import GazeboServices
-    except ImportError as error:
-        advice = "link compat/gazebo_msgs into the workspace, and build"
-        raise ParameterError(f"gazebo_services: {error}; {advice}") from error
-    GazeboServices(simulation, world_services, "", set_factor)
-
-
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
-        with contextlib.closing(load_simulator(param_server.load(SimParams))) as simulator:
+        with contextlib.closing(load_simulator(load_params(SimParams))) as simulator:
             SimNode(simulator).run()

@@ -17,7 +17,7 @@ from ...web.pick import floor_point
 from ...web.state import PageState
 from .. import convert, markers, names
 from ..client.sent_goal import STATES, UNFINISHED
-from ..covariances import diagonal
+from ..convert import diagonal
 from ..names import ACTION, absolute
 from .inbox import Inbox
 from .marker_shapes import MarkerStore
