@@ -21,7 +21,7 @@ from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.robot.base_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.covariances import imu_covariances
+from aro_robocop_goto_as.ros.convert import imu_covariances
 from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import (
     DOUBLES,

@@ -75,9 +75,9 @@ def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GO
     return circle("goal_circle", tolerance, x, y, frame, color), pin
 
 
-def text(namespace: str, content: str, frame: str) -> Marker:
+def text(namespace: str, content: str, frame: str, number: int = 0) -> Marker:
     """Text above the origin of a frame, facing the viewer. RViz centres its lines around its position."""
-    made = marker(namespace, Marker.TEXT_VIEW_FACING, frame, TEXT_COLOR)
+    made = marker(namespace, Marker.TEXT_VIEW_FACING, frame, TEXT_COLOR, number)
     made.text = content
     made.scale.z = TEXT_SIZE
     made.pose.position.z = TEXT_HEIGHT + TEXT_SIZE * content.count("\n")

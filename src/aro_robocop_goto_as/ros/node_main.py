@@ -1,18 +1,21 @@
-"""The life of a node, from init_node to shutdown by a signal or an error."""
+"""The life of a node, from init_node and its parameters to shutdown by a signal or an error."""
 
 import contextlib
 import signal
 import sys
 import threading
-from typing import Any, Iterator
+from typing import Any, Iterator, Type, TypeVar
 
 import rospy
 
 from ..errors import RobocopError
+from ..param_loading import from_dict
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 from . import log_handlers
 from .rospy_internals import log_without_the_master, shutdown_has_begun, stop_registering_on_shutdown
+
+T = TypeVar("T")
 
 
 @contextlib.contextmanager
@@ -38,6 +41,11 @@ def node(name: str, **options: Any) -> Iterator[None]:
         if not shutdown_has_begun():
             raise
         rospy.logdebug("%s", error)
+
+
+def load_params(cls: Type[T]) -> T:
+    """All private parameters as `cls`; ParameterError names the node and each key that is wrong."""
+    return from_dict(cls, rospy.get_param("~", {}), f"parameters of {rospy.get_name()}")
 
 
 def _shut_down(number: int, _: object) -> None:

@@ -1,7 +1,8 @@
-"""Waiting in ROS time and in wall time, without being blocked by a paused or reset clock."""
+"""Waiting in ROS time and in wall time, and timers: neither a paused clock nor one that is set back stops them."""
 
 import threading
 import time
+import traceback
 from typing import Callable, TypeVar
 
 import rospy
@@ -67,3 +68,18 @@ def wait_until(condition: Callable[[], T], timeout: float, poll: float = 0.01) -
         if value or time.monotonic() >= deadline or rospy.is_shutdown():
             return value
         time.sleep(poll)
+
+
+def start_timer(period: float, callback: Callable[[], None]) -> rospy.Timer:
+    """Call `callback` every `period` [s] of ROS time; exceptions are logged, at most once in ten seconds."""
+
+    def guarded(_event: rospy.timer.TimerEvent) -> None:
+        try:
+            callback()
+        except rospy.ROSException as error:  # publishing on a topic that shutdown has closed
+            rospy.logdebug("timer callback: %s", error)
+        except Exception:  # the timer thread's outermost level: rospy would end the thread silently
+            if not rospy.is_shutdown():
+                rospy.logerr_throttle(10.0, "timer callback failed, the timer continues:\n%s", traceback.format_exc())
+
+    return rospy.Timer(rospy.Duration.from_sec(period), guarded, reset=True)

@@ -10,7 +10,6 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
-from aro_robocop_goto_as.ros.sim.transform_topics import TransformTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
 from aro_robocop_goto_as.simulation.observations import ODOM, SCAN, TF, Observations
@@ -25,10 +24,9 @@ NO_COVARIANCE = [0.0] * 36
 class ScenarioBag:
     """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
 
-    def __init__(self, sim: Simulator, robot: RobotTopics, transforms: TransformTopics, frames: FrameNames) -> None:
+    def __init__(self, sim: Simulator, robot: RobotTopics, frames: FrameNames) -> None:
         self._sim = sim
         self._robot = robot
-        self._transforms = transforms
         self._frames = frames
         self._bag: Optional[rosbag.Bag] = None
 
@@ -78,7 +76,7 @@ class ScenarioBag:
                 "/scan", convert.to_scan(seen.scans[0], self._sim.lidar.spec, stamp, self._frames.scan_frame), stamp
             )
         if seen.of(TF):
-            self.write("/tf", TFMessage(self._transforms.messages(0, stamp)), stamp)
+            self.write("/tf", TFMessage(self._robot.transform_messages(stamp)), stamp)
         if seen.of(ODOM):
             pose, twist = Pose2D(*seen.odometry.poses[0].tolist()), Twist2D(*seen.odometry.twists[0].tolist())
             self.write("/odom", convert.to_odometry(pose, twist, stamp, odom, footprint, NO_COVARIANCE), stamp)

@@ -63,7 +63,7 @@ class Stage:
         self._topics = StepTopics(self.sim, hidden={JOINTS})
         self.robot = self._topics.robots[0]
         self.odd_scan = False
-        self.bag = ScenarioBag(self.sim, self.robot, self._topics.transforms, PARAMS.frames)
+        self.bag = ScenarioBag(self.sim, self.robot, PARAMS.frames)
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
         self._arrived: Deque[Callable[[], object]] = deque()
@@ -181,7 +181,7 @@ class Stage:
         self._topics.publish(observed, clock=False)
         self._topics.count()  # the agent is told how much was sent
         if self.watch is not None and observed.of(TF):
-            self.watch.tf.publish(self._topics.transforms.messages(0, stamp))
+            self.watch.tf.publish(self.robot.transform_messages(stamp))
         self.bag.write_step(observed, stamp)
         if observed.due.clock:
             self.bag.write("/clock", Clock(stamp), stamp)
@@ -193,7 +193,7 @@ class Stage:
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
-        transforms = self._topics.transforms.publish_static()
+        transforms = self._topics.publish_static()
         if self.watch is not None:
             self.watch.tf_static.publish(transforms)
         self.bag.write_static_frames(self._site)

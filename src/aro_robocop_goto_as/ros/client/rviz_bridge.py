@@ -15,11 +15,9 @@ from aro_robocop_goto_as.msg import GoToPositionAction
 
 from ...bridge_params import BridgeParams
 from ...errors import FrameError
-from .. import param_server
 from ..names import ACTION, BRIDGE, place
-from ..node_main import node
-from ..ticker import wait_until
-from ..timer import start_timer
+from ..node_main import load_params, node
+from ..ticker import start_timer, wait_until
 from . import discovery
 from .goal_frame import GoalTransformer
 from .sent_goal import SentGoal
@@ -148,4 +146,4 @@ class Bridge:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     with node(BRIDGE):
-        Bridge(param_server.load(BridgeParams)).run()
+        Bridge(load_params(BridgeParams)).run()

@@ -17,7 +17,7 @@ from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal, GoToPo
 from ...goto import Outcome
 from ..names import ACTION
 from ..rospy_internals import lengthen_queue
-from ..timer import start_timer
+from ..ticker import start_timer
 
 # For a subscriber that is slow, some 3 MB: a goal without a result keeps its client waiting. actionlib keeps 50.
 RESULTS_KEPT = 10_000

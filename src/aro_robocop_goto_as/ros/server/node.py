@@ -18,13 +18,12 @@ from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...goto_params import GotoParams
 from ...trail import Trail
-from .. import convert, param_server
+from .. import convert
 from ..names import SERVER
-from ..node_main import node
+from ..node_main import load_params, node
 from ..publishing import publisher
 from ..rospy_internals import is_connected_to, sender
-from ..ticker import Ticker
-from ..timer import start_timer
+from ..ticker import Ticker, start_timer
 from .goal_execution import Ending, GoalExecution
 from .goal_server import GoalServer
 from .inputs import Inputs
@@ -205,5 +204,5 @@ class GotoNode:
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     with node(SERVER):
-        GotoNode(param_server.load(GotoParams))
+        GotoNode(load_params(GotoParams))
         rospy.spin()

@@ -1,71 +1,79 @@
-"""Gazebo's services that tell the properties of links, joints, models and physics."""
+"""Gazebo's services that tell the states and properties of models, links, joints and physics."""
 
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List
 
-import rospy
 from gazebo_msgs import srv
 from gazebo_msgs.msg import LinkState
 from geometry_msgs.msg import Vector3
+from std_msgs.msg import Header
 
-from ...errors import FrameError, PlaceError, WorldError
-from ...geometry import STANDARD_GRAVITY, STANDSTILL
+from ...errors import FrameError
+from ...geometry import STANDARD_GRAVITY
 from ...robot.model import WHEEL_JOINTS
 from ...simulation.simulation import Simulation
 from .. import convert
-from .gazebo_topics import State, links, relative, state_of
+from .gazebo_topics import State, links, models, relative, robot_names, state_of
+from .world_services import serve
 
-SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
-GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
-
-
-def serve(simulation: Simulation, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
-    """Offer a service whose requests the simulation's owner answers between two steps, or refuses with success false.
-
-    answer: request -> the response's fields, as rospy takes them from a service's function
-    """
-
-    def respond(request: Any) -> Any:
-        try:
-            return simulation.jobs.call(lambda: answer(request))
-        except (FrameError, PlaceError, WorldError) as error:
-            return {"success": False, "status_message": str(error)}
-
-    rospy.Service(f"/gazebo/{name}", kind, respond)
+Fields = Dict[str, Any]  # of a response
 
 
 class GazeboProperties:
-    """What is known of links, joints and physics."""
+    """Every request is answered by the simulation's owner, between two steps."""
 
-    def __init__(self, simulation: Simulation, set_factor: Optional[Callable[[float], None]], refusal: str) -> None:
-        """set_factor: changes the real-time factor; without it, that is refused with this reason."""
+    def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._simulator = simulation.simulator
-        self._set_factor, self._refusal = set_factor, refusal
-        serve(simulation, "get_joint_properties", srv.GetJointProperties, self._get_joint_properties)
-        serve(simulation, "get_link_state", srv.GetLinkState, self._get_link_state)
-        serve(simulation, "get_model_properties", srv.GetModelProperties, self._get_model_properties)
-        serve(simulation, "get_physics_properties", srv.GetPhysicsProperties, self._get_physics_properties)
-        rospy.Service("/gazebo/set_physics_properties", srv.SetPhysicsProperties, self._on_set_physics_properties)
+        self._serve("get_joint_properties", srv.GetJointProperties, self._joint_properties)
+        self._serve("get_link_state", srv.GetLinkState, self._link_state, "state")
+        self._serve("get_model_properties", srv.GetModelProperties, self._model_properties)
+        self._serve("get_model_state", srv.GetModelState, self._model_state)
+        self._serve("get_physics_properties", srv.GetPhysicsProperties, self._physics_properties)
+        self._serve("get_world_properties", srv.GetWorldProperties, self._world_properties)
+
+    def _serve(self, name: str, kind: Any, answer: Callable[[Any], Fields], what: str = "properties") -> None:
+        text, call = f"{kind.__name__}: got {what}", self._simulation.jobs.call
+        serve(
+            f"/gazebo/{name}",
+            kind,
+            lambda request: {"status_message": text, **call(lambda: answer(request))},
+            "status_message",
+        )
 
     # -- in the owner's thread --
+
+    def model(self, name: str) -> State:
+        """The state of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
+        return state_of("model", name.partition("::")[0], models(self._simulator))
 
     def _link(self, name: str) -> State:
         """The state of a link or of the world; FrameError if there is no such link.
 
         The links of the world's models are not kept apart: each is where its model is, as on /gazebo/link_states.
         """
-        known = links(self._simulator)
-        model = name.partition("::")[0]
-        if model != name and model in self._simulator.world.models:
-            known.append((name, self._simulator.world.models[model], convert.to_twist_msg(STANDSTILL)))
-        return state_of("link", name, known, self._simulator.world.ground)
+        model, separator, _ = name.partition("::")
+        is_of_world = separator and model in self._simulator.world.models
+        return self.model(model) if is_of_world else state_of("link", name, links(self._simulator))
 
-    def _get_link_state(self, request: Any) -> Tuple[LinkState, bool, str]:
+    def _robot(self, name: str) -> int:
+        """A robot's index; FrameError if there is none of that name."""
+        names = robot_names(self._simulator)
+        if name not in names:
+            known = ", ".join([*self._simulator.world.models, *names])
+            raise FrameError(f"model [{name}] does not exist; there are: {known}")
+        return names.index(name)
+
+    def _link_state(self, request: Any) -> Fields:
         pose, twist = relative(self._link(request.link_name), self._link(request.reference_frame))
-        state = LinkState(request.link_name, pose, twist, request.reference_frame or "world")
-        return state, True, "GetLinkState: got state"
+        return {"link_state": LinkState(request.link_name, pose, twist, request.reference_frame or "world")}
 
-    def _get_model_properties(self, request: Any) -> Dict[str, Any]:
+    def _model_state(self, request: Any) -> Fields:
+        reference = request.relative_entity_name
+        pose, twist = relative(self.model(request.model_name), self.model(reference))
+        header = Header(0, convert.to_time(self._simulator.stamp_ns), reference or "world")
+        return {"header": header, "pose": pose, "twist": twist}
+
+    def _model_properties(self, request: Any) -> Fields:
         name, joints = request.model_name, []
         nested: List[str] = []
         is_static = name in self._simulator.world.models
@@ -87,11 +95,9 @@ class GazeboProperties:
             "joint_names": joints,
             "child_model_names": nested,
             "is_static": is_static,
-            "success": True,
-            "status_message": "GetModelProperties: got properties",
         }
 
-    def _get_joint_properties(self, request: Any) -> Dict[str, Any]:
+    def _joint_properties(self, request: Any) -> Fields:
         robot, _, joint = request.joint_name.rpartition("::")
         if joint not in WHEEL_JOINTS:
             raise FrameError(f"joint [{request.joint_name}] does not exist; there are: {', '.join(WHEEL_JOINTS)}")
@@ -103,50 +109,20 @@ class GazeboProperties:
             "damping": [0.0],
             "position": [state.wheel_angles[side]],
             "rate": [state.wheel_speeds[side]],
-            "success": True,
-            "status_message": "GetJointProperties: got properties",
         }
 
-    def _robot(self, name: str) -> int:
-        """A robot's index; FrameError if there is none of that name."""
-        names = [robot.name or robot.model.name for robot in self._simulator.robots]
-        if name not in names:
-            known = ", ".join([*self._simulator.world.models, *names])
-            raise FrameError(f"model [{name}] does not exist; there are: {known}")
-        return names.index(name)
-
-    def _get_physics_properties(self, _request: Any) -> Dict[str, Any]:
+    def _physics_properties(self, _request: Any) -> Fields:
         rate, time = self._simulator.rate, self._simulation.time_control
         return {
             "time_step": 1.0 / rate,
             "pause": time.paused,
             "max_update_rate": rate * time.pacer.factor,  # in Gazebo, too, 0 is as fast as possible
             "gravity": Vector3(0.0, 0.0, -STANDARD_GRAVITY),
-            "success": True,
-            "status_message": "GetPhysicsProperties: got properties",
         }
 
-    # -- in the service's thread --
-
-    def _on_set_physics_properties(self, request: Any) -> Tuple[bool, str]:
-        """Only how fast simulated time passes can be changed."""
-        refusal = self._refusal if self._set_factor is None else self._refused(request)
-        if self._set_factor is None or refusal:
-            return False, f"SetPhysicsProperties: {refusal}"
-        self._set_factor(request.max_update_rate / self._simulator.rate)
-        return True, "SetPhysicsProperties: max_update_rate set; the rest is as it was"
-
-    def _refused(self, request: Any) -> str:
-        """Why these physics are impossible; empty if they are not."""
-        time_step, gravity = 1.0 / self._simulator.rate, request.gravity
-        if not abs(request.time_step - time_step) <= SLOP:  # true for NaN
-            return f"time_step is {time_step:g} s, by the parameter physics_rate; it cannot be changed"
-        differences = (gravity.x, gravity.y, gravity.z + STANDARD_GRAVITY)
-        if not all(abs(difference) <= GRAVITY_SLOP for difference in differences):
-            return f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed"
-        if not 0.0 <= request.max_update_rate < 1e9:
-            return f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more"
-        return ""
+    def _world_properties(self, _request: Any) -> Fields:
+        names = [name for name, _, _ in models(self._simulator)]
+        return {"sim_time": self._simulator.time, "model_names": names}
 
 
 def _each(names: List[str]) -> List[str]:

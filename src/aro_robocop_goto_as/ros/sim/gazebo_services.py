@@ -4,23 +4,25 @@ What is not simulated answers with success false, so that a client that waits fo
 A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, Optional, Tuple
 
 import rospy
 from gazebo_msgs import srv
 from gazebo_msgs.msg import ModelState
-from std_msgs.msg import Header
+from geometry_msgs.msg import Pose
 from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError, PlaceError, WorldError
-from ...geometry import STANDSTILL, compose3
+from ...geometry import STANDARD_GRAVITY, STANDSTILL, Pose3D, compose3
 from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
-from .gazebo_property_services import GazeboProperties, serve
-from .gazebo_topics import State, models, relative, state_of
-from .world_services import WorldServices
+from .gazebo_property_services import GazeboProperties
+from .gazebo_topics import raised, robot_names
+from .world_services import WorldServices, serve
 
+SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
+GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
 PUSHED = "only /cmd_vel, the wheels' motors and contacts move a robot, and the world's models stand still"
 REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
     "apply_body_wrench": (srv.ApplyBodyWrench, f"forces are not simulated: {PUSHED}"),
@@ -47,7 +49,7 @@ class GazeboServices:
         simulation: Simulation,
         world_services: Optional[WorldServices],
         refusal: str = "",
-        set_factor: Optional[Callable[[float], None]] = None,
+        set_factor: Callable[[float], None] = lambda factor: None,
     ) -> None:
         """Without world services pausing and resetting do nothing, and other changes are refused with this reason.
 
@@ -57,20 +59,20 @@ class GazeboServices:
         self._simulator = simulation.simulator
         self._world_services = world_services
         self._refusal = refusal
-        self._names = [robot.name or robot.model.name for robot in simulation.simulator.robots]
+        self._set_factor = set_factor
+        self._names = robot_names(simulation.simulator)
+        self._properties = GazeboProperties(simulation)
         self._serve_empty("pause_physics", lambda: simulation.set_paused(True))
         self._serve_empty("unpause_physics", lambda: simulation.set_paused(False))
         # Gazebo's reset_simulation also sets time back to zero: here the parameter ~reset_time decides about that.
         self._serve_empty("reset_simulation", simulation.reset)
         self._serve_empty("reset_world", simulation.reset)
-        serve(simulation, "get_model_state", srv.GetModelState, self._get_model_state)
-        serve(simulation, "set_model_state", srv.SetModelState, lambda asked: self._set_model_state(asked.model_state))
-        serve(simulation, "get_world_properties", srv.GetWorldProperties, self._get_world_properties)
-        rospy.Service("/gazebo/spawn_sdf_model", srv.SpawnModel, self._on_spawn)
-        rospy.Service("/gazebo/spawn_urdf_model", srv.SpawnModel, self._on_spawn)
-        rospy.Service("/gazebo/delete_model", srv.DeleteModel, self._on_delete)
+        self._serve_change("spawn_sdf_model", srv.SpawnModel, self._spawn)
+        self._serve_change("spawn_urdf_model", srv.SpawnModel, self._spawn)
+        self._serve_change("delete_model", srv.DeleteModel, self._delete)
+        self._serve_change("set_physics_properties", srv.SetPhysicsProperties, self._set_physics_properties)
+        serve("/gazebo/set_model_state", srv.SetModelState, self._on_set_model_state, "status_message")
         rospy.Service("/gazebo/delete_light", srv.DeleteLight, _delete_light)
-        GazeboProperties(simulation, set_factor, refusal)
         for name, (kind, reason) in REFUSED.items():
             rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
         # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
@@ -87,6 +89,11 @@ class GazeboServices:
 
         rospy.Service(f"/gazebo/{name}", Empty, respond)
 
+    def _serve_change(self, name: str, kind: Any, change: Callable[[Any], str]) -> None:
+        """`change`: request -> what was done, which the response says after the name of its type."""
+        begin, text = f"{kind.__name__}: ", "status_message"
+        serve(f"/gazebo/{name}", kind, lambda request: {text: begin + change(request)}, text, begin)
+
     def _changes(self) -> WorldServices:
         if self._world_services is None:
             raise WorldError(self._refusal)
@@ -94,38 +101,27 @@ class GazeboServices:
 
     # -- in the owner's thread --
 
-    def _state(self, name: str) -> State:
-        """The state of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
-        return state_of("model", name.partition("::")[0], models(self._simulator), self._simulator.world.ground)
+    def _in_world(self, pose: Pose, reference: str) -> Pose3D:
+        """A pose in the simulator's world, of one that is relative to a model or to Gazebo's world."""
+        _, origin, _ = self._properties.model(reference)
+        target = compose3(origin, convert.from_pose_msg_3d(pose, unset_is_level=True))
+        return raised(target, -self._simulator.world.ground)
 
-    def _get_model_state(self, request: Any) -> Dict[str, Any]:
-        reference = request.relative_entity_name
-        pose, twist = relative(self._state(request.model_name), self._state(reference))
-        return {
-            "header": Header(0, convert.to_time(self._simulator.stamp_ns), reference or "world"),
-            "pose": pose,
-            "twist": twist,
-            "success": True,
-            "status_message": "GetModelState: got properties",
-        }
-
-    def _set_model_state(self, requested: ModelState) -> Tuple[bool, str]:
-        _, reference, _ = self._state(requested.reference_frame)
-        target = compose3(reference, convert.from_pose_msg_3d(requested.pose, True))
+    def _set_model_state(self, requested: ModelState) -> str:
+        target = self._in_world(requested.pose, requested.reference_frame)
         self._changes()
         name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
             self._simulation.change_world(lambda world: with_model_at(world, name, target))
-            return True, done
+            return done
         self._simulation.place(target.on_plane(), self._names.index(name))
         moving = convert.from_twist_msg(requested.twist) != STANDSTILL
-        return True, done + ("; its twist is ignored, only /cmd_vel moves a robot" if moving else "")
-
-    def _get_world_properties(self, _request: Any) -> Tuple[float, List[str], bool, bool, str]:
-        names = [name for name, _, _ in models(self._simulator)]
-        return self._simulator.time, names, False, True, "GetWorldProperties: got properties"
+        return done + ("; its twist is ignored, only /cmd_vel moves a robot" if moving else "")
 
     # -- in rospy's threads, where models are read --
+
+    def _on_set_model_state(self, request: Any) -> Dict[str, str]:
+        return {"status_message": self._simulation.jobs.call(lambda: self._set_model_state(request.model_state))}
 
     def _on_model_state(self, message: ModelState) -> None:
         try:
@@ -133,25 +129,31 @@ class GazeboServices:
         except (FrameError, PlaceError, WorldError) as error:
             rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", error)
 
-    def _on_spawn(self, request: Any) -> Tuple[bool, str]:
-        try:
-            _, reference, _ = self._simulation.jobs.call(lambda: self._state(request.reference_frame))
-            changes = self._changes()
-            if request.model_name in self._names:
-                raise WorldError(f"model name [{request.model_name}] is already used by a robot")
-            pose = compose3(reference, convert.from_pose_msg_3d(request.initial_pose, True))
-            return True, f"SpawnModel: {changes.spawn(request.model_name, request.model_xml, '', pose)}"
-        except (FrameError, WorldError) as error:
-            return False, f"SpawnModel: {error}"
+    def _spawn(self, request: Any) -> str:
+        pose = self._simulation.jobs.call(lambda: self._in_world(request.initial_pose, request.reference_frame))
+        changes = self._changes()
+        if request.model_name in self._names:
+            raise WorldError(f"model name [{request.model_name}] is already used by a robot")
+        return changes.spawn(request.model_name, request.model_xml, "", pose)
 
-    def _on_delete(self, request: Any) -> Tuple[bool, str]:
-        name = request.model_name
-        try:
-            if name in self._names:
-                raise WorldError(f"[{name}] is a robot; robots cannot be deleted")
-            return True, f"DeleteModel: {self._changes().delete(name)}"
-        except WorldError as error:
-            return False, f"DeleteModel: {error}"
+    def _delete(self, request: Any) -> str:
+        if request.model_name in self._names:
+            raise WorldError(f"[{request.model_name}] is a robot; robots cannot be deleted")
+        return self._changes().delete(request.model_name)
+
+    def _set_physics_properties(self, request: Any) -> str:
+        """Only how fast simulated time passes can be changed."""
+        self._changes()
+        rate, gravity = self._simulator.rate, request.gravity
+        if not abs(request.time_step - 1.0 / rate) <= SLOP:  # true for NaN
+            raise WorldError(f"time_step is {1.0 / rate:g} s, by the parameter physics_rate; it cannot be changed")
+        differences = (gravity.x, gravity.y, gravity.z + STANDARD_GRAVITY)
+        if not all(abs(difference) <= GRAVITY_SLOP for difference in differences):
+            raise WorldError(f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed")
+        if not 0.0 <= request.max_update_rate < 1e9:
+            raise WorldError(f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more")
+        self._set_factor(request.max_update_rate / rate)
+        return "max_update_rate set; the rest is as it was"
 
 
 def _delete_light(request: Any) -> Tuple[bool, str]:

@@ -5,7 +5,7 @@ types of the same name and md5sum are the same.
 """
 
 import math
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
 import genpy.dynamic
 import rospy
@@ -26,7 +26,7 @@ WORLD_FRAMES = ("", "world", "map")  # names of the frame that Gazebo's poses ar
 SEPARATOR = "=" * 80
 DEFINITION = "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist\n"  # of both types
 
-State = Tuple[str, Pose3D, Any]  # name, pose in the world, geometry_msgs/Twist in the world
+State = Tuple[str, Pose3D, Twist]  # name, pose and velocity in Gazebo's world
 
 
 def message_type(name: str) -> Any:
@@ -42,27 +42,27 @@ def message_type(name: str) -> Any:
 class GazeboTopics:
     """Published by the owner's thread at clock ticks, while somebody subscribes."""
 
-    def __init__(self, robots: List[str]) -> None:
-        """`robots`: their names; one without a name goes by its model's."""
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
         self._types: Dict[str, Any] = {name: message_type(name) for name in ("ModelStates", "LinkStates")}
         self._models = publisher("/gazebo/model_states", self._types["ModelStates"])
         self._links = publisher("/gazebo/link_states", self._types["LinkStates"])
-        for robot in robots:
-            rospy.Service(prefixed(robot, "imu_service"), Empty, _calibrate)
+        for robot in simulator.robots:
+            rospy.Service(prefixed(robot.name, "imu_service"), Empty, _calibrate)
 
-    def publish(self, simulator: Simulator) -> None:
+    def publish(self) -> None:
         """All models and robots as they are now."""
         if self._models.get_num_connections():
-            self._models.publish(to_message(self._types["ModelStates"], models(simulator), simulator.world.ground))
+            self._models.publish(to_message(self._types["ModelStates"], models(self._simulator)))
         if self._links.get_num_connections():
-            self._links.publish(to_message(self._types["LinkStates"], links(simulator), simulator.world.ground))
+            self._links.publish(to_message(self._types["LinkStates"], links(self._simulator)))
 
 
-def to_message(kind: Any, states: List[State], ground: float = 0.0) -> Any:
-    """A message of one of the two types; `ground`: the height [m] of the ground in Gazebo's world."""
+def to_message(kind: Any, states: List[State]) -> Any:
+    """A message of one of the two types."""
     return kind(
         [name for name, _, _ in states],
-        [convert.to_pose_msg(in_gazebo(pose, ground)) for _, pose, _ in states],
+        [convert.to_pose_msg(pose) for _, pose, _ in states],
         [twist for _, _, twist in states],
     )
 
@@ -72,12 +72,15 @@ def _calibrate(_request: EmptyRequest) -> EmptyResponse:
     return EmptyResponse()
 
 
-def _robots(simulator: Simulator) -> List[Tuple[str, RobotModel, RobotState]]:
+def robot_names(simulator: Simulator) -> List[str]:
+    """The robots' names in Gazebo: a single robot has its model's, as with Gazebo's spawn_model."""
+    return [robot.name or robot.model.name for robot in simulator.robots]
+
+
+def _robots(simulator: Simulator) -> Iterator[Tuple[str, RobotModel, RobotState]]:
     simulator.engine.update_fleet()
-    return [
-        (robot.name or robot.model.name, robot.model, simulator.fleet.state(index))
-        for index, robot in enumerate(simulator.robots)
-    ]
+    states = map(simulator.fleet.state, range(len(simulator.robots)))
+    return zip(robot_names(simulator), simulator.fleet.models, states)
 
 
 def _world_twist(state: RobotState) -> Twist:
@@ -86,20 +89,16 @@ def _world_twist(state: RobotState) -> Twist:
     return Twist(Vector3(v * math.cos(yaw), v * math.sin(yaw), 0.0), Vector3(0.0, 0.0, state.twist.w))
 
 
-def in_gazebo(pose: Pose3D, ground: float) -> Pose3D:
-    """A pose in Gazebo's world, where the ground is at this height [m], as in the world's file."""
+def raised(pose: Pose3D, height: float) -> Pose3D:
+    """A pose higher by `height` [m]: Gazebo has the ground where the world's file has it, the simulator at z = 0."""
     x, y, z = pose.position
-    return Pose3D((x, y, z + ground), pose.orientation)
+    return Pose3D((x, y, z + height), pose.orientation)
 
 
-def state_of(kind: str, name: str, states: Sequence[State], ground: float) -> State:
-    """The state of a model or link, whichever the states are, or of Gazebo's world itself.
-
-    Poses are those of the simulator, in which the ground is at z = 0; Gazebo's world has its z = 0 `ground` [m] below.
-    FrameError if there is none of that name.
-    """
+def state_of(kind: str, name: str, states: Sequence[State]) -> State:
+    """The state of a model or link, whichever the states are, or of the world; FrameError if there is none."""
     if name in WORLD_FRAMES:
-        return name, in_gazebo(Pose3D(), -ground), convert.to_twist_msg(STANDSTILL)
+        return name, Pose3D(), convert.to_twist_msg(STANDSTILL)
     known = {state[0]: state for state in states}
     if name not in known:
         raise FrameError(f"{kind} [{name}] does not exist; there are: {', '.join(known)}")
@@ -118,22 +117,26 @@ def relative(moving: State, frame: State) -> Tuple[Pose, Twist]:
 
 def models(simulator: Simulator) -> List[State]:
     """Models of the world stand still, also those whose obstacles move."""
-    standing = convert.to_twist_msg(STANDSTILL)
-    found = [(name, pose, standing) for name, pose in simulator.world.models.items()]
-    found += [(name, lifted(state.world_from_footprint), _world_twist(state)) for name, _, state in _robots(simulator)]
+    found = _scenery(simulator, "")
+    for name, _, state in _robots(simulator):
+        base = raised(lifted(state.world_from_footprint), simulator.world.ground)
+        found.append((name, base, _world_twist(state)))
     return found
 
 
 def links(simulator: Simulator) -> List[State]:
     """One link for each model of the world; of a robot its base and both wheels, as Gazebo merges fixed links."""
-    standing = convert.to_twist_msg(STANDSTILL)
-    found = [(f"{name}::link", pose, standing) for name, pose in simulator.world.models.items()]
+    found = _scenery(simulator, "::link")
     for name, model, state in _robots(simulator):
-        base = lifted(state.world_from_footprint)
-        found.append((f"{name}::base_footprint", base, _world_twist(state)))
+        base, twist = raised(lifted(state.world_from_footprint), simulator.world.ground), _world_twist(state)
+        found.append((f"{name}::base_footprint", base, twist))
         for joint, side, angle in zip(WHEEL_JOINTS, (0.5, -0.5), state.wheel_angles):
-            spun = Pose3D(
-                (0.0, side * model.wheel_separation, model.wheel_radius), quaternion_from_rpy(0.0, angle, 0.0)
-            )
-            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), _world_twist(state)))
+            position = (0.0, side * model.wheel_separation, model.wheel_radius)
+            spun = Pose3D(position, quaternion_from_rpy(0.0, angle, 0.0))
+            found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), twist))
     return found
+
+
+def _scenery(simulator: Simulator, suffix: str) -> List[State]:
+    standing, world = convert.to_twist_msg(STANDSTILL), simulator.world
+    return [(name + suffix, raised(pose, world.ground), standing) for name, pose in world.models.items()]

@@ -1,23 +1,19 @@
 """robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
-from typing import AbstractSet, Any, Callable, Sequence
+from typing import AbstractSet, Any, Callable
 
 import rospy
 
 from ...errors import ParameterError
-from ...robot.model import RobotSpec
-from ...sim_params import SimParams
+from ...sim_params import SimParams, TopicParams
 from ...simulation.observations import Observations
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
-from .. import param_server
 from ..names import SIMULATOR
-from ..node_main import node
+from ..node_main import load_params, node
 from ..publishing import resume
-from .awaited_nodes import AwaitedNodes
 from .loading import load_simulator
-from .lockstep_warnings import warn_of
 from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
 from .status import StatusTopics
@@ -33,20 +29,31 @@ class SimNode:
     """One thread runs the loop and publishes; rospy's threads only post jobs to it."""
 
     def __init__(self, simulator: Simulator) -> None:
-        p, robots = simulator.p, simulator.robots
         self._simulator = simulator
         self._simulation = Simulation(simulator, stopped=rospy.is_shutdown)
         self._topics = StepTopics(simulator)
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
-        self._inputs = [RobotInputs(self._simulation, index) for index in range(len(robots))]
-        self._awaited = AwaitedNodes(self._inputs)
-        self._pose_inputs = PoseInputs(self._simulation, p.frames, p.topics.has_initialpose)
+        self._inputs = RobotInputs(self._simulation)
+        self._pose_inputs = PoseInputs(self._simulation)
         self._time_services = TimeServices(self._simulation)
-        world_services = WorldServices(self._simulation)
-        self._gazebo = _gazebo_topics(robots) if p.topics.gazebo_topics else None
-        if p.topics.gazebo_services:
-            _serve_gazebo(self._simulation, world_services, self._time_services.set_factor)
+        self._world_services = WorldServices(self._simulation)
+        self._gazebo: Any = None
+        self._offer_gazebo(simulator.p.topics)
+
+    def _offer_gazebo(self, topics: TopicParams) -> None:
+        """Gazebo's topics and services, imported only where they are asked for."""
+        if topics.gazebo_topics:
+            from .gazebo_topics import GazeboTopics
+
+            self._gazebo = GazeboTopics(self._simulator)
+        if topics.gazebo_services:
+            try:  # the types of services exist only where somebody has built them
+                from .gazebo_services import GazeboServices
+            except ImportError as error:
+                advice = "link compat/gazebo_msgs into the workspace, and build"
+                raise ParameterError(f"gazebo_services: {error}; {advice}") from error
+            GazeboServices(self._simulation, self._world_services, "", self._time_services.set_factor)
 
     # -- the loop --
 
@@ -90,11 +97,11 @@ class SimNode:
 
     def _await_controllers(self) -> None:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
-        controllers = self._simulation.controllers
-        controllers.begin_tick(self._answering)
-        self._awaited.begin_tick()
-        self._hold(lambda: controllers.hold(self._connected, self._awaited.is_kept))
-        warn_of(controllers.end_tick(), self._simulator, controllers.timeout)
+        controllers, inputs = self._simulation.controllers, self._inputs
+        controllers.begin_tick(inputs.answering)
+        inputs.begin_tick()
+        self._hold(lambda: controllers.hold(inputs.connected, inputs.is_kept))
+        self._status.warn_of(controllers.end_tick())
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
@@ -106,7 +113,7 @@ class SimNode:
             self._publish_changes()
             if time.repetition_due():  # for nodes that start while simulated time stands still
                 self._topics.publish_clock(self._simulator.stamp_ns)
-                self._simulation.controllers.enroll(self._answering)
+                self._simulation.controllers.enroll(self._inputs.answering)
             self._report()
             wait = hold()
         time.pacer.waited(time.pacer.now() - started)
@@ -117,20 +124,14 @@ class SimNode:
             self._topics.count()
             resume()
 
-    def _connected(self, robot: int) -> AbstractSet[str]:
-        return self._inputs[robot].connected()
-
-    def _answering(self, robot: int) -> AbstractSet[str]:
-        return self._inputs[robot].answering()
-
     # -- publishing --
 
     def _publish_step(self, observed: Observations) -> None:
         """All of one step with its stamp."""
         if observed.due.control and self._simulator.moving:
-            self._world.publish_moving(self._simulator)
+            self._world.publish_moving()
         if observed.due.clock and self._gazebo is not None:
-            self._gazebo.publish(self._simulator)
+            self._gazebo.publish()
         time, steps = self._simulation.time_control, self._simulator.steps
         on_the_way = self._simulation.controllers.in_lockstep and not observed.due.control
         unheld = time.pacer.factor == 0.0 and time.steps_left(steps) > 0
@@ -146,9 +147,9 @@ class SimNode:
         if Change.TIME in changes:
             self._topics.publish_clock(self._simulator.stamp_ns)
         if Change.FRAMES in changes:
-            self._topics.transforms.publish_static()
+            self._topics.publish_static()
         if Change.WORLD in changes:
-            self._world.publish(self._simulator)
+            self._world.publish()
         if Change.STATUS in changes:
             self._status.publish()
 
@@ -162,26 +163,9 @@ class SimNode:
             rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
 
-def _gazebo_topics(robots: Sequence[RobotSpec]) -> Any:
-    """Gazebo's topics, whose module is imported only where they are asked for."""
-    from .gazebo_topics import GazeboTopics
-
-    return GazeboTopics([robot.name for robot in robots])
-
-
-def _serve_gazebo(simulation: Simulation, world_services: WorldServices, set_factor: Callable[[float], None]) -> None:
-    """Gazebo's services; their types exist only where somebody has built them."""
-    try:
-        from .gazebo_services import GazeboServices
-    except ImportError as error:
-        advice = "link compat/gazebo_msgs into the workspace, and build"
-        raise ParameterError(f"gazebo_services: {error}; {advice}") from error
-    GazeboServices(simulation, world_services, set_factor=set_factor)
-
-
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
-        with contextlib.closing(load_simulator(param_server.load(SimParams))) as simulator:
+        with contextlib.closing(load_simulator(load_params(SimParams))) as simulator:
             SimNode(simulator).run()

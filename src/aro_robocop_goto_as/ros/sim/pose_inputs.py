@@ -9,7 +9,6 @@ from aro_robocop_goto_as.srv import SetPose
 
 from ...errors import FrameError, PlaceError
 from ...geometry import Pose2D, compose
-from ...sim_params import FrameNames
 from ...simulation.simulation import Simulation
 from .. import convert
 from ..names import prefixed
@@ -18,12 +17,12 @@ from ..names import prefixed
 class PoseInputs:
     """Poses are resolved and robots placed in the owner's thread, between two steps."""
 
-    def __init__(self, simulation: Simulation, frames: FrameNames, initialpose: bool) -> None:
-        """Without `initialpose` that topic is not subscribed to, so that amcl alone receives it."""
+    def __init__(self, simulation: Simulation) -> None:
+        p = simulation.simulator.p
         self._simulation = simulation
-        self._frames = frames
+        self._frames = p.frames
         self._names: List[str] = [robot.name for robot in simulation.simulator.robots]
-        for robot, name in enumerate(self._names if initialpose else []):
+        for robot, name in enumerate(self._names if p.topics.has_initialpose else []):
             self._subscribe(robot, name)
         rospy.Service("~set_pose", SetPose, self._on_set_pose)
 

@@ -1,13 +1,13 @@
-"""The topics on which one robot is commanded: cmd_vel, and in lockstep the answers to control ticks."""
+"""The topics on which robots are commanded: cmd_vel, and in lockstep the answers to control ticks."""
 
-import socket
-from typing import List, Optional, Set
+from typing import Dict, List, Set
 
 import rospy
 from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import TickAnswer
 
+from ...process.peer import Peer, others_want_to_run
 from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert
@@ -19,40 +19,61 @@ UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still be
 
 
 class RobotInputs:
-    """Subscribers in a robot's namespace; rospy's threads post what arrives to the simulation's owner."""
+    """Subscribers in the robots' namespaces, and what is known of the nodes that publish to them.
 
-    def __init__(self, simulation: Simulation, robot: int) -> None:
+    rospy's threads post what arrives to the simulation's owner, who calls the methods; the last three in lockstep only.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        names = [robot.name for robot in simulation.simulator.robots]
+        self._subscribers = [self._subscribe(robot, name) for robot, name in enumerate(names)]
+        self._answering = [AnsweringNodes() for _ in names]
+        self._peers: Dict[ControllerId, List[Peer]] = {}  # that are awaited at this control tick
+
+    def _subscribe(self, robot: int, name: str) -> List[rospy.Subscriber]:
+        jobs, controllers = self._simulation.jobs, self._simulation.controllers
+
         def on_command(message: Twist) -> None:
             controller, twist = ControllerId(robot, sender(message)), convert.from_twist_msg(message)
-            simulation.jobs.post(lambda: simulation.controllers.command(controller, twist))
+            jobs.post(lambda: controllers.command(controller, twist))
 
         def on_answer(message: TickAnswer) -> None:
             controller, stamp_ns = ControllerId(robot, sender(message)), convert.to_ns(message.tick)
             twist = convert.from_twist_msg(message.command) if message.has_command else None
-            simulation.jobs.post(lambda: simulation.controllers.answer(controller, stamp_ns, twist))
+            jobs.post(lambda: controllers.answer(controller, stamp_ns, twist))
 
         # TCP_NODELAY: otherwise the publisher's kernel may hold a command back for 40 ms, at ten times real time 0.4 s.
-        name = simulation.simulator.robots[robot].name
-        self._commands = rospy.Subscriber(prefixed(name, "cmd_vel"), Twist, on_command, tcp_nodelay=True)
-        self._answers: Optional[rospy.Subscriber] = None
-        self._answering = AnsweringNodes()
-        if simulation.controllers.in_lockstep:
-            self._answers = rospy.Subscriber(prefixed(name, "tick_answer"), TickAnswer, on_answer, tcp_nodelay=True)
+        subscribers = [rospy.Subscriber(prefixed(name, "cmd_vel"), Twist, on_command, tcp_nodelay=True)]
+        if controllers.in_lockstep:
+            topic = prefixed(name, "tick_answer")
+            subscribers.append(rospy.Subscriber(topic, TickAnswer, on_answer, tcp_nodelay=True))
+        return subscribers
 
-    def _inputs(self) -> List[rospy.Subscriber]:
-        return [self._commands] if self._answers is None else [self._commands, self._answers]
+    def connected(self, robot: int) -> Set[str]:
+        """Names of the nodes that are connected to a robot's topics."""
+        return set().union(*map(publishers_of, self._subscribers[robot]))
 
-    def connected(self) -> Set[str]:
-        """Names of the nodes that are connected to these topics."""
-        return set().union(*map(publishers_of, self._inputs()))
+    def answering(self, robot: int) -> Set[str]:
+        """Names of the nodes that are connected to answer ticks for a robot, and to all they subscribe to."""
+        _, answers = self._subscribers[robot]
+        return self._answering[robot].among(publishers_of(answers) - {UNNAMED})
 
-    def sockets_from(self, node: str) -> List[socket.socket]:
-        """On which a node's commands and answers arrive."""
-        found = [socket_from(subscriber, node) for subscriber in self._inputs()]
-        return [end for end in found if end is not None]
+    def begin_tick(self) -> None:
+        """Forget the processes that were looked at in the tick before."""
+        self._peers.clear()
 
-    def answering(self) -> Set[str]:
-        """Names of the nodes that are connected to answer ticks and to all they subscribe to."""
-        if self._answers is None:
-            return set()
-        return self._answering.among(publishers_of(self._answers) - {UNNAMED})
+    def is_kept(self, controller: ControllerId, patience: float) -> bool:
+        """Whether a controller on this machine that has not answered in time may still do so.
+
+        It may as long as it runs or waits for a processor, for up to `patience` [s] of its processor time from the
+        first call on, and as long as something that it has sent is not processed.
+        """
+        if controller not in self._peers:
+            ends = [socket_from(subscriber, controller.node) for subscriber in self._subscribers[controller.robot]]
+            self._peers[controller] = [Peer(end, patience) for end in ends if end is not None]
+        peers = self._peers[controller]
+        # In this order: what a process has sent when it is asleep has arrived, and what has arrived wakes a thread up.
+        return (
+            any(peer.wants_to_run() for peer in peers) or any(peer.has_sent() for peer in peers) or others_want_to_run()
+        )

@@ -1,7 +1,7 @@
-"""Simulator status topics: ~status, ~real_time_factor, /diagnostics."""
+"""Simulator status topics ~status, ~real_time_factor, /diagnostics, and warnings about the machine and controllers."""
 
 import time
-from typing import List, Sequence
+from typing import List
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -9,18 +9,13 @@ from std_msgs.msg import Float64, Header
 
 from aro_robocop_goto_as.msg import SimStatus
 
-from ...robot.model import RobotSpec
+from ...simulation.controllers import TickReport
 from ...simulation.lockstep import ControllerId
 from ...simulation.pacer import FactorReport
 from ...simulation.simulation import Simulation
 from .. import convert
 from ..names import SIMULATOR
 from ..publishing import publisher
-
-
-def controller_name(controller: ControllerId, robots: Sequence[RobotSpec]) -> str:
-    """How messages name a controller: by its node, and among several robots also by the one that it commands."""
-    return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
 
 
 class StatusTopics:
@@ -58,9 +53,9 @@ class StatusTopics:
         self._behind.append(report.reached)
         if len(self._behind) == 1:
             text = (
-                "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower, "
+                "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower"
             )
-            rospy.logwarn(text + "results are the same; a summary follows at the end", report.reached, report.asked)
+            rospy.logwarn(f"{text}, results are the same; a summary follows at the end", report.reached, report.asked)
             rospy.on_shutdown(self._summarize)
 
     def _summarize(self) -> None:
@@ -68,56 +63,66 @@ class StatusTopics:
         text = "the machine was too slow in %d of %d s: real-time factor %.2f on average then, %.2f at the slowest"
         rospy.logwarn(text, len(self._behind), self._running, mean, slowest)
 
+    def warn_of(self, tick: TickReport) -> None:
+        """Log what went wrong in a control tick in lockstep."""
+        controllers, control_rate = self._simulation.controllers, self._simulation.simulator.p.rates.control_rate
+        for controller in tick.gone:
+            rospy.logwarn("lockstep: %s disconnected; the robot is stopped", self._name(controller))
+        if tick.late:
+            names, timeout = ", ".join(map(self._name, tick.late)), controllers.timeout
+            rospy.logwarn(f"lockstep: no answer from {names} within {timeout:g} s; simulated time continues without it")
+        for controller, rate in tick.slower:
+            text = (
+                "lockstep: %s runs at %g Hz, control_rate is %g Hz: it is waited for only at its own ticks from now on"
+            )
+            rospy.logwarn(text, self._name(controller), rate, control_rate)
+
+    def _name(self, controller: ControllerId) -> str:
+        """How messages name a controller: by its node, and among several robots also by the one that it commands."""
+        robots = self._simulation.simulator.robots
+        return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
+
     def publish(self) -> None:
         """Publish the newest report now."""
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
         self._awaited = simulation.controllers.awaited()
-        self._status.publish(
-            SimStatus(
-                stamp=convert.to_time(simulator.stamp_ns),
-                world=simulator.world.name,
-                robots=[robot.name for robot in simulator.robots],
-                seed=simulator.seed,
-                drive=simulator.p.engine.drive,
-                sync=self._sync,
-                paused=simulation.time_control.paused,
-                factor_asked=simulation.time_control.pacer.factor,
-                factor_reached=report.reached,
-                step_time=report.step_time,
-                behind=report.lag,
-                drivers=sorted(controller_name(controller, simulator.robots) for controller in self._awaited),
-                lockstep_misses=simulation.controllers.lockstep.misses,
-            )
+        status = SimStatus(
+            stamp=convert.to_time(simulator.stamp_ns),
+            world=simulator.world.name,
+            robots=[robot.name for robot in simulator.robots],
+            seed=simulator.seed,
+            drive=simulator.p.engine.drive,
+            sync="lockstep" if simulation.controllers.in_lockstep else "free",
+            paused=simulation.time_control.paused,
+            factor_asked=simulation.time_control.pacer.factor,
+            factor_reached=report.reached,
+            step_time=report.step_time,
+            behind=report.lag,
+            drivers=sorted(map(self._name, self._awaited)),
+            lockstep_misses=simulation.controllers.lockstep.misses,
         )
+        self._status.publish(status)
         if self._diagnostics.get_num_connections():
-            self._diagnostics.publish(self._diagnostic_array())
+            self._diagnostics.publish(_diagnostics_of(status, report.behind))
 
-    @property
-    def _sync(self) -> str:
-        return "lockstep" if self._simulation.controllers.in_lockstep else "free"
 
-    def _diagnostic_array(self) -> DiagnosticArray:
-        simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        level, text = DiagnosticStatus.OK, "paused" if simulation.time_control.paused else "running"
-        if report.behind and not simulation.time_control.paused:
-            level, text = DiagnosticStatus.WARN, "slower than the requested real-time factor"
-        values = {
-            "world": simulator.world.name,
-            "robots": len(simulator.robots),
-            "seed": simulator.seed,
-            "drive": simulator.p.engine.drive,
-            "sync": self._sync,
-            "real-time factor asked": simulation.time_control.pacer.factor,
-            "real-time factor reached": round(report.reached, 3),
-            "step time [s]": report.step_time,
-            "behind [s]": report.lag,
-            "lockstep misses": simulation.controllers.lockstep.misses,
-        }
-        status = DiagnosticStatus(
-            level,
-            f"{SIMULATOR}: simulation",
-            text,
-            SIMULATOR,
-            [KeyValue(key, str(value)) for key, value in values.items()],
-        )
-        return DiagnosticArray(Header(0, rospy.Time.from_sec(time.time()), ""), [status])
+def _diagnostics_of(status: SimStatus, is_slow: bool) -> DiagnosticArray:
+    """The same as diagnostics, stamped by the wall clock; `is_slow`: slower than the requested real-time factor."""
+    level, text = DiagnosticStatus.OK, "paused" if status.paused else "running"
+    if is_slow and not status.paused:
+        level, text = DiagnosticStatus.WARN, "slower than the requested real-time factor"
+    values = {
+        "world": status.world,
+        "robots": len(status.robots),
+        "seed": status.seed,
+        "drive": status.drive,
+        "sync": status.sync,
+        "real-time factor asked": status.factor_asked,
+        "real-time factor reached": round(status.factor_reached, 3),
+        "step time [s]": status.step_time,
+        "behind [s]": status.behind,
+        "lockstep misses": status.lockstep_misses,
+    }
+    pairs = [KeyValue(key, str(value)) for key, value in values.items()]
+    diagnosis = DiagnosticStatus(level, f"{SIMULATOR}: simulation", text, SIMULATOR, pairs)
+    return DiagnosticArray(Header(0, rospy.Time.from_sec(time.time()), ""), [diagnosis])

@@ -1,17 +1,25 @@
-"""The topics on which each step is published: all robots' measurements, /tf and /clock."""
+"""The topics on which each step is published: all robots' measurements, transforms and /clock.
 
+Transforms: world -> map -> odom -> base_footprint (REP-105). map -> odom is static, follows ground truth or is left to
+others; odom -> base_footprint is sent with each odometry.
+"""
+
+from functools import partial
 from typing import AbstractSet, Callable, Dict, List, Sequence, Tuple
 
+from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
 
-from ...simulation.observations import SCAN, TF, Due, Observations, Subscriptions
+from ...geometry import Pose2D
+from ...simulation.observations import TF, Due, Observations, Subscriptions
 from ...simulation.simulator import Simulator
+from .. import convert
 from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
 from ..publishing import publisher, push
 from ..rospy_internals import set_latched
 from .robot_topics import RobotTopics
-from .transform_topics import TransformTopics
 
 
 class StepTopics:
@@ -19,8 +27,9 @@ class StepTopics:
 
     def __init__(self, simulator: Simulator, hidden: AbstractSet[str] = frozenset()) -> None:
         """`hidden`: sensors that are not published."""
-        self._hidden = hidden
-        self.transforms = TransformTopics(simulator, self._on_change)
+        self._simulator, self._hidden = simulator, hidden
+        self._tf = publisher("/tf", TFMessage, on_change=self._on_change)
+        self._tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.robots = [RobotTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
         self._clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
         self._clock_message = packed_clock()
@@ -45,7 +54,7 @@ class StepTopics:
             self._clock_alone = Batch([(self._clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
             for index, robot in enumerate(self.robots):
-                for sensor, topic in {**robot.topics, TF: self.transforms.tf}.items():
+                for sensor, topic in {**robot.topics, TF: self._tf}.items():
                     if sensor not in self._hidden and topic.get_num_connections():
                         subscriptions.setdefault(sensor, []).append(index)
             self._subscriptions = subscriptions
@@ -59,7 +68,7 @@ class StepTopics:
         """
         key = observed.due, observed.scans.shape[1], clock
         if key not in self._batches:
-            self._batches[key] = self._unpacked(observed.due), self._batch(observed.due, clock)
+            self._batches[key] = self._prepared(observed.due, clock)
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
@@ -68,6 +77,19 @@ class StepTopics:
             self.push()
         self._kept = more
         batch.send(observed.stamp_ns, more)
+
+    def publish_static(self) -> Sequence[TransformStamped]:
+        """world -> map, and each robot's map -> odom where that is static; returns what was sent."""
+        simulator, frames = self._simulator, self._simulator.p.frames
+        stamp = convert.to_time(simulator.stamp_ns)
+        transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
+        if simulator.p.topics.localization == "static":
+            transforms += [
+                convert.to_transform(frames.map_frame, robot.odom_frame, simulator.map_from_odom(index), stamp)
+                for index, robot in enumerate(self.robots)
+            ]
+        self._tf_static.publish(transforms)
+        return transforms
 
     def publish_clock(self, stamp_ns: int) -> None:
         """Simulated time [ns] alone."""
@@ -85,23 +107,20 @@ class StepTopics:
         for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
             batch.count()
 
-    def _unpacked(self, due: Due) -> Sequence[Callable[[], None]]:
-        """What publishes the measurements that are not in a batch."""
-        of = [
-            (self.robots[robot], sensor) for sensor, robots in due.sensors.items() if sensor != TF for robot in robots
-        ]
-        return [robot.publish[sensor] for robot, sensor in of if sensor in robot.publish and sensor not in self._hidden]
-
-    def _batch(self, due: Due, clock: bool) -> Batch:
+    def _prepared(self, due: Due, clock: bool) -> Tuple[Sequence[Callable[[], None]], Batch]:
+        """What publishes the measurements that are not packed, and the batch of all others."""
+        unpacked: List[Callable[[], None]] = []
         messages: List[Posted] = []
-        for sensor, robots in due.sensors.items():
+        for sensor, indices in due.sensors.items():
+            robots = [self.robots[index] for index in indices if sensor not in self._hidden]
             if sensor == TF:
-                transforms = [transform for robot in robots for transform in self.transforms.of(robot)]
-                messages += [(self.transforms.tf, packed_transforms(transforms))] if transforms else []
-            elif sensor not in self._hidden:
-                for robot in map(self.robots.__getitem__, robots):
-                    if sensor == SCAN:
-                        messages.append((robot.topics[SCAN], robot.scan_message()))
-                    elif sensor in robot.packed:
-                        messages.append((robot.topics[sensor], robot.packed[sensor]))
-        return Batch(messages, [(self._clock, self._clock_message)] if clock else [])
+                transforms = [transform for robot in robots for transform in robot.transforms()]
+                messages += [(self._tf, packed_transforms(transforms))] if transforms else []
+                continue
+            for robot in robots:
+                message = robot.packed(sensor)
+                if message is None:
+                    unpacked.append(partial(robot.publish, sensor))
+                else:
+                    messages.append((robot.topics[sensor], message))
+        return unpacked, Batch(messages, [(self._clock, self._clock_message)] if clock else [])

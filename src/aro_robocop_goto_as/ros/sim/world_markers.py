@@ -2,12 +2,14 @@
 
 from typing import List, Sequence, Tuple
 
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
 from ...world.ground import is_in_ground
 from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+from ..convert import to_pose_msg
+from ..markers import marker, text
 
 COLOR = ColorRGBA(0.62, 0.70, 0.80, 0.55)  # translucent: walls must not hide the scan and the robot behind them
 BODIES = {  # of the robots in turn; pink and grey are the goal's and the walls'
@@ -20,31 +22,26 @@ BODIES = {  # of the robots in turn; pink and grey are the goal's and the walls'
 }
 RED = (0.92, 0.36, 0.30)  # the scan's: only of a robot called red
 NOSE = ColorRGBA(0.10, 0.11, 0.13, 1.0)
-NAME = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 CLEAR = Marker(action=Marker.DELETEALL)  # deletes earlier markers: a changed world may have fewer obstacles
-NAME_SIZE = 0.14  # [m] of a capital letter
 BODY_HEIGHT, NOSE_HEIGHT, NAME_HEIGHT = 0.15, 0.17, 0.6  # [m] above the floor
 
 
-def _marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
-    marker = Marker(ns="world", id=number, action=Marker.ADD, color=COLOR, frame_locked=True)
-    marker.header.frame_id = frame
-    pose = obstacle.at(time)
-    marker.pose = Pose(Point(*pose.position), Quaternion(*pose.orientation))
-    shape = obstacle.geometry
+def _obstacle_marker(number: int, frame: str, obstacle: Obstacle, time: float) -> Marker:
+    shape, made = obstacle.geometry, marker("world", Marker.CUBE, frame, COLOR, number)
+    made.pose = to_pose_msg(obstacle.at(time))
     if isinstance(shape, Box):
-        marker.type, marker.scale = Marker.CUBE, Vector3(*shape.size)
+        made.scale = Vector3(*shape.size)
     elif isinstance(shape, Cylinder):
-        marker.type = Marker.CYLINDER
-        marker.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
+        made.type = Marker.CYLINDER
+        made.scale = Vector3(2.0 * shape.radius, 2.0 * shape.radius, shape.length)
     elif isinstance(shape, Sphere):
-        marker.type, marker.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
+        made.type, made.scale = Marker.SPHERE, Vector3(*(2.0 * shape.radius,) * 3)
     elif isinstance(shape, Mesh):
-        marker.type, marker.scale = Marker.TRIANGLE_LIST, Vector3(1.0, 1.0, 1.0)
-        marker.points = [Point(*corner) for corner in shape.corners.reshape(-1, 3).tolist()]
+        made.type, made.scale = Marker.TRIANGLE_LIST, Vector3(1.0, 1.0, 1.0)
+        made.points = [Point(*corner) for corner in shape.corners.reshape(-1, 3).tolist()]
     else:
         raise TypeError(f"no marker for {shape!r}")
-    return marker
+    return made
 
 
 def world_markers(world: World, frame: str, time: float, moving: bool = False) -> List[Marker]:
@@ -54,7 +51,7 @@ def world_markers(world: World, frame: str, time: float, moving: bool = False) -
     """
     solid = [o for o in world.obstacles if not (isinstance(o.geometry, (Plane, Walls)) or is_in_ground(o))]
     return [
-        _marker(number, frame, obstacle, time)
+        _obstacle_marker(number, frame, obstacle, time)
         for number, obstacle in enumerate(solid)
         if obstacle.motion is not None or not moving
     ]
@@ -73,14 +70,11 @@ def robot_markers(robots: Sequence[Tuple[str, str, float]]) -> List[Marker]:
     """
     found: List[Marker] = []
     for number, (name, frame, radius) in enumerate(robots):
-        body = Marker(ns="robots", id=number, type=Marker.CYLINDER, color=body_color(name, number))
+        body = marker("robots", Marker.CYLINDER, frame, body_color(name, number), number)
         body.scale, body.pose.position.z = Vector3(2.0 * radius, 2.0 * radius, BODY_HEIGHT), BODY_HEIGHT / 2.0
-        nose = Marker(ns="noses", id=number, type=Marker.ARROW, color=NOSE)
+        nose = marker("noses", Marker.ARROW, frame, NOSE, number)
         nose.scale, nose.pose.position.z = Vector3(1.3 * radius, 0.03, 0.03), NOSE_HEIGHT
-        label = Marker(ns="names", id=number, type=Marker.TEXT_VIEW_FACING, color=NAME, text=name)
-        label.scale.z, label.pose.position.z = NAME_SIZE, NAME_HEIGHT
-        for marker in (body, nose, label):
-            marker.header.frame_id, marker.frame_locked = frame, True
-            marker.pose.orientation.w = 1.0
+        label = text("names", name, frame, number)
+        label.pose.position.z = NAME_HEIGHT
         found += [body, nose, label]
     return found

@@ -1,12 +1,12 @@
 """Services that change the world while it runs: spawn_model, delete_model, move_model."""
 
-from typing import Any, Callable, Tuple
+from typing import Any, Callable, Dict
 
 import rospy
 
 from aro_robocop_goto_as.srv import DeleteModel, MoveModel, SpawnModel
 
-from ...errors import FrameError, WorldError
+from ...errors import FrameError, PlaceError, WorldError
 from ...geometry import Pose3D
 from ...simulation.simulation import Simulation
 from ...world.edit import requested_model, with_model, with_model_at, without_model
@@ -14,14 +14,31 @@ from ...world.model import World
 from .. import convert
 
 
+def serve(
+    name: str, kind: Any, answer: Callable[[Any], Dict[str, Any]], text: str = "message", begin: str = ""
+) -> None:
+    """Offer a service that answers with success false, and the reason, what is refused.
+
+    answer: request -> the other fields of the response; text: the field with the reason, which begins with `begin`
+    """
+
+    def respond(request: Any) -> Dict[str, Any]:
+        try:
+            return {"success": True, **answer(request)}
+        except (FrameError, PlaceError, WorldError) as error:
+            return {"success": False, text: f"{begin}{error}"}
+
+    rospy.Service(name, kind, respond)
+
+
 class WorldServices:
     """Files are read in the service's thread; the world is changed in the owner's, between two steps."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        rospy.Service("~spawn_model", SpawnModel, _answering(lambda r: self.spawn(r.name, r.xml, r.file, _pose_of(r))))
-        rospy.Service("~delete_model", DeleteModel, _answering(lambda r: self.delete(r.name)))
-        rospy.Service("~move_model", MoveModel, _answering(lambda r: self.move(r.name, _pose_of(r))))
+        serve("~spawn_model", SpawnModel, lambda r: {"message": self.spawn(r.name, r.xml, r.file, _pose_of(r))})
+        serve("~delete_model", DeleteModel, lambda r: {"message": self.delete(r.name)})
+        serve("~move_model", MoveModel, lambda r: {"message": self.move(r.name, _pose_of(r))})
 
     def _change(self, edit: Callable[[World], World]) -> None:
         self._simulation.jobs.call(lambda: self._simulation.change_world(edit))
@@ -47,15 +64,3 @@ class WorldServices:
 
 def _pose_of(request: Any) -> Pose3D:
     return convert.from_pose_msg_3d(request.pose, unset_is_level=True)
-
-
-def _answering(action: Callable[[Any], str]) -> Callable[[Any], Tuple[bool, str]]:
-    """A service's function: request -> success, and what was done or why it was not."""
-
-    def answer(request: Any) -> Tuple[bool, str]:
-        try:
-            return True, action(request)
-        except (FrameError, WorldError) as error:
-            return False, str(error)
-
-    return answer

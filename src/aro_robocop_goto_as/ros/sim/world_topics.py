@@ -1,17 +1,57 @@
-"""The world for RViz and for localization: obstacle and robot markers, and the map."""
+"""The world for RViz and for localization: obstacle and robot markers; and the map, as map_server offers it."""
 
+import struct
+from io import BytesIO
 from typing import Any, Callable, List, Optional
 
+import ros_numpy
+import rospy
+from genpy import Time
+from geometry_msgs.msg import Point, Pose
+from nav_msgs.msg import MapMetaData, OccupancyGrid
+from nav_msgs.srv import GetMap, GetMapResponse
+from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...simulation.simulator import Simulator
+from ...world.model import Occupancy
 from .. import convert
 from ..batch import Batch
 from ..names import prefixed
 from ..packed import PackedMessage
 from ..publishing import publisher
-from .map_topics import MapTopics
 from .world_markers import CLEAR, robot_markers, world_markers
+
+_LENGTH = struct.Struct("<I")
+
+
+class PackedGrid(OccupancyGrid):
+    """An OccupancyGrid whose cells are an array: genpy would make a Python object of each of up to 16 million cells."""
+
+    def serialize(self, buff: Any) -> None:
+        """As genpy's messages do it."""
+        empty = BytesIO()
+        OccupancyGrid(self.header, self.info, []).serialize(empty)
+        buff.write(empty.getvalue()[: -_LENGTH.size])
+        buff.write(_LENGTH.pack(len(self.data)))
+        buff.write(self.data.tobytes())
+
+
+def to_grid(occupancy: Occupancy, stamp: Time, frame: str) -> PackedGrid:
+    """An occupancy grid as a message."""
+    origin = occupancy.origin
+    pose = Pose(Point(origin.x, origin.y, 0.0), convert.to_quaternion(origin.yaw))
+    info = MapMetaData(map_load_time=stamp, resolution=occupancy.resolution, origin=pose)
+    grid = ros_numpy.msgify(OccupancyGrid, occupancy.cells, info=info)
+    return PackedGrid(Header(0, stamp, frame), grid.info, grid.data)
+
+
+class PackedMap(GetMapResponse):
+    """The response of /static_map with a PackedGrid."""
+
+    def serialize(self, buff: Any) -> None:
+        """As genpy's messages do it; the map is the only field."""
+        self.map.serialize(buff)
 
 
 class _Whole(MarkerArray):
@@ -27,35 +67,46 @@ class _Whole(MarkerArray):
 
 
 class WorldTopics:
-    """~world, latched, and /map where a map is published."""
+    """~world, latched; where a map is published also /map and /map_metadata, latched, and the service /static_map."""
 
     def __init__(self, simulator: Simulator) -> None:
         """Robots with a name are shown as markers; a lone robot without one by RViz's RobotModel instead."""
-        p = simulator.p
-        self._frames = p.frames
+        self._simulator = simulator
+        self._frames = simulator.p.frames
         self._robots = [
-            (robot.name, prefixed(robot.name, p.frames.base_frame), radius)
+            (robot.name, prefixed(robot.name, self._frames.base_frame), radius)
             for robot, radius in zip(simulator.robots, simulator.fleet.radii.tolist())
             if robot.name
         ]
         self._markers = publisher("~world", MarkerArray, latch=True)
-        publish_map = p.topics.publish_map or simulator.world.occupancy is not None
-        self._maps: Optional[MapTopics] = MapTopics() if publish_map else None
+        self._has_map = simulator.p.topics.publish_map or simulator.world.occupancy is not None
+        self._grid: Optional[PackedGrid] = None  # that was published last
+        if self._has_map:
+            self._map = publisher("/map", OccupancyGrid, latch=True)
+            self._metadata = publisher("/map_metadata", MapMetaData, latch=True)
 
-    def publish(self, simulator: Simulator) -> None:
+    def publish(self) -> None:
         """The whole world, which replaces what was published before."""
-        if self._maps is not None:
-            self._maps.publish(simulator.occupancy(), convert.to_time(simulator.stamp_ns), self._frames.map_frame)
-        self._markers.publish(_Whole(lambda: self._all(simulator)))
+        if self._has_map:
+            self._publish_map()
+        self._markers.publish(_Whole(lambda: [CLEAR, *self._obstacles(), *robot_markers(self._robots)]))
 
-    def publish_moving(self, simulator: Simulator) -> None:
+    def publish_moving(self) -> None:
         """The moving obstacles where they are now."""
         if self._markers.get_num_connections():
-            Batch([(self._markers, PackedMessage(MarkerArray(self._moving(simulator))))]).send(simulator.stamp_ns)
+            moving = PackedMessage(MarkerArray(self._obstacles(moving=True)))
+            Batch([(self._markers, moving)]).send(self._simulator.stamp_ns)
 
-    def _all(self, simulator: Simulator) -> List[Marker]:
-        world = world_markers(simulator.world, self._frames.world_frame, simulator.world_time)
-        return [CLEAR, *world, *robot_markers(self._robots)]
+    def _obstacles(self, moving: bool = False) -> List[Marker]:
+        simulator = self._simulator
+        return world_markers(simulator.world, self._frames.world_frame, simulator.world_time, moving)
 
-    def _moving(self, simulator: Simulator) -> List[Marker]:
-        return world_markers(simulator.world, self._frames.world_frame, simulator.world_time, moving=True)
+    def _publish_map(self) -> None:
+        """A stamp of zero would mean that there is no map."""
+        stamp = max(convert.to_time(self._simulator.stamp_ns), Time(0, 1))
+        is_first = self._grid is None
+        self._grid = to_grid(self._simulator.occupancy(), stamp, self._frames.map_frame)
+        self._map.publish(self._grid)
+        self._metadata.publish(self._grid.info)
+        if is_first:
+            rospy.Service("/static_map", GetMap, lambda _: PackedMap(self._grid))

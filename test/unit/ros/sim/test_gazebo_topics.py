@@ -53,6 +53,6 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
     sim.command(Twist2D(-0.1, 0.0), 1)
     drive(sim, Twist2D(0.2, 0.0), 0.1)
     states = gazebo_topics.models(sim)
-    moving, frame = (gazebo_topics.state_of("model", name, states, 0.0) for name in ("robot_1", reference))
+    moving, frame = (gazebo_topics.state_of("model", name, states) for name in ("robot_1", reference))
     _, twist = gazebo_topics.relative(moving, frame)
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((*expected, 0.0), abs=1e-6)

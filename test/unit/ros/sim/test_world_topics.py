@@ -9,7 +9,7 @@ from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMapResponse
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.ros.sim.map_topics import PackedMap, to_grid
+from aro_robocop_goto_as.ros.sim.world_topics import PackedMap, to_grid
 from aro_robocop_goto_as.world.model import Occupancy
 
 CELLS = np.array([[-1, 0, 100], [50, -128, 127]], np.int8)
