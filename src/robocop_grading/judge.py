@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
-from .checks import CHECKS, Failed, NotReached, Passed, Verdict
+from .checks import CHECKS, Failed, NotReached, Verdict
 from .plan import CheckPlan, Plan
 from .record import Record
 from .texts import Texts, sentences, text
@@ -203,7 +203,7 @@ def _reason(name: str, failed: Mapping[str, Tuple[Failed, str]], records: Mappin
         failure, scenario = failed[chain[-1]]
         for after in CHECKS[chain[-1]].after:
             possible = after.check in failed and after.check not in chain and scenario in records
-            if possible and after.when(records[scenario], failure, failed[after.check][0]):
+            if possible and after.explains(records[scenario], failure, failed[after.check][0]):
                 chain.append(after.check)
                 break
         else:
@@ -226,7 +226,7 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
             if retried and again and name in records and retried.when(verdict, again, plan.limits):
                 verdict = replace(verdict, cause=text(retried.cause))
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
-        if isinstance(verdict, Passed):
+        if verdict is None:
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")
         elif result.outcome is Outcome.NOT_REACHED:
             result = replace(result, why=result.why or verdict.why)

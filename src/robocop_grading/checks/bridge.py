@@ -9,7 +9,7 @@ from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
 from ..texts import text
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
-from .verdict import After, Failed, NotReached, Passed, Retry, Verdict, check
+from .verdict import After, Failed, NotReached, Retry, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
@@ -17,7 +17,7 @@ SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
 CLICKS = "/move_base_simple/goal"
 NEEDS = "bridge_alive", "forwards_goal"
-CRASH = After("bridge_alive", lambda _record, failure, _earlier: failure.kind == MISSING)
+CRASH = After("bridge_alive", kind=MISSING)
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
@@ -44,7 +44,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
         return Failed(wanted, seen, goal.time, _other_position(click, goal), POSITION)
     if len(goals) > 1:
         return Failed("one goal", text("{} goals", len(goals)), goals[1].time, "The click is sent more than once")
-    return Passed()
+    return None
 
 
 def _other_position(click: Click, goal: Goal) -> str:
@@ -110,7 +110,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
         return NotReached("the bridge did not get this far")
     count = len(_reports(record))
     if count >= limits.status_reports:
-        return _untrue(record) or Passed()
+        return _untrue(record)
     if not _has_client(record):  # it may wait for the server before it creates its timer
         return NotReached(_unconnected(record))
     cause = text("reported_once" if count else "nothing_reported")
@@ -188,7 +188,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     if newer[-1].id in cancelled:
         cause = "Cancel before send_goal(), not after it"
         return Failed("a cancel request for the older goal only", "one for both", newer[-1].time, cause)
-    return Passed()
+    return None
 
 
 @check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
@@ -197,7 +197,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     if record.name == "no_server":
         return _crash(record, limits) or NotReached("the bridge was not tried with a server")
     if record.clicks and _goals_after(record, record.clicks[-1]):
-        return Passed()
+        return None
     if not _has_client(record):
         return NotReached(_unconnected(record))
     clicked, wanted = record.marks.get("clicked", 0.0), "a goal once the server is running"
@@ -207,7 +207,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
 @check("clicks")
 def bridge_alive(record: Record, limits: Limits) -> Verdict:
     """The bridge runs to the end without an exception."""
-    return _crash(record, limits) or Passed()
+    return _crash(record, limits)
 
 
 def _crash(record: Record, limits: Limits) -> Optional[Failed]:
@@ -238,4 +238,4 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
                 cause = text("not_transformed", click.frame)
             wanted = text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y)
             return Failed(wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, cause, POSITION)
-    return Passed()
+    return None

@@ -44,27 +44,25 @@ def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
 
 
-def stuck(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether a goal did not end although the server was working on it."""
-    return failure.kind == NO_RESULT and failure.goal is not None and not silent(record, failure.goal)
+def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether the server was working on the goal."""
+    return failure.goal is not None and not silent(record, failure.goal)
 
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether a success far from the goal fits the position_error that the server reported itself."""
+    """Whether an end far from the goal fits the position_error that the server reported itself."""
     own = [message.position_error for message in record.feedback if failure.goal and message.id == failure.goal.id]
-    return failure.kind == SUCCESS and bool(own) and own[-1] <= BELIEVED
+    return bool(own) and own[-1] <= BELIEVED
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether the robot did what the server's own feedback called for."""
-    return failure.kind != SUCCESS and failure.goal is not None and acted_on(record, failure.goal)
-
-
-def acted_on(record: Record, goal: Goal) -> bool:
     """Whether the robot was commanded as the handout wants for the angle_error that the server reported itself.
 
     If that angle is wrong, the motion is wrong because of it.
     """
+    goal = failure.goal
+    if goal is None or failure.kind == SUCCESS:
+        return False
     own = [message for message in record.feedback if message.id == goal.id]
     end = active_until(record, goal)
     fits, number = [], 0
@@ -85,23 +83,19 @@ def _fits(own: Feedback, v: float, w: float) -> bool:
     return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
-def delayed(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Whether a goal ended too late or not at all, though the robot did what the server's own feedback called for."""
-    return failure.kind in (NO_RESULT, SUCCESS_LATE) and misled(record, failure, earlier)
-
-
 # A goal ended wrongly in a scenario in which an exception was logged.
 EXCEPTION = After("no_exception", lambda record, failure, _: bool(failure.kind) and logged(record, EXCEPTION_LOGGED))
-AT_FIRST = After("already_there", lambda _record, failure, _earlier: failure.kind == MOVES_FIRST)
+AT_FIRST = After("already_there", kind=MOVES_FIRST)
 MISLED = After("feedback_angle", misled)
 # What every goal's ending depends on.
 ENDING = (
     EXCEPTION,
-    After("stays_alive", lambda record, failure, _: failure.kind == NO_RESULT and bool(record.deaths)),
-    After("feedback_position", believed),
-    After("feedback_position", delayed),
+    After("stays_alive", lambda record, *_: bool(record.deaths), NO_RESULT),
+    After("feedback_position", believed, SUCCESS),
+    After("feedback_position", misled, NO_RESULT),
+    After("feedback_position", misled, SUCCESS_LATE),
     MISLED,
-    After("turns_to_goal", stuck),
-    After("drives_straight", stuck),
+    After("turns_to_goal", working, NO_RESULT),
+    After("drives_straight", working, NO_RESULT),
     After("reaches_goal", alike),
 )

@@ -19,7 +19,7 @@ from ..record import (
 from ..texts import sentences, text
 from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 TWO_STATES = "The goal got two terminal states"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
@@ -54,8 +54,9 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
 
 def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
     """The first problem that a goal has."""
-    found = next(filter(None, map(problem, record.goals)), None)
-    return found or (Passed() if record.goals else NotReached("no goal was sent"))
+    if not record.goals:
+        return NotReached("no goal was sent")
+    return next(filter(None, map(problem, record.goals)), None)
 
 
 def narrow_obstacle(record: Record) -> str:
@@ -133,7 +134,7 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
     if not result.message:
         cause = logged_cause(record) or text("no_result_message")
         return Failed("a message", EMPTY, result.time, cause, EMPTY)
-    return Passed()
+    return None
 
 
 @check("speeds", needs=("reaches_goal",))
@@ -153,7 +154,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
                     seen = text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w)
                     cause = text("keeps_moving", status_name(result.status))
                     return Failed("a robot at rest", seen, sample.time, cause)
-    return Passed() if judged else NotReached("no goal ended")
+    return None if judged else NotReached("no goal ended")
 
 
 @check("states", after=(EXCEPTION,), needs=("reaches_goal",))
@@ -176,4 +177,4 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
         if len({change.status for change in changes}) > 1:
             states = " then ".join(status_name(change.status) for change in changes)
             return Failed("one terminal state", states, changes[1].time, TWO_STATES)
-    return Passed() if judged else NotReached("no goal ended")
+    return None if judged else NotReached("no goal ended")

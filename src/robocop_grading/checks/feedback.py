@@ -11,7 +11,7 @@ from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_betw
 from ..texts import Text, text
 from .consequences import nothing_came
 from .feedback_causes import ANGLE, OF_POSITION, POSITION, UNITS, Pair, likely_cause
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
@@ -44,7 +44,7 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         wanted = text("about 10 Hz ({:g} to {:g})", limits.feedback_low, limits.feedback_high)
         seen = text("{:.1f} Hz, {} messages in {:.1f} s", rate, count, end - goal.time)
         return Failed(wanted, seen, goal.time, text(cause), goal=goal)
-    return Passed() if judged else NotReached("no goal was active for a second")
+    return None if judged else NotReached("no goal was active for a second")
 
 
 def _pairs(record: Record) -> List[Pair]:
@@ -89,14 +89,13 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     pairs = _pairs(record)
     if not pairs:
         return NotReached("there was no feedback")
-    return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION) or Passed()
+    return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION)
 
 
 WRONG_POSITION = "of the position"
-FROM_POSITION = After("feedback_position", lambda _record, failure, _earlier: failure.kind == WRONG_POSITION)
 
 
-@check("errors", after=(FROM_POSITION,), needs=("feedback_rate",))
+@check("errors", after=(After("feedback_position", kind=WRONG_POSITION),), needs=("feedback_rate",))
 def feedback_angle(record: Record, limits: Limits) -> Verdict:
     """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
     pairs = [pair for pair in _pairs(record) if pair.truth[POSITION] > NEAR]
@@ -109,7 +108,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
         wanted, seen = "an angle within +-3.14 rad", f"angle_error {message.angle_error:.2f}"
         return Failed(wanted, seen, message.time, text("not_wrapped", message.angle_error))
     old = None if _old(record, POSITION) else _old(record, ANGLE)  # one mistake is counted once
-    return _untrue(ANGLE, pairs, limits.angle_tolerance) or old or Passed()
+    return _untrue(ANGLE, pairs, limits.angle_tolerance) or old
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:

@@ -9,7 +9,7 @@ from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, 
 from ..texts import text
 from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
@@ -72,7 +72,7 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
             )
         if problem is not None:
             return replace(problem, goal=goal)
-    return Passed() if judged else NotReached("no command was given while angle_error was large")
+    return None if judged else NotReached("no command was given while angle_error was large")
 
 
 def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
@@ -146,7 +146,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
         if problem is not None:
             return replace(problem, goal=goal)
-    return Passed() if judged else NotReached("the robot never headed for the goal")
+    return None if judged else NotReached("the robot never headed for the goal")
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
@@ -205,7 +205,7 @@ def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
     return None
 
 
-SWERVES = After("drives_straight", lambda _record, failure, _earlier: failure.kind == LONG_TURN)
+SWERVES = After("drives_straight", kind=LONG_TURN)
 
 
 @check("track", after=(*ENDING, SWERVES, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))

@@ -7,7 +7,7 @@ from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
 from ..texts import text
 from .output import UNCAUGHT, last_error
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 START = After("action_server", lambda record, *_: record.name == "start")
 # Nothing other than an exception ended the node.
@@ -27,7 +27,7 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if record.name != "start":
         return NotReached("this is checked when the node starts")
     if record.up:
-        return Passed()
+        return None
     name = ACTION[1:]
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
@@ -60,7 +60,7 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
     for line in record.lines:
         if UNCAUGHT.search(line.text):
             return Failed("no exception", line.text[:120].splitlines()[0], line.time, last_error(record))
-    return Passed()
+    return None
 
 
 @check("states", after=(START, OWN_DEATH))
@@ -71,4 +71,4 @@ def stays_alive(record: Record, limits: Limits) -> Verdict:
         return Failed("a running node", text("exit status {}", death.status), death.time, cause)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
-    return Passed()
+    return None

@@ -10,7 +10,7 @@ from ..texts import sentences, text
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY, logged_cause
 from .endings import narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 
@@ -20,7 +20,7 @@ def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     """An obstacle closer than 0.3 m ahead aborts the goal before the robot touches it."""
     if not record.goals:
         return NotReached("no goal was sent")
-    return _wrong_abort(record, record.goals[0], limits) or Passed()
+    return _wrong_abort(record, record.goals[0], limits)
 
 
 def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
@@ -81,7 +81,7 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     wanted = STATUS_NAMES.index(goal.ends)
     problem = _wrong_abort(record, goal, limits) if wanted == ABORTED else wrong_ending(record, goal, wanted, limits)
     if problem is None:
-        return Passed()
+        return None
     problem = replace(problem, goal=goal)
     if logged(record, EXCEPTION_LOGGED):
         return problem

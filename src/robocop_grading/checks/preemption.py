@@ -1,6 +1,7 @@
 """Checks of cancelled, replaced and subsequent goals."""
 
 from dataclasses import replace
+from typing import Optional
 
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, samples_between, status_name
@@ -8,7 +9,7 @@ from ..texts import sentences, text
 from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
-from .verdict import After, Failed, NotReached, Passed, Verdict, check
+from .verdict import After, Failed, NotReached, Verdict, check
 
 MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
 MOSTLY = 0.7
@@ -33,13 +34,13 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
     if len(record.goals) < 2:
         return NotReached("the first goal ended before a newer one could be sent")
     older, newer = record.goals[:2]
-    verdict = _preempted(record, older, newer.time, limits, "newer goal", text("check_newer_goal"))
-    if not isinstance(verdict, Passed):
-        return verdict
-    return wrong_ending(record, newer, SUCCEEDED, limits) or Passed()
+    problem = _preempted(record, older, newer.time, limits, "newer goal", text("check_newer_goal"))
+    return problem or wrong_ending(record, newer, SUCCEEDED, limits)
 
 
-def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, request: str, hint: str) -> Verdict:
+def _preempted(
+    record: Record, goal: Goal, requested: float, limits: Limits, request: str, hint: str
+) -> Optional[Failed]:
     results = results_of(record, goal)
     if not results or results[0].time > requested + limits.preempt_within:
         seen = text("a result {:.1f} s later", results[0].time - requested) if results else "no result"
@@ -48,8 +49,8 @@ def _preempted(record: Record, goal: Goal, requested: float, limits: Limits, req
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
             return Failed("success False", "success True", results[0].time, text("success_at_preempt"))
-        return Passed()
-    return wrong_ending(record, goal, PREEMPTED, limits) or Passed()
+        return None
+    return wrong_ending(record, goal, PREEMPTED, limits)
 
 
 def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint: str) -> str:
@@ -68,7 +69,7 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
 
 @check(
     "states",
-    after=(After("stays_alive", lambda _, failure, __: failure.kind == NO_ANSWER), *ENDING, After("reaches_goal")),
+    after=(After("stays_alive", kind=NO_ANSWER), *ENDING, After("reaches_goal")),
     needs=("reaches_goal", "stays_alive"),
 )
 def next_goal(record: Record, limits: Limits) -> Verdict:
@@ -82,7 +83,7 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
         return Failed("an answer to the second goal", "none", goal.time, cause, NO_ANSWER, goal)
     problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
     if problem is None:
-        return Passed()
+        return None
     if logged(record, EXCEPTION_LOGGED) or problem.kind == NOT_RESET:
         return problem
     first = status_name(results_of(record, record.goals[0])[0].status)

@@ -1,15 +1,13 @@
-"""The verdict of a check on one record, and the table of all checks with what they depend on."""
+"""The verdict of a check on one record, and the table of all checks with what they depend on.
+
+A check that has tested its contract and found it kept has nothing to say: its verdict is None.
+"""
 
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Union
 
 from ..handout import Limits
 from ..record import Goal, Record
-
-
-@dataclass(frozen=True)
-class Passed:
-    """The contract was tested and kept."""
 
 
 @dataclass(frozen=True)
@@ -35,25 +33,25 @@ class Failed:
     goal: Optional[Goal] = None
 
 
-Verdict = Union[Passed, NotReached, Failed]
+Verdict = Union[NotReached, Failed, None]
 Judge = Callable[[Record, Limits], Verdict]
 When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure
-
-
-def always(_record: Record, _failure: Failed, _earlier: Failed) -> bool:
-    """For a failure that follows from every failure of the other check."""
-    return True
 
 
 @dataclass(frozen=True)
 class After:
     """A check that another one depends on.
 
-    If it has failed, too, and `when` holds, the other one's failure follows from it.
+    If it has failed, too, the other one's failure follows from it: if `when` holds, or for every one of this kind.
     """
 
     check: str
-    when: When = always
+    when: When = lambda _record, _failure, _earlier: True
+    kind: str = ""
+
+    def explains(self, record: Record, failure: Failed, earlier: Failed) -> bool:
+        """Whether the failure follows from the earlier one, of this check."""
+        return self.kind in ("", failure.kind) and self.when(record, failure, earlier)
 
 
 class Retry(NamedTuple):

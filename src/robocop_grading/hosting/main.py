@@ -94,8 +94,9 @@ def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
     return parser.parse_intermixed_args(words)
 
 
-def prepare(args: argparse.Namespace) -> Tuple[Path, Environment]:
-    """Build the package that the arguments name: the launch file to run, and its environment. Exits with 1 or 130."""
+def main() -> None:
+    """Build what the arguments name, and launch it in this process, whose end is everything's. Exit status 1 or 130."""
+    args = parsed()
     handlers = {number: signal.getsignal(number) for number in ending_signals()}
     interrupt_on_signal()
     try:
@@ -118,4 +119,9 @@ def prepare(args: argparse.Namespace) -> Tuple[Path, Environment]:
         signal.signal(number, handler)
     environment.pop("TMPDIR", None)  # the build's
     tmpdir = {"TMPDIR": os.environ["TMPDIR"]} if "TMPDIR" in os.environ else {}
-    return path, {**environment, **tmpdir, "ROBOCOP_SIM_ARGS": for_simulator}
+    # Not in a new process: in the hosted package's environment this package might not be found.
+    from aro_robocop_goto_as.ros.cli import launch  # needs ROS, which the tests of this module do not
+
+    os.environ.clear()
+    os.environ.update({**environment, **tmpdir, "ROBOCOP_SIM_ARGS": for_simulator})
+    launch.main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)])

@@ -1,6 +1,7 @@
 """Other people's folders, however deep they are nested, and their files, which may be pipes, devices, or too large.
 
-os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels.
+os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels; so
+walk() gives up before, and remove() leaves it to another program.
 """
 
 import contextlib
@@ -32,22 +33,12 @@ def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Level]:
 
     HostingError for more than DEEPEST nested folders. Folders that can't be read count as empty.
     """
-    waiting = [(top, 0)]
-    while waiting:
-        path, depth = waiting.pop()
-        if depth > DEEPEST:
+    for path, folders, files in os.walk(top):
+        if len(Path(path).relative_to(top).parts) > DEEPEST:
             raise HostingError(f"{top}: expected at most {DEEPEST} nested folders")
-        level = Level(path, [], [])
-        with contextlib.suppress(OSError), os.scandir(path) as entries:
-            for entry in entries:
-                if entry.is_dir(follow_symlinks=False):
-                    level.folders.append(entry.name)
-                else:
-                    level.files.append(entry.name)
-        level.folders[:] = sorted(set(level.folders) - set(leave_out))
-        level.files.sort()
-        yield level
-        waiting += [(path / name, depth + 1) for name in reversed(level.folders)]
+        links = {name for name in folders if os.path.islink(os.path.join(path, name))}
+        folders[:] = sorted({*folders} - links - {*leave_out})
+        yield Level(Path(path), folders, sorted([*files, *links]))
 
 
 def find(top: Path, pattern: str) -> List[Path]:
