@@ -51,7 +51,7 @@ class BulletEngine:
         self.fleet = fleet
         self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
         self._wheel_torque = wheel_torque
-        self._control = library().aro_control
+        self._control, self._fleet_struct = library().aro_control, ctypes.byref(fleet.struct)
         self._robots: List[_Body] = []
         self._is_read = True  # whether the fleet's rows are of the last step
         self._floors: Set[int] = set()
@@ -111,9 +111,8 @@ class BulletEngine:
                 physicsClientId=client,
             )
             pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
-            pybullet.setCollisionFilterGroupMask(
-                body, -1, WORLD_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client
-            )
+            # Without the world's own group, as Bullet would compare walls with the floor on every step.
+            pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, ROBOT_GROUP, physicsClientId=client)
             self._bodies.setdefault(obstacle.name, []).append(body)
             if isinstance(obstacle.geometry, Plane):
                 self._floors.add(body)
@@ -178,8 +177,9 @@ class BulletEngine:
 
     def advance(self, first: int, steps: int) -> None:
         """Advance the base controllers and all robots by a number of steps."""
+        dt = 1.0 / self._rate
         for step in range(first, first + steps):
-            if self._control(ctypes.byref(self.fleet.struct), step / self._rate, 1.0 / self._rate):
+            if self._control(self._fleet_struct, step / self._rate, dt):
                 for robot, targets in zip(self._robots, self.fleet.targets.tolist()):
                     if targets != robot.targets:
                         self._set_motors(robot, targets)
