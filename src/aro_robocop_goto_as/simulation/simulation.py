@@ -71,8 +71,9 @@ class Simulation:
 
         PlaceError, naming the obstacle, if it would overlap something, unless it may be placed `anywhere`.
         """
-        place = self.simulator.place if anywhere else self.simulator.place_with_room
-        place(world_from_footprint, robot)
+        if not anywhere:
+            self.simulator.require_room(world_from_footprint, robot)
+        self.simulator.place(world_from_footprint, robot)
         self.controllers.drop_command(robot)
         self._changes.add(Change.FRAMES)
 

@@ -185,11 +185,6 @@ class Simulator:
         if not self.observed.odometry.in_world:
             self.observed.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
-    def place_with_room(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """Like place(), but raises PlaceError, naming the obstacle, if the robot would overlap something."""
-        self.require_room(world_from_footprint, robot)
-        self.place(world_from_footprint, robot)
-
     def require_room(self, pose: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
         self.engine.update_fleet()

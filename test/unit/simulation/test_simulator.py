@@ -367,8 +367,8 @@ def test_a_robot_has_room_where_it_touches_neither_a_wall_nor_another_robot(simu
         (Pose2D(1.15, 0.0), "is 0.150 m from robot 'robot_2', expected at least 0.21 m"),
     ):
         with pytest.raises(PlaceError, match=reason):
-            sim.place_with_room(pose, 0)
-        assert sim.world_from_footprint() == ORIGIN
+            sim.require_room(pose, 0)
     for pose in (Pose2D(0.05, 0.0), Pose2D(1.0, 0.3), Pose2D(1.7, 1.7)):  # the first overlaps only its own place
-        sim.place_with_room(pose, 0)
+        sim.require_room(pose, 0)
+        sim.place(pose, 0)
         assert sim.world_from_footprint() == pytest.approx(pose, abs=1e-9)

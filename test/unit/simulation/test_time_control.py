@@ -1,10 +1,19 @@
-"""Pausing and spans by numbers of steps; test_simulation.py has them in the loop."""
+"""Pacing, pausing and spans by a clock that the test advances; test_simulation.py has them in the loop."""
 
 import pytest
 from fakes import FakeClock
 
 from aro_robocop_goto_as.sim_params import TimeParams
-from aro_robocop_goto_as.simulation.time_control import LONGEST_HOLD, PAUSED_PERIOD, TimeControl
+from aro_robocop_goto_as.simulation.time_control import (
+    LONGEST_HOLD,
+    PAUSED_PERIOD,
+    REST,
+    REST_PERIOD,
+    Pacer,
+    TimeControl,
+)
+
+RATE = 240  # [Hz] of the steps
 
 
 def test_hold_is_short_enough_to_look_at_what_else_is_due() -> None:
@@ -44,3 +53,47 @@ def test_time_that_was_paused_is_not_caught_up() -> None:
     clock.time += 60.0
     time.set_paused(False, 240)
     assert time.hold(264) == pytest.approx(0.1)
+
+
+def test_pacer_waits_for_the_simulated_time_divided_by_the_factor() -> None:
+    wall = FakeClock()
+    timing = Pacer(2.0, RATE, wall.now)
+    assert timing.ahead(240) == pytest.approx(0.5)
+    wall.time += 0.5
+    assert timing.ahead(240) == 0.0
+
+
+def test_factor_zero_waits_for_rests_only() -> None:
+    wall = FakeClock()
+    timing = Pacer(0.0, RATE, wall.now)
+    assert timing.ahead(10**12) == 0.0
+    wall.time += REST_PERIOD
+    assert timing.ahead(10**12) == REST
+    assert timing.ahead(10**12) == 0.0
+
+
+def test_waits_count_as_rests() -> None:
+    wall = FakeClock()
+    timing = Pacer(0.0, RATE, wall.now)
+    wall.time += REST_PERIOD
+    timing.waited(REST)
+    assert timing.ahead(10**12) == 0.0
+
+
+def test_long_lag_is_dropped_and_not_caught_up_in_a_burst() -> None:
+    wall = FakeClock()
+    timing = Pacer(1.0, RATE, wall.now)
+    wall.time += 5.0
+    assert timing.ahead(240) == REST
+    assert timing.ahead(240) == 0.0
+    assert timing.ahead(264) == pytest.approx(0.1)
+
+
+def test_report_contains_the_achieved_factor() -> None:
+    wall = FakeClock()
+    timing = Pacer(4.0, RATE, wall.now)
+    wall.time += 0.5
+    assert timing.report(240) is None
+    wall.time += 0.5
+    report = timing.report(480)
+    assert (report.reached, report.asked, report.behind) == (pytest.approx(2.0), 4.0, True)

@@ -98,9 +98,9 @@ def test_robot_starts_and_may_be_placed_on_a_slab(tmp_path, simulator):
     world = load_world(world_file(tmp_path, PLANE + slab() + slab(box(1, 1, 1), z=0.5, name="crate", at=(3.0, 0.0))))
     assert free_place(world, world.spawn, model_named("burger")) == world.spawn
     sim = simulator(world, "kinematic")
-    sim.place_with_room(Pose2D(1.0, 1.0))
+    sim.require_room(Pose2D(1.0, 1.0))
     with pytest.raises(PlaceError, match="crate"):
-        sim.place_with_room(Pose2D(3.0, 0.0))
+        sim.require_room(Pose2D(3.0, 0.0))
 
 
 def test_mesh_is_ground_if_its_top_fills_its_rectangle(tmp_path):

@@ -11,8 +11,8 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...simulation.controllers import TickReport
 from ...simulation.lockstep import ControllerId
-from ...simulation.pacer import FactorReport
 from ...simulation.simulation import Simulation
+from ...simulation.time_control import FactorReport
 from .. import convert
 from ..names import SIMULATOR
 from ..publishing import publisher
