@@ -88,11 +88,11 @@ def find_package(path: str, launch: str = "") -> Package:
 
 def _manifests(top: Path) -> Iterator[Path]:
     """Every package.xml in a folder or below it, except inside another package."""
-    for level in tree.walk(top, GENERATED):
-        if "package.xml" in level.files:
-            yield level.path / "package.xml"
-            level.folders.clear()
-        level.folders[:] = [name for name in level.folders if not name.startswith(".")]
+    for folder, folders, files in tree.walk(top, GENERATED):
+        if "package.xml" in files:
+            yield folder / "package.xml"
+            folders.clear()
+        folders[:] = [name for name in folders if not name.startswith(".")]
 
 
 def _name(manifest: Path) -> str:
