@@ -10,7 +10,7 @@ from typing import Dict, List, Mapping
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
-from .grader import Grader
+from .grader import grade as grade_submission
 from .hosting.scratch import scratch_folder
 from .hosting.workspace import exclusive, places
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines
@@ -103,7 +103,7 @@ def main() -> None:
             name = submission.name + ("" if plan.is_whole else "-only")
             folder = given or make_report_folder(state / "reports" / name)
             runner = Runner(plan, state, sandbox, viewer=viewer, on_progress=_show_progress)
-            grade = Grader(runner, keep=True).grade(submission, folder)
+            grade = grade_submission(runner, submission, folder, keep=True)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(NO_GRADE)

@@ -1,7 +1,7 @@
 """Runs, judges and reports one submission."""
 
 import shutil
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping, Optional
 
@@ -21,46 +21,41 @@ NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that the
 EXCUSE = " (is the machine short of memory?)"
 
 
-@dataclass(frozen=True)
-class Grader:
-    """How submissions are graded."""
+def grade(
+    runner: Runner, submission: Submission, folder: Path, scratch: Optional[Path] = None, keep: bool = False
+) -> Grade:
+    """Write the report, and the bags of failed scenarios, to `folder`; temporary files are in `scratch`.
 
-    runner: Runner
-    scratch: Optional[Path] = None  # folder for temporary files
-    keep: bool = False  # the report stays in its folder, and gets the bags of all scenarios
+    `keep`: the report stays in its folder, and gets the bags of all scenarios. A part that is killed is run once more.
+    UngradableError if it is killed again, but may not have done so itself, or if the machine has no time for it.
+    """
+    plan = runner.plan
+    records: Dict[str, Mapping[str, Record]] = {}
+    problems: Dict[str, str] = {}
+    with temporary_folder("robocop-grade-", scratch) as work:
+        notes = list(submission.notes) if plan.is_whole else [NOT_WHOLE]
+        for script in (script for script in submission.scripts if plan.examines(script.part)):
+            recorded = _run(runner, submission, script, Path(work, script.part), notes)
+            records[script.part], problems[script.part] = recorded.records, recorded.problem
+        judged = judge.judge(submission.name, plan, records, problems)
+        judged = replace(judged, problems=(*judged.problems, *notes))
+        folder.mkdir(parents=True, exist_ok=True)
+        failed = {f"{check.part}-{check.scenario}" for check in judged.checks if check.failure is not None}
+        for bag in sorted(Path(work).glob("*/*.bag")):
+            if keep or bag.stem in failed:
+                shutil.copyfile(bag, folder / bag.name)
+        report.write(judged, plan, records, folder, keep)
+    return judged
 
-    def grade(self, submission: Submission, folder: Path) -> Grade:
-        """Write the report, and the bags of failed scenarios, to `folder`.
 
-        A part that is killed is run once more. UngradableError if it is killed again, but may not have done so itself,
-        or if the machine has no time for it.
-        """
-        plan = self.runner.plan
-        records: Dict[str, Mapping[str, Record]] = {}
-        problems: Dict[str, str] = {}
-        with temporary_folder("robocop-grade-", self.scratch) as work:
-            notes = list(submission.notes) if plan.is_whole else [NOT_WHOLE]
-            for script in (script for script in submission.scripts if plan.examines(script.part)):
-                recorded = self._run(submission, script, Path(work, script.part), notes)
-                records[script.part], problems[script.part] = recorded.records, recorded.problem
-            grade = judge.judge(submission.name, plan, records, problems)
-            grade = replace(grade, problems=(*grade.problems, *notes))
-            folder.mkdir(parents=True, exist_ok=True)
-            failed = {f"{check.part}-{check.scenario}" for check in grade.checks if check.failure is not None}
-            for bag in sorted(Path(work).glob("*/*.bag")):
-                if self.keep or bag.stem in failed:
-                    shutil.copyfile(bag, folder / bag.name)
-            report.write(grade, plan, records, folder, self.keep)
-        return grade
-
-    def _run(self, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:
-        for attempt in range(1, ATTEMPTS + 1):
-            recorded = self.runner.run(submission, script, out)
-            killed = recorded.killed + KILLED + (EXCUSE if recorded.excused else "")
-            if not recorded.killed or (attempt == ATTEMPTS and not recorded.excused):
-                break
-            if attempt == ATTEMPTS:
-                raise UngradableError(f"not gradable: {killed}, as in the previous attempt")
-            notes.append(f"{script.part}: {killed}; this part was run again")
-            remove(out)
-        return recorded
+def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:
+    for attempt in range(1, ATTEMPTS + 1):
+        recorded = runner.run(submission, script, out)
+        killed = recorded.killed + KILLED + (EXCUSE if recorded.excused else "")
+        if not recorded.killed or (attempt == ATTEMPTS and not recorded.excused):
+            break
+        if attempt == ATTEMPTS:
+            raise UngradableError(f"not gradable: {killed}, as in the previous attempt")
+        notes.append(f"{script.part}: {killed}; this part was run again")
+        remove(out)
+    return recorded

@@ -121,17 +121,10 @@ def printable_lines(text: str) -> str:
 
 def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
     """Grade the parts that have records; `problems` (part -> text) explains records that are missing."""
-    checks = [
-        _judge(check, plan, records[check.part], problems.get(check.part, ""))
-        for check in plan.checks
-        if check.part in records
-    ]
-    checks = [
-        result
-        for part, by_name in records.items()
-        for result in _with_reasons([check for check in checks if check.part == part], by_name)
-    ]
-    checks = [_told(check, plan.texts) for check in checks]
+    checks: List[CheckResult] = []
+    for part, by_name in records.items():
+        own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
+        checks += [_told(check, plan.texts) for check in _with_reasons(own, by_name)]
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     if any(check.outcome is not Outcome.PASSED for check in checks):
         found += [f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _unpublished(by_name)]

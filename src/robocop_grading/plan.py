@@ -24,6 +24,7 @@ PARTS = ("server", "bridge")
 FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "no_pending")  # fixed, not in the plan's file
+SECTIONS = {"limits": dict, "scenarios": list, "checks": dict}
 STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
 MIDDLE = 0  # the seed with which every range stands for its middle
 LARGEST_SEED = 999_999
@@ -148,15 +149,12 @@ def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
     """
     if not MIDDLE <= seed <= LARGEST_SEED:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {LARGEST_SEED}")
-    raw, keys = read_yaml(path), {"limits", "scenarios", "checks"}
-    _expect(raw, keys, str(path), keys)
+    raw = read_yaml(path)
+    _expect(raw, set(SECTIONS), str(path), set(SECTIONS))
     raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
-    for name, kind, words in (
-        ("limits", dict, "a mapping"),
-        ("scenarios", list, "a list"),
-        ("checks", dict, "a mapping"),
-    ):
+    for name, kind in SECTIONS.items():
         if not isinstance(raw[name], kind):
+            words = "a list" if kind is list else "a mapping"
             raise PlanError(f"{path}: {name}: expected {words}, got {raw[name]!r}")
     limits = from_dict(Limits, raw["limits"], f"{path}: limits")
     for name, value in dataclasses.asdict(limits).items():
@@ -216,6 +214,12 @@ def _list(value: Any, where: str, of: str) -> List[Any]:
     return value
 
 
+def _one_of(words: Sequence[str], value: Any, where: str) -> str:
+    if value not in words:
+        raise PlanError(f"{where}: expected {', '.join(words[:-1])} or {words[-1]}, got {value!r}")
+    return str(value)
+
+
 def _scenario(raw: Any, where: str, seed: int) -> Scenario:
     _expect(raw, {"name", "about", "script", "obstacles", "odd_scan", "pushes"}, where, {"name", "about", "script"})
     if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
@@ -250,14 +254,10 @@ def _step(raw: Any, where: str) -> Step:
     _expect(raw, STEP_KEYS, where)
     if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
         raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
-    if raw.get("of", "odom") not in ("odom", "robot"):
-        raise PlanError(f"{where}: of: expected odom or robot, got {raw['of']!r}")
-    if raw.get("ends", "SUCCEEDED") not in ("SUCCEEDED", "ABORTED", "PREEMPTED"):
-        raise PlanError(f"{where}: ends: expected SUCCEEDED, ABORTED or PREEMPTED, got {raw['ends']!r}")
     return Step(
         goal=_numbers(raw["goal"], 2, f"{where}: goal") if "goal" in raw else (),
-        of=raw.get("of", "odom"),
-        ends=raw.get("ends", ""),
+        of=_one_of(("odom", "robot"), raw.get("of", "odom"), f"{where}: of"),
+        ends=_one_of(("SUCCEEDED", "ABORTED", "PREEMPTED"), raw["ends"], f"{where}: ends") if "ends" in raw else "",
         run=_number(raw.get("for", 0.0), f"{where}: for", kind=DRAWN),
         cancel=bool(raw.get("cancel", False)),
         place=_numbers(raw["place"], 3, f"{where}: place") if "place" in raw else (),
@@ -269,16 +269,14 @@ def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: 
         raise PlanError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
     where = f"{where}: {name}"
     _expect(raw, {"part", "points", "extra", "scenarios"}, where, {"part", "points", "scenarios"})
-    if raw["part"] not in PARTS:
-        raise PlanError(f"{where}: part: expected server or bridge, got {raw['part']!r}")
+    part = _one_of(PARTS, raw["part"], f"{where}: part")
     scenarios = _list(raw["scenarios"], f"{where}: scenarios", "names")
     for scenario in scenarios:
-        if scenario not in known[raw["part"]]:
-            raise PlanError(
-                f"{where}: scenarios: unknown for a {raw['part']}: {scenario!r}; known: {', '.join(known[raw['part']])}"
-            )
+        if scenario not in known[part]:
+            names = ", ".join(known[part])
+            raise PlanError(f"{where}: scenarios: unknown for a {part}: {scenario!r}; known: {names}")
     points = _number(raw["points"], f"{where}: points")
-    return CheckPlan(name, raw["part"], points, bool(raw.get("extra", False)), tuple(scenarios))
+    return CheckPlan(name, part, points, bool(raw.get("extra", False)), tuple(scenarios))
 
 
 def site(index: int) -> Pose2D:

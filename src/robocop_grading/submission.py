@@ -29,8 +29,8 @@ from .skeleton import make
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
-SCRIPTS = dict(zip(("server", "bridge"), (script for script, _ in NODES)))
-PARTS = {script: part for part, script in SCRIPTS.items()}
+PARTS = dict(zip((script for script, _ in NODES), ("server", "bridge")))  # by script
+NODE_NAMES = {PARTS[script]: node for script, node in NODES}  # by part
 SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
 CLICKS = "move_base_simple"
 LAUNCH_TIME = 30.0  # [s] of processor time
@@ -97,7 +97,7 @@ def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission
                 f"{path}: neither a server nor a bridge: it contains no ActionServer, no action client and no "
                 "/move_base_simple/goal"
             )
-        scripts.append(Script(part, path, _node_name(part), [], _next_step(path, path.name)))
+        scripts.append(Script(part, path, NODE_NAMES[part], [], _next_step(path, path.name)))
     return Submission(
         top.stem if top.is_file() else top.name,
         [top, _lab_folder(state)],  # `top` may contain helper modules
@@ -105,10 +105,6 @@ def _files(paths: List[Path], top: Path, share: Path, state: Path) -> Submission
         scripts,
         notes=[note for script in scripts for note in _advice(script)],
     )
-
-
-def _node_name(part: str) -> str:
-    return dict(NODES)[SCRIPTS[part]]
 
 
 def _part_of(path: Path, top: Path) -> str:
@@ -164,7 +160,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
             scripts[part] = Script(
                 part,
                 path,
-                attributes.get("name", _node_name(part)),
+                attributes.get("name", NODE_NAMES[part]),
                 arguments.split() if "$(" not in arguments else [],
                 _next_step(path, str(path.relative_to(copy))),
             )

@@ -39,7 +39,7 @@ from wrong_solutions import WRONG, Wrong
 
 from aro_robocop_goto_as.errors import NoTimeError
 from robocop_grading import judge
-from robocop_grading.grader import Grader
+from robocop_grading.grader import grade as grade_submission
 from robocop_grading.judge import Grade, Outcome
 from robocop_grading.plan import load
 from robocop_grading.runner import Runner
@@ -105,7 +105,7 @@ def _right(name: str, folder: Path, seed: int) -> Tuple[List[str], Grade]:
     if name == REFERENCE:
         opened = sandbox()
         submission = prepare_submission(str(SHARE), SHARE, STATE, folder, opened)
-        grade = Grader(Runner(load(PLAN, seed), STATE, opened)).grade(submission, folder / "report")
+        grade = grade_submission(Runner(load(PLAN, seed), STATE, opened), submission, folder / "report")
     else:
         grade = graded(name, RIGHT[name].read_text(), folder, seed)
     return [check.words for check in grade.checks if check.outcome is not Outcome.PASSED], grade

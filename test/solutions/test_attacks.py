@@ -10,7 +10,7 @@ from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
 from robocop_grading import skeleton
-from robocop_grading.grader import Grader
+from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan import load
 from robocop_grading.runner import Runner
 from robocop_grading.submission import prepare_submission
@@ -244,7 +244,7 @@ def test_node_that_kills_itself_is_graded(tmp_path):
     text = RIGHT["base_server"].read_text().replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
     (tmp_path / "solution.py").write_text(text)
     submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
-    grade = Grader(Runner(load(PLAN), STATE, sandbox())).grade(submission, tmp_path / "report")
+    grade = grade_submission(Runner(load(PLAN), STATE, sandbox()), submission, tmp_path / "report")
     (alive,) = [check for check in grade.checks if check.name == "stays_alive"]
     assert alive.failure is not None and "The node died: signal 9 (SIGKILL)" in alive.words
     assert grade.points < grade.points_available

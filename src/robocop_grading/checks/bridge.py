@@ -4,7 +4,7 @@ import math
 import re
 from typing import List, NamedTuple, Optional, Set
 
-from ..handout import ACTION, Limits
+from ..handout import ACTION, CLICKS, Limits
 from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
 from ..texts import text
 from .consequences import alike
@@ -15,7 +15,6 @@ POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
-CLICKS = "/move_base_simple/goal"
 NEEDS = "bridge_alive", "forwards_goal"
 CRASH = After("bridge_alive", kind=MISSING)
 

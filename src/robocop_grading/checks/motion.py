@@ -98,9 +98,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
         command, angle = driving[0]
         cause = text("drives_while_turning")
         if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
-            cause = text("drives_straight_at", angle, TURN)
-            if command.time > aligned:
-                cause = text("no_correction", angle, TURN)
+            cause = text("no_correction" if command.time > aligned else "drives_straight_at", angle, TURN)
         seen = text("linear.x {:.2f} at {:.2f} rad", command.v, angle)
         return Failed(text(NOT_DRIVING, TURN), seen, command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]

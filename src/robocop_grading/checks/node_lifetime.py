@@ -32,14 +32,10 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
         if kind != ACTION_TYPE:
-            cause = text("other_type", kind)
-            return Failed(ACTION_TYPE, kind, 0.0, cause)
-        cause = text("other_fields")
-        return Failed("a server that clients can connect to", "no connection", 0.0, cause)
-    if record.deaths:
-        death = record.deaths[0]
-        cause = text("The node ended while starting: {}", _reason(death, record))
-        return Failed("a running node", text("exit status {}", death.status), death.time, cause)
+            return Failed(ACTION_TYPE, kind, 0.0, text("other_type", kind))
+        return Failed("a server that clients can connect to", "no connection", 0.0, text("other_fields"))
+    for death in record.deaths:
+        return _died("The node ended while starting: {}", death, record)
     servers = [server.lstrip("/") for server in record.servers]
     if servers:
         close = closest(name, servers) or servers[0]
@@ -50,8 +46,9 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     return Failed(name, "no action server", 0.0, cause)
 
 
-def _reason(death: Death, record: Record) -> str:
-    return death.reason or ("signal 9 (SIGKILL)" if death.is_unexplained else last_error(record))
+def _died(cause: str, death: Death, record: Record) -> Failed:
+    reason = death.reason or ("signal 9 (SIGKILL)" if death.is_unexplained else last_error(record))
+    return Failed("a running node", text("exit status {}", death.status), death.time, text(cause, reason))
 
 
 @check("states", after=(START,))
@@ -67,8 +64,7 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for death in record.deaths:
-        cause = text("The node died: {}", _reason(death, record))
-        return Failed("a running node", text("exit status {}", death.status), death.time, cause)
+        return _died("The node died: {}", death, record)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
     return None

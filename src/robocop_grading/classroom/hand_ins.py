@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import itertools
 import os
 import stat
 import tarfile
@@ -88,22 +89,16 @@ def _entries(path: Path) -> Iterator[Entry]:
 def _on_disk(path: Path) -> Iterator[Entry]:
     """A file or folder and everything below it; links are not followed."""
     left = MOST_BYTES
-    for inner, name in _walk(path):
+    levels = tree.walk(path, LEFT_OUT)
+    below = (folder / name for folder, folders, files in levels for name in sorted([*folders, *files]))
+    for inner in itertools.chain([path], below):
+        name = "" if inner == path else str(inner.relative_to(path))
         mode = os.lstat(inner).st_mode
         if stat.S_IFMT(mode) not in TYPES:
             raise SubmissionError(f"{name}: expected a file, folder or link")
         content = _at_most(open(inner, "rb"), left) if stat.S_ISREG(mode) else b""
         left -= len(content)
         yield name, mode, content, os.readlink(inner) if stat.S_ISLNK(mode) else ""
-
-
-def _walk(path: Path) -> Iterator[Tuple[Path, str]]:
-    yield path, ""
-    if path.is_dir():
-        for level in tree.walk(path, LEFT_OUT):
-            for name in sorted([*level.folders, *level.files]):
-                inner = level.path / name
-                yield inner, str(inner.relative_to(path))
 
 
 def _zipped(path: Path) -> Iterator[Entry]:

@@ -10,7 +10,7 @@ from typing import Dict, Optional, Union
 
 from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
 
-from ..grader import Grader
+from ..grader import grade
 from ..hosting.tree import temporary_folder
 from ..hosting.workspace import places
 from ..judge import Grade
@@ -70,7 +70,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
             path = unpack(task.hand_in, top / "hand_in")
             submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
             submission = dataclasses.replace(submission, name=name)
-            Grader(Runner(task.plan, state, sandbox), scratch=top).grade(submission, folder)
+            grade(Runner(task.plan, state, sandbox), submission, folder, scratch=top)
         except NoTimeError as error:
             return error
         except UngradableError:

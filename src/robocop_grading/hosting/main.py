@@ -65,7 +65,7 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str]) -> Pa
 
 def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
     """NAME:=VALUE words for the package's launch file, and those for the simulator's, which knows `simulator`."""
-    known = package.launch_arguments()
+    known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
     for_simulator = []
     for word in words:

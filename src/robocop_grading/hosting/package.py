@@ -47,13 +47,11 @@ class Package:
             waiting += sorted(path for path in own - seen if path.is_file())
         return False
 
-    def launch_arguments(self) -> List[str]:
-        """Names of its launch file's arguments."""
-        return [] if self.launch_file is None else arguments_of(self.launch_file)
 
-
-def arguments_of(launch_file: Path) -> List[str]:
-    """Names of a launch file's arguments, without those that have a fixed value."""
+def arguments_of(launch_file: Optional[Path]) -> List[str]:
+    """Names of a launch file's arguments, without those that have a fixed value; none without a file."""
+    if launch_file is None:
+        return []
     return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
 
 
@@ -88,11 +86,11 @@ def find_package(path: str, launch: str = "") -> Package:
 
 def _manifests(top: Path) -> Iterator[Path]:
     """Every package.xml in a folder or below it, except inside another package."""
-    for level in tree.walk(top, GENERATED):
-        if "package.xml" in level.files:
-            yield level.path / "package.xml"
-            level.folders.clear()
-        level.folders[:] = [name for name in level.folders if not name.startswith(".")]
+    for folder, folders, files in tree.walk(top, GENERATED):
+        if "package.xml" in files:
+            yield folder / "package.xml"
+            folders.clear()
+        folders[:] = [name for name in folders if not name.startswith(".")]
 
 
 def _name(manifest: Path) -> str:

@@ -11,7 +11,7 @@ import stat
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Collection, Iterator, List, NamedTuple, Optional
+from typing import Collection, Iterator, List, Optional, Tuple
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import HostingError
@@ -20,33 +20,26 @@ MAX_SIZE = 1024**2  # bytes of a manifest, launch file or script
 DEEPEST = 100  # nested folders; packages and their builds have ten or so
 
 
-class Level(NamedTuple):
-    """A folder with the names in it, sorted; links are files here, wherever they lead."""
+def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Tuple[Path, List[str], List[str]]]:
+    """`top` and the folders below it, each with the names of folders and files in it, sorted.
 
-    path: Path
-    folders: List[str]
-    files: List[str]
-
-
-def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Level]:
-    """`top` and the folders below it; a caller may remove names from `folders` to skip them.
-
-    HostingError for more than DEEPEST nested folders. Folders that can't be read count as empty.
+    Links are files here, wherever they lead. A caller may remove names of folders to skip them. Folders that can't be
+    read count as empty. HostingError for more than DEEPEST nested folders.
     """
     for path, folders, files in os.walk(top):
         if len(Path(path).relative_to(top).parts) > DEEPEST:
             raise HostingError(f"{top}: expected at most {DEEPEST} nested folders")
         links = {name for name in folders if os.path.islink(os.path.join(path, name))}
         folders[:] = sorted({*folders} - links - {*leave_out})
-        yield Level(Path(path), folders, sorted([*files, *links]))
+        yield Path(path), folders, sorted([*files, *links])
 
 
 def find(top: Path, pattern: str) -> List[Path]:
     """Everything below `top` whose name matches a pattern such as *.launch, sorted."""
     return sorted(
-        level.path / name
-        for level in walk(top)
-        for name in (*level.folders, *level.files)
+        folder / name
+        for folder, folders, files in walk(top)
+        for name in (*folders, *files)
         if fnmatch.fnmatchcase(name, pattern)
     )
 

@@ -76,8 +76,8 @@ def copy_sources(
         for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
             pass
         shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
-        for level in tree.walk(source / name):
-            os.chmod(level.path, os.stat(level.path).st_mode | 0o700)  # a copy of a read-only folder can't be removed
+        for inner, _, _ in tree.walk(source / name):
+            os.chmod(inner, os.stat(inner).st_mode | 0o700)  # a copy of a read-only folder can't be removed
 
 
 def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:

@@ -18,7 +18,6 @@ from ..checks import CHECKS
 from ..judge import CheckResult, Grade, Outcome, Records, printable, printable_lines
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
-from .autograders import as_classroom, as_gradescope
 from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
@@ -92,6 +91,54 @@ def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
         elif check.outcome is Outcome.NOT_REACHED:
             ElementTree.SubElement(case, "skipped", {"message": printable_lines(check.why)})
     return suite
+
+
+# -- for the hosts of courses: GitHub Classroom (classroom.json) and Gradescope (results.json) --
+
+
+def as_classroom(grade: Grade) -> Dict[str, object]:
+    """The result of one runner as GitHub's action classroom-resources/autograding-grading-reporter reads it."""
+    return {
+        "version": 1,
+        "status": "pass" if grade.all_right else "fail",
+        "max_score": grade.points_available,
+        "tests": [_github_test(check) for check in grade.checks if check.points or not check.extra],
+    }
+
+
+def _github_test(check: CheckResult) -> Dict[str, object]:
+    passed = check.outcome is Outcome.PASSED
+    return {
+        "name": check.sentence,
+        "status": "pass" if passed else "fail",
+        "score": check.points,
+        "message": "" if passed else printable(check.words),
+        "test_code": check.name,
+        "filename": "",
+        "line_no": 0,
+        "duration": 0,
+    }
+
+
+def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
+    """The content of results.json: gradescope-autograders.readthedocs.io, section "Autograder output"."""
+    tests = []
+    for check in grade.checks:
+        passed = check.outcome is Outcome.PASSED
+        test: Dict[str, object] = {
+            "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
+            "number": f"{check.part}.{check.name}",
+            "output": printable_lines(check.words),
+        }
+        if passed or not check.extra:  # an extra check that did not pass is shown without points, neither green nor red
+            test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available
+            test["status"] = "passed" if passed else "failed"
+        tests.append(test)
+    output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
+    return {"score": grade.points, "output": "\n".join(output), "tests": tests}
+
+
+# -- report.html --
 
 
 def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool) -> Iterator[Dict[str, Any]]:

@@ -125,9 +125,9 @@ def disk_usage(folder: Path) -> int:
     HostingError if it is nested too deep to be looked at.
     """
     total = 0
-    for level in tree.walk(folder):
-        total += MIN_FILE * len(level.folders)
-        for name in level.files:
+    for path, folders, files in tree.walk(folder):
+        total += MIN_FILE * len(folders)
+        for name in files:
             with contextlib.suppress(OSError):  # it has been removed
-                total += max(MIN_FILE, os.lstat(level.path / name).st_blocks * 512)
+                total += max(MIN_FILE, os.lstat(path / name).st_blocks * 512)
     return total

@@ -20,7 +20,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.ros import graph
 
 from .. import record as rec
-from ..handout import ACTION
+from ..handout import ACTION, CLICKS
 from ..plan import BRIDGE_SCENARIOS
 from ..runner import Job
 from .ros_internals import goal_senders, has_client
@@ -30,7 +30,6 @@ from .stage import Stage
 START_TIMEOUT = 20.0  # [s] for the node's first connection
 CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
-CLICKS = "/move_base_simple/goal"
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
 STATUS_TYPES = {

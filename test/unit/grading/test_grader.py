@@ -7,7 +7,7 @@ import pytest
 from support import ROOT
 
 from aro_robocop_goto_as.errors import UngradableError
-from robocop_grading.grader import Grader
+from robocop_grading.grader import grade
 from robocop_grading.plan import load
 from robocop_grading.record import Death, Record
 from robocop_grading.runner import Recorded, Runner
@@ -26,7 +26,7 @@ def graded(outcomes, folder, monkeypatch):
     left = list(outcomes)
     monkeypatch.setattr(Runner, "run", lambda *_: left.pop(0))
     submission = Submission("anna", (), {}, [Script("server", folder, "node")])
-    return Grader(Runner(PLAN, folder)).grade(submission, folder / "report")
+    return grade(Runner(PLAN, folder), submission, folder / "report")
 
 
 def test_killed_part_is_run_again_and_the_grade_says_so(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from robocop_grading import record as rec
 from robocop_grading.judge import Outcome, judge
 from robocop_grading.plan import Plan, load
 from robocop_grading.record import Record
-from robocop_grading.report.autograders import as_classroom, as_gradescope
+from robocop_grading.report.write import as_classroom, as_gradescope
 
 
 def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
