@@ -14,7 +14,7 @@ from ..world.model import Obstacle, Plane, World
 from .bullet_shapes import FLOOR, load_urdf, shapes_of
 from .quiet_pybullet import pybullet
 
-WORLD_GROUP, ROBOT_GROUP = 1, 2  # Bullet's collision filter bits
+ROBOT_GROUP, WORLD_GROUP = 1, 2  # Bullet's collision filter bits; its rays are of group 1
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower motion with stopped wheels is solver creep
 REST_STEPS = 24  # consecutive steps below these speeds until the robot is parked
 WAKING = 1.0  # [m] between the centres, within which a moving obstacle keeps a robot awake

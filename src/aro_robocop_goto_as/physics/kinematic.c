@@ -14,10 +14,10 @@
 
 /* A world's cross-sections at all heights of a robot's body, in one plane. */
 struct outlines {
-    int64_t n_segments, n_circles;
     const double *segments;  /* (n_segments, 2, 2) [m] */
-    const double *circles;   /* (n_circles, 3) x, y, radius [m] */
-    const struct grid *grid; /* of the segments; NULL: all are near everywhere */
+    const struct grid *grid; /* of the segments */
+    int64_t n_circles;
+    const double *circles; /* (n_circles, 3) x, y, radius [m] */
 };
 
 struct kinematic {
@@ -30,97 +30,67 @@ struct kinematic {
     double separation;       /* [m] that any two robots can travel together before they meet; a lower bound */
 };
 
-/* The segments near a point, one after the other; from a grid some may come twice. */
-struct nearby {
-    const struct outlines *walls;
-    int64_t row, last_row, first_column, last_column;
-    int64_t next, end; /* in members, in everywhere, or in segments */
-    int stage;         /* 0: everywhere or all segments, 1: rows of tiles */
-};
-
-/* The number of a tile, at least -1 and at most `count`; -1 for NaN, as where a pose has overflowed. */
-static int64_t tile_within(double length, double side, int64_t count)
-{
-    double tile = length / side;
-    return (int64_t)floor(tile > -1.0 ? fmin(tile, (double)count) : -1.0);
-}
-
-/* The segments within a square of half a side [m] around a point, and perhaps others. */
-static struct nearby segments_near(const struct outlines *walls, double x, double y, double half)
-{
-    const struct grid *grid = walls->grid;
-    struct nearby near = {walls, 0, -1, 0, -1, 0, 0, 0};
-    int64_t first, last;
-    if (!grid) {
-        near.end = walls->n_segments;
-        return near;
-    }
-    near.end = grid->n_everywhere;
-    first = tile_within(x - half - grid->x, grid->side, grid->columns);
-    last = tile_within(x + half - grid->x, grid->side, grid->columns);
-    near.first_column = first > 0 ? first : 0;
-    near.last_column = last < grid->columns - 1 ? last : grid->columns - 1;
-    first = tile_within(y - half - grid->y, grid->side, grid->rows);
-    last = tile_within(y + half - grid->y, grid->side, grid->rows);
-    near.row = first > 0 ? first : 0;
-    near.last_row = last < grid->rows - 1 ? last : grid->rows - 1;
-    return near;
-}
-
-/* The next segment [ax, ay, bx, by] [m]; NULL after the last one. */
-static const double *next_segment(struct nearby *near)
-{
-    const struct grid *grid = near->walls->grid;
-    int64_t number;
-    while (near->next >= near->end) {
-        const int32_t *starts;
-        if (!grid || near->row > near->last_row || near->first_column > near->last_column)
-            return NULL;
-        starts = grid->starts + near->row * grid->columns;
-        near->stage = 1;
-        near->next = starts[near->first_column];
-        near->end = starts[near->last_column + 1];
-        near->row++;
-    }
-    number = !grid ? near->next : near->stage ? grid->members[near->next] : grid->everywhere[near->next];
-    near->next++;
-    return near->walls->segments + 4 * number;
-}
-
-static double distance_to_segment(double x, double y, const double *segment)
-{
-    double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1];
-    double dx = x - segment[0], dy = y - segment[1], squared = along_x * along_x + along_y * along_y;
-    double nearest = (dx * along_x + dy * along_y) / (squared > 1e-30 ? squared : 1e-30);
-    nearest = nearest < 0.0 ? 0.0 : nearest > 1.0 ? 1.0 : nearest;
-    return hypot(dx - nearest * along_x, dy - nearest * along_y);
-}
-
-/* Distance [m] from a robot's rim to the nearest wall, with a grid at most NEARBY; negative inside a wall. */
-static double gap(const struct kinematic *kin, int64_t robot, double length)
-{
-    const struct outlines *walls = kin->walls + kin->walls_of[robot];
-    const double *pose = kin->fleet->poses + 3 * robot, *segment;
-    double radius = kin->fleet->radii[robot], nearest = walls->grid ? radius + NEARBY : INFINITY;
-    struct nearby near = segments_near(walls, pose[0], pose[1], radius + length + NEARBY);
-    int64_t k;
-    while ((segment = next_segment(&near)) != NULL)
-        nearest = fmin(nearest, distance_to_segment(pose[0], pose[1], segment));
-    for (k = 0; k < walls->n_circles; k++) {
-        const double *circle = walls->circles + 3 * k;
-        nearest = fmin(nearest, hypot(circle[0] - pose[0], circle[1] - pose[1]) - circle[2]);
-    }
-    return nearest - radius;
-}
-
-/* A displacement from a point, and the fraction of it that is free as far as is known. */
+/* A displacement of a disc, and the fraction of it that is free as far as is known. */
 struct motion {
-    double x, y, dx, dy; /* [m] */
+    double radius, x, y; /* [m] of the disc, its centre */
+    double dx, dy;       /* [m] */
     double length;       /* [m] */
     double free;         /* 0 to 1 */
 };
 
-/* Stop the motion where it first enters a circle; it may leave one freely. */
+/* The tiles from low to high [m] along an axis; none, first > last, outside of the grid and where a pose has overflowed. */
+static void tiles_between(double low, double high, double side, int64_t count, int64_t *first, int64_t *last)
+{
+    double from = floor(low / side), to = floor(high / side);
+    *first = from > 0.0 ? (int64_t)fmin(from, (double)count) : 0;
+    *last = to >= 0.0 ? (int64_t)fmin(to, (double)(count - 1)) : -1;
+}
+
+/* Visit the segments [ax, ay, bx, by] [m] within a square of half a side [m] around a point, perhaps others, some twice. */
+static void visit_near(const struct outlines *walls, double x, double y, double half,
+                       void (*visit)(void *context, const double *segment), void *context)
+{
+    const struct grid *grid = walls->grid;
+    int64_t row, last_row, column, last_column, k;
+    tiles_between(x - half - grid->x, x + half - grid->x, grid->side, grid->columns, &column, &last_column);
+    tiles_between(y - half - grid->y, y + half - grid->y, grid->side, grid->rows, &row, &last_row);
+    for (k = 0; k < grid->n_everywhere; k++)
+        visit(context, walls->segments + 4 * (int64_t)grid->everywhere[k]);
+    for (; row <= last_row && column <= last_column; row++) {
+        const int32_t *starts = grid->starts + row * grid->columns;
+        for (k = starts[column]; k < starts[last_column + 1]; k++)
+            visit(context, walls->segments + 4 * (int64_t)grid->members[k]);
+    }
+}
+
+struct nearest {
+    double x, y, distance; /* [m] from a point to the nearest wall so far */
+};
+
+static void compare_distance(void *context, const double *segment)
+{
+    struct nearest *nearest = context;
+    double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1];
+    double dx = nearest->x - segment[0], dy = nearest->y - segment[1], squared = along_x * along_x + along_y * along_y;
+    double foot = (dx * along_x + dy * along_y) / (squared > 1e-30 ? squared : 1e-30);
+    foot = foot < 0.0 ? 0.0 : foot > 1.0 ? 1.0 : foot;
+    nearest->distance = fmin(nearest->distance, hypot(dx - foot * along_x, dy - foot * along_y));
+}
+
+/* Distance [m] from a robot's rim to the nearest wall, at most NEARBY; negative inside a wall. */
+static double gap(const struct kinematic *kin, int64_t robot, double length)
+{
+    const struct outlines *walls = kin->walls + kin->walls_of[robot];
+    const double *pose = kin->fleet->poses + 3 * robot, *circle;
+    double radius = kin->fleet->radii[robot];
+    struct nearest nearest = {pose[0], pose[1], radius + NEARBY};
+    visit_near(walls, pose[0], pose[1], radius + length + NEARBY, compare_distance, &nearest);
+    for (circle = walls->circles; circle < walls->circles + 3 * walls->n_circles; circle += 3)
+        nearest.distance = fmin(nearest.distance, hypot(circle[0] - pose[0], circle[1] - pose[1]) - circle[2]);
+    return nearest.distance - radius;
+}
+
+/* Stop the motion where the disc's centre first enters a circle; it may leave one freely. */
 static void stop_at_circle(struct motion *motion, double x, double y, double radius)
 {
     double off_x = x - motion->x, off_y = y - motion->y, squared, towards, root, fraction;
@@ -133,11 +103,14 @@ static void stop_at_circle(struct motion *motion, double x, double y, double rad
     motion->free = fmin(motion->free, fmax(0.0, fraction));
 }
 
-/* Stop the motion where it first comes within a radius [m] of a segment, beside which it is. */
-static void stop_at_side(struct motion *motion, const double *segment, double radius)
+/* Stop the motion where the disc first touches a segment. */
+static void stop_at_segment(void *context, const double *segment)
 {
+    struct motion *motion = context;
     double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1], length = hypot(along_x, along_y);
     double off_x = motion->x - segment[0], off_y = motion->y - segment[1], distance, approach, fraction, position;
+    stop_at_circle(motion, segment[0], segment[1], motion->radius);
+    stop_at_circle(motion, segment[2], segment[3], motion->radius);
     if (length == 0.0)
         return;
     along_x /= length;
@@ -146,7 +119,7 @@ static void stop_at_side(struct motion *motion, const double *segment, double ra
     approach = -(motion->dy * along_x - motion->dx * along_y) * (distance >= 0.0 ? 1.0 : -1.0);
     if (!(approach > 0.0))
         return;
-    fraction = fmax((fabs(distance) - radius) / approach, 0.0);
+    fraction = fmax((fabs(distance) - motion->radius) / approach, 0.0);
     position = (off_x + fraction * motion->dx) * along_x + (off_y + fraction * motion->dy) * along_y;
     if (fraction < 1.0 && position >= 0.0 && position <= length)
         motion->free = fmin(motion->free, fraction);
@@ -164,24 +137,15 @@ static void keep_margin(struct motion *motion, double before)
 static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *motion)
 {
     const struct outlines *walls = kin->walls + kin->walls_of[robot];
-    double radius = kin->fleet->radii[robot], room = gap(kin, robot, motion->length) - MARGIN, before = motion->free;
-    const double *segment;
-    struct nearby near;
-    int64_t k;
+    double room = gap(kin, robot, motion->length) - MARGIN, before = motion->free;
+    const double *circle;
     kin->free_travel[robot] = room - motion->length;
     if (room >= motion->length)
         return;
     motion->free = 1.0;
-    for (k = 0; k < walls->n_circles; k++) {
-        const double *circle = walls->circles + 3 * k;
-        stop_at_circle(motion, circle[0], circle[1], circle[2] + radius);
-    }
-    near = segments_near(walls, motion->x, motion->y, radius + motion->length + NEARBY);
-    while ((segment = next_segment(&near)) != NULL) {
-        stop_at_circle(motion, segment[0], segment[1], radius);
-        stop_at_circle(motion, segment[2], segment[3], radius);
-        stop_at_side(motion, segment, radius);
-    }
+    for (circle = walls->circles; circle < walls->circles + 3 * walls->n_circles; circle += 3)
+        stop_at_circle(motion, circle[0], circle[1], circle[2] + motion->radius);
+    visit_near(walls, motion->x, motion->y, motion->radius + motion->length + NEARBY, stop_at_segment, motion);
     keep_margin(motion, before);
 }
 
@@ -195,7 +159,7 @@ static void stop_at_robots(const struct kinematic *kin, int64_t robot, struct mo
     for (k = 0; k < fleet->n; k++)
         if (k != robot)
             stop_at_circle(motion, fleet->poses[3 * k], fleet->poses[3 * k + 1],
-                           fleet->radii[k] + (fleet->radii[robot] + MARGIN));
+                           fleet->radii[k] + (motion->radius + MARGIN));
     keep_margin(motion, before);
 }
 
@@ -252,7 +216,7 @@ static void move(struct kinematic *kin, double dt)
         fleet->twists[2 * i] = v;
         fleet->twists[2 * i + 1] = w;
         if (v != 0.0) {
-            struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+            struct motion motion = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
             aro_arc(pose[2], v * dt, w * dt, &motion.dx, &motion.dy);
             kin->free_travel[i] -= fabs(v * dt); /* no chord is longer than its arc */
             if (kin->free_travel[i] < 0.0 || kin->crowded[i]) {
@@ -293,7 +257,7 @@ void aro_kinematic_push(struct kinematic *kin, double travelled)
     for (i = 0; i < fleet->n; i++) {
         const struct outlines *walls = kin->walls + kin->walls_of[i];
         double *pose = fleet->poses + 3 * i, deepest = 0.0, away = 0.0;
-        struct motion motion = {pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+        struct motion motion = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
         kin->free_travel[i] -= travelled;
         if (kin->free_travel[i] >= 0.0)
             continue;

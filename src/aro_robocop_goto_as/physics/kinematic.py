@@ -14,7 +14,7 @@ import numpy as np
 from ..compiled import address, members
 from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.caster_library import GridStruct
-from ..raycast.cross_section import FEW, CrossSection
+from ..raycast.cross_section import CrossSection
 from ..raycast.grid_index import Tiles
 from ..raycast.movers import Movers
 from ..raycast.surroundings import body_heights
@@ -27,9 +27,10 @@ class _OutlinesStruct(ctypes.Structure):
     """`struct outlines` of kinematic.c."""
 
     _fields_ = [
-        *members(ctypes.c_int64, "n_segments n_circles"),
-        *members(ctypes.c_void_p, "segments circles"),
+        ("segments", ctypes.c_void_p),
         ("grid", ctypes.POINTER(GridStruct)),
+        ("n_circles", ctypes.c_int64),
+        ("circles", ctypes.c_void_p),
     ]
 
 
@@ -45,12 +46,12 @@ class _KinematicStruct(ctypes.Structure):
 
 
 class _Outlines:
-    """The union of a world's cross-sections at several heights [m]: segments (indexed if many) and circles."""
+    """The union of a world's cross-sections at several heights [m]: indexed segments, and circles."""
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float) -> None:
         sections = [CrossSection(world, height) for height in heights]
         self._segments = np.unique(np.concatenate([cut.segments for cut in sections]), axis=0)
-        self._tiles = Tiles(self._segments) if len(self._segments) > FEW else None
+        self._tiles = Tiles(self._segments)
         # A pillar is cut at several heights; once each is enough. Motions compare by their values.
         found = dict.fromkeys(
             (*circle, motion) for cut in sections for circle, motion in zip(cut.circles.tolist(), cut.motions)
@@ -61,11 +62,10 @@ class _Outlines:
         self.move = self._movers.move
         self.move(time)
         self.struct = _OutlinesStruct(
-            len(self._segments),
-            len(self._circles),
             address("segments", self._segments, (None, 2, 2)),
+            ctypes.pointer(self._tiles.struct),
+            len(self._circles),
             address("circles", self._circles, (None, 3)),
-            None if self._tiles is None else ctypes.pointer(self._tiles.struct),
         )
 
 

@@ -10,11 +10,10 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
 #include "grid.h"
 
-#define ARO_CASTER_VERSION 3
+#define ARO_CASTER_VERSION 4
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */
@@ -43,7 +42,7 @@ struct plane {
     const double *bodies;   /* (n_bodies, 3) x, y, radius [m] of robots' circles, each in its robot's frame */
     const int64_t *owners;  /* (n_bodies,) the robot of each */
     double *moved_bodies;   /* (n_bodies, 3) in the world, written by aro_cast */
-    struct grid *grid;      /* of the segments; NULL: compare all of them */
+    struct grid *grid;      /* of the segments; NULL, or the scanner is outside of it: compare all of them */
 };
 
 struct scene {
@@ -201,21 +200,6 @@ static void cast_tile(const struct scan *scan, const struct plane *plane, struct
     }
 }
 
-/* Along one axis: the part of the beam within the grid, as path lengths in tiles. */
-static void clip(double start, double direction, double extent, double *enter, double *leave)
-{
-    double one, other;
-    if (direction == 0.0) {
-        if (start < 0.0 || start > extent)
-            *leave = -1.0;
-        return;
-    }
-    one = -start / direction;
-    other = (extent - start) / direction;
-    *enter = fmax(*enter, fmin(one, other));
-    *leave = fmin(*leave, fmax(one, other));
-}
-
 static int64_t within(double place, int64_t count)
 {
     return place > 0.0 ? (place < (double)count ? (int64_t)place : count - 1) : 0;
@@ -232,10 +216,6 @@ static void walk(const struct scan *scan, const struct plane *plane, struct grid
     double leave = scan->max_range / grid->side, to_column, to_row;
     int64_t column, row, step_column = ux > 0.0 ? 1 : -1, step_row = uy > 0.0 ? 1 : -1;
 
-    if (x < 0.0 || y < 0.0 || x > (double)grid->columns || y > (double)grid->rows) {
-        clip(x, ux, (double)grid->columns, &enter, &leave);
-        clip(y, uy, (double)grid->rows, &enter, &leave);
-    }
     column = within(x + enter * ux, grid->columns);
     row = within(y + enter * uy, grid->rows);
     to_column = ux != 0.0 ? fabs((double)(column + (ux > 0.0)) - x) * per_column : INFINITY;
@@ -271,22 +251,14 @@ static double cast_block(const struct scan *scan, const struct plane *plane, str
     return fmin(to_column, to_row);
 }
 
-static void cast_grid(const struct scan *scan, const struct plane *plane, struct grid *grid)
+static void cast_grid(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y)
 {
-    double x, y, done = 0.0;
+    double done;
     int64_t i;
-    if (grid->mark == INT32_MAX) {
-        memset(grid->tile_marks, 0, (size_t)(grid->columns * grid->rows) * sizeof *grid->tile_marks);
-        memset(grid->segment_marks, 0, (size_t)grid->n_segments * sizeof *grid->segment_marks);
-        grid->mark = 0;
-    }
     grid->mark++;
     for (i = 0; i < grid->n_everywhere; i++)
         cast_segment(scan, plane->segments + 4 * (int64_t)grid->everywhere[i]);
-    x = (scan->x - grid->x) / grid->side;
-    y = (scan->y - grid->y) / grid->side;
-    if (x >= 0.0 && y >= 0.0 && x <= (double)grid->columns && y <= (double)grid->rows)
-        done = cast_block(scan, plane, grid, x, y);
+    done = cast_block(scan, plane, grid, x, y);
     for (i = 0; i < scan->fan->samples; i++)
         if (scan->nearest[i] > done * grid->side)
             walk(scan, plane, grid, x, y, done, i);
@@ -294,14 +266,16 @@ static void cast_grid(const struct scan *scan, const struct plane *plane, struct
 
 static void cast_plane(const struct scan *scan, const struct plane *plane, int64_t robot)
 {
+    struct grid *grid = plane->grid;
+    double x = grid ? (scan->x - grid->x) / grid->side : -1.0, y = grid ? (scan->y - grid->y) / grid->side : -1.0;
     int64_t i;
     for (i = 0; i < plane->n_circles; i++)
         cast_circle(scan, plane->circles + 3 * i);
     for (i = 0; i < plane->n_bodies; i++)
         if (plane->owners[i] != robot)
             cast_circle(scan, plane->moved_bodies + 3 * i);
-    if (plane->grid != NULL)
-        cast_grid(scan, plane, plane->grid);
+    if (x >= 0.0 && y >= 0.0 && x <= (double)grid->columns && y <= (double)grid->rows)
+        cast_grid(scan, plane, grid, x, y);
     else
         for (i = 0; i < plane->n_segments; i++)
             cast_segment(scan, plane->segments + 4 * i);

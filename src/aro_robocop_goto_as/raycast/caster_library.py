@@ -6,7 +6,7 @@ import functools
 from .. import compiled
 from ..compiled import members
 
-VERSION = 3  # of the structures below and of movers and sensors.lidar, as in caster.c
+VERSION = 4  # of the structures below and of movers and sensors.lidar, as in caster.c
 
 
 class FanStruct(ctypes.Structure):
@@ -28,8 +28,7 @@ class GridStruct(ctypes.Structure):
         *members(ctypes.c_void_p, "starts members"),
         ("n_everywhere", ctypes.c_int64),
         *members(ctypes.c_void_p, "everywhere tile_marks segment_marks"),
-        ("n_segments", ctypes.c_int64),
-        ("mark", ctypes.c_int32),
+        ("mark", ctypes.c_int64),
     ]
 
 
@@ -72,7 +71,7 @@ def load() -> ctypes.PyDLL:
     library.aro_move.restype = ctypes.c_double
     library.aro_move.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_double]
     pointer, integer, unsigned = ctypes.c_void_p, ctypes.c_int64, ctypes.c_uint64
-    library.aro_normals.restype = None
+    library.aro_normals.restype = library.aro_measure.restype = None
     library.aro_normals.argtypes = [unsigned, unsigned, unsigned, integer, pointer]
-    library.aro_measure.argtypes = [pointer, integer, integer, pointer, pointer, unsigned, unsigned, integer, pointer]
+    library.aro_measure.argtypes = [pointer, integer, integer, pointer, pointer, unsigned, unsigned, pointer]
     return library

@@ -11,10 +11,9 @@ struct grid {
     const int32_t *starts, *members;
     int64_t n_everywhere;
     const int32_t *everywhere; /* segments too long to be listed in tiles */
-    int32_t *tile_marks;       /* (columns * rows,) and (n_segments,): equal to `mark`: done in this scan */
-    int32_t *segment_marks;
-    int64_t n_segments;
-    int32_t mark;
+    int64_t *tile_marks;       /* (columns * rows,) and (n_segments,): equal to `mark`: done in this scan */
+    int64_t *segment_marks;
+    int64_t mark;
 };
 
 #endif

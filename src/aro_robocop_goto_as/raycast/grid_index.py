@@ -36,8 +36,8 @@ class Tiles:
         self._members = numbers[owner[np.argsort(tile, kind="stable")]].astype(np.int32)
         per_tile = np.bincount(tile, minlength=self._columns * self._rows)
         self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(np.int32)
-        self._tile_marks = np.zeros(self._columns * self._rows, np.int32)
-        self.segment_marks = np.zeros(len(segments), np.int32)  # struct.mark: compared with in the latest scan
+        self._tile_marks = np.zeros(self._columns * self._rows, np.int64)
+        self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark: compared with in the latest scan
         self.struct = self._make_struct()  # Create only once: it holds the mark counter.
 
     def _make_struct(self) -> GridStruct:
@@ -51,8 +51,7 @@ class Tiles:
             address("members", self._members, (None,), int32),
             len(self._everywhere),
             address("everywhere", self._everywhere, (None,), int32),
-            address("tile_marks", self._tile_marks, (tiles,), int32),
-            address("segment_marks", self.segment_marks, (None,), int32),
-            len(self.segment_marks),
+            address("tile_marks", self._tile_marks, (tiles,), np.int64),
+            address("segment_marks", self.segment_marks, (None,), np.int64),
             0,
         )

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#define ARO_FLEET_VERSION 1
+#define ARO_FLEET_VERSION 2
 
 /* Columns of limits, as in Limits of base_controller.py */
 enum { MAX_V, MAX_W, MAX_DV, MAX_DW, TIMEOUT, LIMITS };

@@ -12,7 +12,7 @@ from ..geometry import Pose2D, Twist2D
 from .base_limits import Limits, clamped
 from .model import Pair, RobotModel
 
-VERSION = 1  # of the structures that the library's functions take, as in fleet.h
+VERSION = 2  # of the structures that the library's functions take, as in fleet.h
 COLUMNS = {"radii": 0, "commands": 2, "commanded_at": 0, "velocities": 2, "targets": 2}
 COLUMNS.update(poses=3, twists=2, wheel_angles=2, wheel_speeds=2)
 

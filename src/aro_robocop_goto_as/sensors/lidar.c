@@ -61,15 +61,11 @@ static double error_at(const struct lidar *lidar, double distance, double normal
 }
 
 /* Scans of these robots, whose exact distances are the rows of `distances` (n_scans, samples) [m; +inf: no return], to
- * their rows of `ranges` (n, samples) [m]. The noise of a robot on a step does not depend on the other robots. Returns 0,
- * or 1 for a robot that has no row. */
-int aro_measure(const struct lidar *lidar, int64_t n_scans, int64_t samples, const int64_t *robots,
-                const double *distances, uint64_t seed, uint64_t step, int64_t n, double *ranges)
+ * their rows of `ranges` (n, samples) [m]. The noise of a robot on a step does not depend on the other robots. */
+void aro_measure(const struct lidar *lidar, int64_t n_scans, int64_t samples, const int64_t *robots,
+                 const double *distances, uint64_t seed, uint64_t step, double *ranges)
 {
     int64_t i, k;
-    for (i = 0; i < n_scans; i++)
-        if (robots[i] < 0 || robots[i] >= n)
-            return 1;
     for (i = 0; i < n_scans; i++) {
         double *row = ranges + robots[i] * samples;
         aro_normals(seed, (uint64_t)robots[i], step, samples, row);
@@ -83,5 +79,4 @@ int aro_measure(const struct lidar *lidar, int64_t n_scans, int64_t samples, con
                 row[k] = lidar->step > 0.0 ? rint(range / lidar->step) * lidar->step : range;
         }
     }
-    return 0;
 }

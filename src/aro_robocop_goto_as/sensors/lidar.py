@@ -55,8 +55,10 @@ class Lidar:
         ranges: (n, samples) [m]. The noise depends on seed, robot and step.
         As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
+        if robots and not 0 <= min(robots) <= max(robots) < len(ranges):
+            raise ValueError(f"robots: expected numbers from 0 to {len(ranges) - 1}, got {robots}")
         samples, numbers = self.spec.samples, np.array(robots, dtype=np.int64)
-        refused = self._measure(
+        self._measure(
             ctypes.byref(self._struct),
             len(robots),
             samples,
@@ -64,8 +66,5 @@ class Lidar:
             address("distances", distances, (len(robots), samples)),
             seed,
             step,
-            len(ranges),
             address("ranges", ranges, (None, samples)),
         )
-        if refused:
-            raise ValueError(f"robots: expected numbers from 0 to {len(ranges) - 1}, got {robots}")

@@ -2,6 +2,7 @@
 
 import math
 from typing import List, Optional, Tuple
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, wrap_angle
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
+from aro_robocop_goto_as.raycast import grid_index
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.surroundings import body_heights
 from aro_robocop_goto_as.robot.base_limits import Limits
@@ -115,12 +117,13 @@ def test_blocked_motion_is_that_of_the_definition(
 
 @pytest.fixture(name="forests", scope="module")
 def _forests() -> List[KinematicEngine]:
-    """A robot among so many walls that they are indexed, and among those nearest to the origin only."""
+    """A robot among walls that an index finds in its tiles, and among the same walls, which it finds everywhere."""
     grid = [(0.5 * i + 0.25, 0.5 * j + 0.25) for i in range(-11, 11) for j in range(-11, 11)]
-    boxes = [_box(x, y, 3.0 * x, 0.1, 0.02) for x, y in grid]
-    near = [box for box in boxes if math.hypot(*box.pose.position[:2]) < 3.5]
-    engines = [_kinematics(_world(*shapes), ORIGIN) for shapes in (boxes, near)]
-    assert [bool(engine._structs[0].grid) for engine in engines] == [True, False]
+    world = _world(*(_box(x, y, 3.0 * x, 0.1, 0.02) for x, y in grid))
+    indexed = _kinematics(world, ORIGIN)
+    with mock.patch.object(grid_index, "MOST_TILES_OF_ONE", 0):
+        engines = [indexed, _kinematics(world, ORIGIN)]
+    assert [engine._structs[0].grid.contents.n_everywhere > 0 for engine in engines] == [False, True]
     return engines
 
 
