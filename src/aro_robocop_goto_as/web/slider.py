@@ -10,16 +10,7 @@ Mover = Callable[[float], None]
 class Slider:
     """A slider that visitors move, and that otherwise follows what is reported."""
 
-    def __init__(
-        self,
-        gui: Any,
-        label: str,
-        high: float,
-        start: float,
-        hint: str,
-        moved: Callable[[float], None],
-        low: float = 0.1,
-    ):
+    def __init__(self, gui: Any, label: str, high: float, start: float, hint: str, moved: Mover, low: float = 0.1):
         """`moved` is called with the value that a visitor has chosen, a multiple of 0.1."""
         self._handle = gui.add_slider(label, low, high, 0.1, start, hint=hint)
         self._moved_at = 0.0  # [s, wall]

@@ -2,7 +2,7 @@
 
 import time
 from collections import deque
-from typing import Any, Deque, Dict, List, Optional, Tuple
+from typing import Any, Deque, Dict, List, Optional
 
 import genpy
 import roslib.message
@@ -78,9 +78,13 @@ class Topics(Part):
             return
         self._shown_at = time.monotonic()
         self._offer(state)
-        self._echo.content = text.block(self._full(state))
-        rows = [(topic, kind, *self._brief(topic, state)) for topic, kind in state.topics]
-        self._list.content = text.topics(rows)
+        heard = {topic: listener for topic, listener in self._listeners.items() if listener.newest is not None}
+        chosen, echo = heard.get(self._choice.value), "no message yet"
+        if chosen is not None:
+            echo = f"{chosen.rate(state.factor) or 'no message for some seconds'}\n{full(chosen.newest)}"
+        self._echo.content = text.block(echo)
+        known = {topic: (listener.rate(state.factor), brief(listener.newest)) for topic, listener in heard.items()}
+        self._list.content = text.topics((topic, kind, *known.get(topic, ("", ""))) for topic, kind in state.topics)
 
     def _offer(self, state: PageState) -> None:
         names, default = tuple(topic for topic, _ in state.topics), absolute(state.selected, DEFAULT)
@@ -90,18 +94,6 @@ class Topics(Part):
         if self._choice.options != options:
             self._choice.options = options
         self._choice.value = chosen
-
-    def _full(self, state: PageState) -> str:
-        listener = self._listeners.get(self._choice.value)
-        if listener is None or listener.newest is None:
-            return "no message yet"
-        return f"{listener.rate(state.factor) or 'no message for some seconds'}\n{full(listener.newest)}"
-
-    def _brief(self, topic: str, state: PageState) -> Tuple[str, str]:
-        listener = self._listeners.get(topic)
-        if listener is None or listener.newest is None:
-            return "", ""
-        return listener.rate(state.factor), brief(listener.newest)
 
 
 def class_of(kind: str) -> Any:
