@@ -120,6 +120,5 @@ class Fan:
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses))
-        scene.footprints[:] = poses
+        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses), footprints=poses)
         return self.scan(scene, range(len(poses)), reach)
