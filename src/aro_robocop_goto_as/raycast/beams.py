@@ -20,9 +20,8 @@ class ScanPlane:
 
     def __init__(self, walls: CrossSection, bodies: np.ndarray = NO_CIRCLES, owners: np.ndarray = NO_OWNERS) -> None:
         """Bodies (b, [x, y, radius]) [m], each in the frame of the robot that owners (b,) names by its index."""
-        self.walls = walls
-        self.bodies, self.owners = bodies, owners
-        self._moved_bodies = np.empty_like(bodies)
+        self.walls, self.bodies, self.owners = walls, bodies, owners
+        self._tiles, self._moved_bodies = walls.tiles, np.empty_like(bodies)  # the structure points to them
         self.struct = PlaneStruct(
             len(walls.segments),
             len(walls.circles),
@@ -34,7 +33,6 @@ class ScanPlane:
             address("moved_bodies", self._moved_bodies, (len(bodies), 3)),
             None if walls.tiles is None else ctypes.pointer(walls.tiles.struct),
         )
-        self._tiles = walls.tiles  # the structure points into it
 
 
 class Scene:
@@ -122,6 +120,5 @@ class Fan:
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses))
-        scene.footprints[:] = poses
+        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses), footprints=poses)
         return self.scan(scene, range(len(poses)), reach)

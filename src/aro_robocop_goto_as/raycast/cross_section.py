@@ -1,11 +1,11 @@
 """The cross-section of a world at one height, as line segments and circles."""
 
 import math
-from typing import List, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..geometry import Pose3D, rotation_matrix
+from ..geometry import Pose3D, Vector3, rotation_matrix
 from ..world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
 from ..world.scripted_motion import Motion
 from .grid_index import Tiles
@@ -64,38 +64,33 @@ def _segments(geometry: Geometry, pose: Pose3D, height: float) -> np.ndarray:
     if isinstance(geometry, Plane):
         return _plane_line(pose, geometry, height)
     if isinstance(geometry, Box):
-        corners, edges = _prism([(0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)])
-        scale = np.array(geometry.size)
+        base, size = np.array([(0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)]), geometry.size
     elif isinstance(geometry, Cylinder):
         turns = 2.0 * math.pi * np.arange(CYLINDER_SIDES) / CYLINDER_SIDES
-        corners, edges = _prism(list(zip(np.cos(turns), np.sin(turns))))
-        scale = np.array([geometry.radius, geometry.radius, geometry.length])
+        base = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        size = (geometry.radius, geometry.radius, geometry.length)
     else:
         raise TypeError(f"no outline for {geometry!r}")
-    world_corners = (corners * scale) @ rotation_matrix(pose.orientation).T + np.array(pose.position)
-    return _convex_outline(world_corners, edges, height)
+    return _prism_outline(base, size, pose, height)
 
 
-def _prism(base: List[Tuple[float, float]]) -> Tuple[np.ndarray, List[Tuple[int, int]]]:
-    """Corners (2 n, 3) and edges of a prism of height 1 whose base is a polygon with n corners."""
+def _prism_outline(base: np.ndarray, size: Vector3, pose: Pose3D, height: float) -> np.ndarray:
+    """The intersection of a prism with a horizontal plane: its edges' crossings, sorted by direction.
+
+    base: the corners (n, [x, y]) of a prism of height 1 centred on the origin, which `size` scales
+    """
     n = len(base)
-    corners = np.array([(x, y, -0.5) for x, y in base] + [(x, y, 0.5) for x, y in base])
-    edges = [(i, i + n) for i in range(n)]
-    for level in (0, n):
-        edges += [(level + i, level + (i + 1) % n) for i in range(n)]
-    return corners, edges
-
-
-def _convex_outline(corners: np.ndarray, edges: List[Tuple[int, int]], height: float) -> np.ndarray:
-    """The intersection of a convex body with a horizontal plane: its edges' crossings, sorted by direction."""
-    crossings = []
-    for a, b in edges:
-        low, high = corners[a][2] - height, corners[b][2] - height
-        if low * high < 0.0:
-            crossings.append(corners[a][:2] + (corners[b][:2] - corners[a][:2]) * (low / (low - high)))
-    if len(crossings) < 3:
+    corners = np.column_stack([np.concatenate([base, base]), np.repeat([-0.5, 0.5], n)])
+    corners = (corners * np.array(size)) @ rotation_matrix(pose.orientation).T + np.array(pose.position)
+    corners[:, 2] -= height
+    low, high = corners[:n], corners[n:]
+    starts = np.concatenate([low, low, high])
+    ends = np.concatenate([high, np.roll(low, -1, axis=0), np.roll(high, -1, axis=0)])
+    cut = starts[:, 2] * ends[:, 2] < 0.0
+    starts, ends = starts[cut], ends[cut]
+    if len(starts) < 3:
         return NO_SEGMENTS
-    points = np.array(crossings)
+    points = (starts + (ends - starts) * (starts[:, 2:] / (starts[:, 2:] - ends[:, 2:])))[:, :2]
     around = points - points.mean(axis=0)
     points = points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))]
     return np.stack([points, np.roll(points, -1, axis=0)], axis=1)

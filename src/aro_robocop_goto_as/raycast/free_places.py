@@ -31,12 +31,12 @@ class _Room:
 
     def __init__(self, world: World, model: RobotModel) -> None:
         self.least = model.figures.footprint_radius + LEAST_MARGIN
+        self.world = world
         self._surroundings = Surroundings(world, body_heights(model))
-        self._occupancy = world.occupancy
 
     def at(self, x: float, y: float) -> float:
         """The distance [m] from a point to the nearest obstacle; -inf where a robot may not start."""
-        if self._occupancy is not None and not self._occupancy.is_known(x, y):
+        if self.world.occupancy is not None and not self.world.occupancy.is_known(x, y):
             return -math.inf
         return self._surroundings.nearest(x, y).distance
 
@@ -46,10 +46,11 @@ def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
 
     In the world of a map, the grid is laid around the free cell nearest to the pose. ParameterError if there is none.
     """
-    return _place(_Room(world, model), world, around)
+    return _place(_Room(world, model), around)
 
 
-def _place(room: _Room, world: World, around: Pose2D) -> Pose2D:
+def _place(room: _Room, around: Pose2D) -> Pose2D:
+    world = room.world
     if room.at(around.x, around.y) >= room.least:
         return around
     centre = (around.x, around.y) if world.occupancy is None else world.occupancy.nearest_free(around.x, around.y)
@@ -84,7 +85,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
     """
     walls, room = CrossSection(world, HEIGHT), _Room(world, model)
-    centre = _place(room, world, around)
+    centre = _place(room, around)
     places: List[Pose2D] = []
     for clearance in (CLEARANCE, room.least):
         places = _connected_places(walls, room, centre, count, clearance)

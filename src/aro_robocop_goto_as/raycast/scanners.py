@@ -40,16 +40,14 @@ class Scanners:
     def change_world(self, world: World) -> None:
         """Replace the world."""
         self._sections = [CrossSection(world, height) for height in self._heights]
-        planes = [self._plane(height, walls) for height, walls in zip(self._heights, self._sections)]
+        planes = []
+        for height, walls in zip(self._heights, self._sections):
+            circles = [circles_at(model, height) for model in self._models]
+            owners = np.repeat(np.arange(len(circles)), [len(of_one) for of_one in circles])
+            planes.append(ScanPlane(walls, np.concatenate(circles), owners))
         mounts = [model.base_from_scan.on_plane() for model in self._models]
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
         self._scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
-
-    def _plane(self, height: float, walls: CrossSection) -> ScanPlane:
-        """What scanners at one height see, the robots included."""
-        circles = [circles_at(model, height) for model in self._models]
-        owners = np.repeat(np.arange(len(self._models)), [len(of_one) for of_one in circles])
-        return ScanPlane(walls, np.concatenate(circles), owners)
 
     def walls(self, robot: int) -> CrossSection:
         """The world's cross-section at the height of one robot's scanner."""

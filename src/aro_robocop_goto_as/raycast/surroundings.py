@@ -1,6 +1,5 @@
 """The distance from a point on the floor to the nearest obstacle within a robot's height."""
 
-import itertools
 import math
 from dataclasses import replace
 from typing import NamedTuple, Tuple
@@ -36,10 +35,11 @@ class Surroundings:
     """
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float = 0.0) -> None:
-        placed = [replace(obstacle, pose=obstacle.at(time)) for obstacle in world.obstacles for _ in heights]
-        self._names = [obstacle.name for obstacle in placed]  # of the outlines: one for each obstacle and height
-        self._is_solid = np.array([not isinstance(obstacle.geometry, (Mesh, Plane)) for obstacle in placed], dtype=bool)
-        outlines = [outline(obstacle, height) for obstacle, height in zip(placed, itertools.cycle(heights))]
+        placed = [replace(obstacle, pose=obstacle.at(time)) for obstacle in world.obstacles]
+        outlines = [outline(obstacle, height) for obstacle in placed for height in heights]
+        self._names = [obstacle.name for obstacle in placed for _ in heights]  # of the outlines
+        is_solid = [not isinstance(obstacle.geometry, (Mesh, Plane)) for obstacle in placed for _ in heights]
+        self._is_solid = np.array(is_solid, dtype=bool)
         self._start, end = np.moveaxis(np.concatenate([NO_SEGMENTS, *(segments for segments, _ in outlines)]), 1, 0)
         self._along = end - self._start
         self._squares = np.maximum((self._along**2).sum(axis=1), 1e-18)

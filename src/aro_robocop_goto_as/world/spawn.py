@@ -35,10 +35,8 @@ def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
 def parse_count(text: str) -> int:
     """The number of robots in a text of digits; ParameterError if there are none or more than MAX_COUNT."""
     count = int(text) if len(text) <= len(str(MAX_COUNT)) else MAX_COUNT + 1
-    if count < 1:
-        raise ParameterError("robots: expected at least 1")
-    if count > MAX_COUNT:
-        raise ParameterError(f"robots: expected at most {MAX_COUNT}")
+    if not 1 <= count <= MAX_COUNT:
+        raise ParameterError(f"robots: expected at {'least 1' if count < 1 else f'most {MAX_COUNT}'}")
     return count
 
 

@@ -36,7 +36,8 @@ def read_image(path: str) -> np.ndarray:
 
 def _channels(image: Any) -> np.ndarray:
     """A Pillow image as (rows, columns, channels) uint8; of 16 bits the upper 8 are kept."""
-    maximum = _pnm_maximum(image)
+    decoder, _, _, arguments = image.tile[0]
+    maximum = arguments[-1] if decoder in ("ppm", "ppm_plain") else None  # no number for bitmaps
     if image.mode.startswith("I"):
         return (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)[..., None]
     if image.mode in ("1", "L"):
@@ -44,14 +45,9 @@ def _channels(image: Any) -> np.ndarray:
     else:
         transparent = image.mode in ("LA", "PA", "RGBA") or "transparency" in image.info
         pixels = np.asarray(image.convert("RGBA" if transparent else "RGB"))
-    if maximum < 255:  # Pillow has scaled the file's values to 0..255 and rounded them; SDL_image rounds down
+    if (
+        isinstance(maximum, int) and maximum < 255
+    ):  # Pillow has scaled the file's values to 0..255 and rounded them; SDL_image rounds down
         values = np.rint(pixels * (maximum / 255.0)).astype(np.uint32)
         pixels = (values * 255 // maximum).astype(np.uint8)
     return pixels
-
-
-def _pnm_maximum(image: Any) -> int:
-    """The largest value that a PNM file may contain, if Pillow has to scale its values; else 255."""
-    decoder, _, _, arguments = image.tile[0]
-    maximum = arguments[-1] if decoder in ("ppm", "ppm_plain") else None
-    return maximum if isinstance(maximum, int) else 255  # bitmaps have none: None, or from Pillow 11 on a mode's letter

@@ -56,7 +56,7 @@ def read_world(path: str) -> World:
         reader.model(root, _Parent())
         return reader.world(xml.name_of(root))
     reader.check_children(root, "frame", "include", "model", "state")
-    reader.state = state_poses(root, reader.report_difference)
+    reader.state = state_poses(root, reader.report)
     reader.children(root, _Parent())
     for name, (_, element) in reader.state.items():
         reader.report(f"state of '{name}', which is not in <world name='{xml.name_of(root)}'>", element)
@@ -126,18 +126,11 @@ class _Reader:
             approximated=tuple(dict.fromkeys(self.approximated)),
         )
 
-    def report(self, what: str, element: Element) -> None:
-        """Add an element to the world's `ignored`."""
-        self.ignored.append(f"{what} ({self.line(element)})")
-
-    def report_difference(self, what: str, element: Element) -> None:
-        """Add an element to the world's `approximated`."""
-        self.approximated.append(f"{what} ({self.line(element)})")
-
-    def line(self, element: Element) -> str:
-        """Where an element is: its line, and its file if that is an included one."""
+    def report(self, what: str, element: Element, is_different: bool = False) -> None:
+        """Add an element to the world's `ignored`, or to its `approximated`, with its line and an included file."""
         file = file_of(element)
-        return f"line {element.sourceline}" if file == self.path else f"{file}:{element.sourceline}"
+        line = f"line {element.sourceline}" if file == self.path else f"{file}:{element.sourceline}"
+        (self.approximated if is_different else self.ignored).append(f"{what} ({line})")
 
     def check_children(self, element: Element, *read: str) -> None:
         """WorldError for a child that is neither read nor known to be unused; unused ones may be reported."""
@@ -232,7 +225,9 @@ class _Reader:
             number += 1
             unused = f"{name}_{number}"
         if unused != name:
-            self.report_difference(f"the name '{name}' is already taken, so this model is called '{unused}'", element)
+            self.report(
+                f"the name '{name}' is already taken, so this model is called '{unused}'", element, is_different=True
+            )
         self.used.add((*parent.names, unused))
         if len(self.used) > MAX_MODELS:
             raise xml.error(element, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
@@ -253,7 +248,7 @@ class _Reader:
         name = "/".join((*parent.names, xml.name_of(collision)))
         shape = xml.required_child(collision, "geometry")
         if shape.find("heightmap") is not None:
-            self.report_difference(f"heightmap of '{name}' is left out", shape)
+            self.report(f"heightmap of '{name}' is left out", shape, is_different=True)
             return
         geometry = read_shape(shape, self.triangles)
         if geometry is None:

@@ -10,10 +10,11 @@ from . import xml
 _SKIPPED = ("deletions", "insertions", "iterations", "light", "real_time", "sim_time", "wall_time")
 _SKIPPED_OF_MODELS = ("acceleration", "collision", "joint", "static", "velocity", "wrench")
 
+Report = Callable[[str, Element, bool], None]  # of what differs, the element, True
 SavedPoses = Dict[str, Tuple[Pose3D, Element]]  # model or link name: its pose in the world and its element
 
 
-def state_poses(world: Element, report: Callable[[str, Element], None]) -> SavedPoses:
+def state_poses(world: Element, report: Report) -> SavedPoses:
     """The poses in a world's <state> elements, which override those of its models and links, as in Gazebo.
 
     Names are `model`, `model/link`, `model/nested`. Scales are reported and left out: Gazebo saves them in addition to
@@ -29,15 +30,13 @@ def state_poses(world: Element, report: Callable[[str, Element], None]) -> Saved
     return poses
 
 
-def _poses(
-    parent: Element, prefix: str, report: Callable[[str, Element], None]
-) -> Iterator[Tuple[str, Tuple[Pose3D, Element]]]:
+def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, Tuple[Pose3D, Element]]]:
     for element in parent.iterchildren("model", "link"):
         xml.require_known_children(element, ("link", "model", "pose", "scale"), _SKIPPED_OF_MODELS)
         name = prefix + xml.name_of(element)
         scale = xml.optional_child(element, "scale")
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
-            report(f"<scale> {xml.text_of(scale)} in the state of '{name}' is left out", scale)
+            report(f"<scale> {xml.text_of(scale)} in the state of '{name}' is left out", scale, True)
         if xml.optional_child(element, "pose") is not None:
             yield name, (_within_reach(xml.pose_in_world(element, math.inf)), element)
         yield from _poses(element, name + "/", report)

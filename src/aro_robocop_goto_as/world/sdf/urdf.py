@@ -1,7 +1,5 @@
 """Rewrite the URDF of an object as SDF, as Gazebo does before it spawns one."""
 
-from typing import Dict
-
 from lxml import etree
 
 from ...reading import Element
@@ -19,10 +17,7 @@ def as_sdf(robot: Element) -> Element:
     sdf = etree.Element("sdf", version="1.7")
     sdf.getroottree().docinfo.URL = robot.getroottree().docinfo.URL
     model = _child(sdf, "model", robot, name=robot.get("name", ""))
-    joints: Dict[str, Element] = {}  # by the name of the child link
-    for joint in robot.iterchildren("joint"):
-        for child in joint.iterchildren("child"):
-            joints[child.get("link", "")] = joint
+    joints = {child.get("link", ""): child.getparent() for child in robot.iterfind("joint/child")}
     roots = {link.get("name", "") for link in robot.iterchildren("link")} - set(joints)  # each is where the model is
     for link in robot.iterchildren("link"):
         made = _child(model, "link", link, name=link.get("name", ""))

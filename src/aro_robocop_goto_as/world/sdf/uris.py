@@ -3,7 +3,7 @@
 import os
 import re
 from pathlib import Path
-from typing import Callable, Dict, Iterable, Iterator, List, Tuple
+from typing import Iterable, Iterator, List, Tuple
 from urllib.parse import unquote
 
 import rospkg
@@ -54,11 +54,11 @@ def locate(uri: str, file: str) -> str:
     scheme, paths = _split(uri)
     if scheme.lower() in _REMOTE:
         raise WorldError(f"'{uri}' is a web address, and nothing is downloaded; expected model://NAME of a local model")
-    if scheme not in _CANDIDATES or not paths[0]:
+    if scheme not in ("model", "package", "file") or not paths[0]:
         raise WorldError(f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
     looked_for: List[str] = []
     for path in paths:
-        for candidate, why in _CANDIDATES[scheme](path, os.path.abspath(file)):
+        for candidate, why in _candidates(scheme, path, os.path.abspath(file)):
             if os.path.exists(candidate):
                 return os.path.normpath(candidate)
             looked_for.append(f"{os.path.normpath(candidate)} ({why})")
@@ -103,12 +103,25 @@ def _beside(file: str, folders: Iterable[str], path: str) -> Iterator[Candidate]
         yield os.path.join(os.path.dirname(file), folder, path), f"beside {os.path.basename(file)}"
 
 
-def _model_candidates(path: str, file: str) -> Iterator[Candidate]:
-    yield from _from_variable("GAZEBO_MODEL_PATH", path)
-    yield from _beside(file, (".", "..", "models", "../models"), path)
-    yield os.path.expanduser(os.path.join("~", ".gazebo", "models", path)), "Gazebo's default"
-    yield from _package_candidates(path, file)
-    yield from _exported_candidates("gazebo_model_path", path)
+def _candidates(scheme: str, path: str, file: str) -> Iterator[Candidate]:
+    """Where Gazebo Classic looks for the path of a model://, package:// or file:// URI in a file, in this order."""
+    if scheme == "file":
+        # A world's folder is often beside models/, in a package's folder.
+        yield from _beside(file, (".", "..", "../.."), path)
+        yield from _from_variable("GAZEBO_RESOURCE_PATH", path)
+        yield from _exported_candidates("gazebo_media_path", path)
+        return
+    if scheme == "model":
+        yield from _from_variable("GAZEBO_MODEL_PATH", path)
+        yield from _beside(file, (".", "..", "models", "../models"), path)
+        yield os.path.expanduser(os.path.join("~", ".gazebo", "models", path)), "Gazebo's default"
+    name, _, rest = path.partition("/")
+    try:
+        yield os.path.join(rospkg.RosPack().get_path(name), rest), "in ROS_PACKAGE_PATH"
+    except rospkg.ResourceNotFound:
+        yield name, "no such package in ROS_PACKAGE_PATH"
+    if scheme == "model":
+        yield from _exported_candidates("gazebo_model_path", path)
 
 
 def _exported_candidates(kind: str, path: str) -> Iterator[Candidate]:
@@ -124,24 +137,3 @@ def _exported_candidates(kind: str, path: str) -> Iterator[Candidate]:
             for entry in xml.parse(str(manifest)).iterfind(f"export/gazebo_ros[@{kind}]"):
                 for exported in entry.get(kind).replace("${prefix}", directory).split(os.pathsep):
                     yield os.path.join(exported, path), f"exported by {name}"
-
-
-def _package_candidates(path: str, _file: str) -> Iterator[Candidate]:
-    name, _, rest = path.partition("/")
-    try:
-        yield os.path.join(rospkg.RosPack().get_path(name), rest), "in ROS_PACKAGE_PATH"
-    except rospkg.ResourceNotFound:
-        yield name, "no such package in ROS_PACKAGE_PATH"
-
-
-def _file_candidates(path: str, file: str) -> Iterator[Candidate]:
-    yield from _beside(file, (".", "..", "../.."), path)  # a world's is often beside models/, in a package's folder
-    yield from _from_variable("GAZEBO_RESOURCE_PATH", path)
-    yield from _exported_candidates("gazebo_media_path", path)
-
-
-_CANDIDATES: Dict[str, Callable[[str, str], Iterator[Candidate]]] = {
-    "model": _model_candidates,
-    "package": _package_candidates,
-    "file": _file_candidates,
-}
