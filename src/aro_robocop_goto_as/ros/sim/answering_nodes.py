@@ -5,7 +5,6 @@ yet, the first scans would be lost, and a run that starts at once would depend o
 """
 
 import threading
-import time
 from typing import Callable, Dict, Iterable, Set
 
 import rosgraph
@@ -13,6 +12,7 @@ import rospy
 
 from .. import graph
 from ..rospy_internals import is_topic_connected_to
+from ..ticker import wait_until
 
 POLL = 0.02  # [s, wall] between two checks of a node's connections
 PATIENCE = 10.0  # [s, wall] for them; a registration may be left over from a node that was killed
@@ -33,26 +33,18 @@ class AnsweringNodes:
     def __init__(self, is_ready: Callable[[str], bool] = is_fully_connected, patience: float = PATIENCE) -> None:
         self._is_ready = is_ready
         self._patience = patience
-        self._connected: Dict[str, threading.Event] = {}  # node -> whether all is connected since it came
+        self._looks: Dict[str, threading.Thread] = {}  # by node; one ends when all is connected since the node came
 
     def among(self, connected: Iterable[str]) -> Set[str]:
         """Those of the connected nodes that are ready; call it often, and from one thread."""
-        nodes = set(connected)
-        self._connected = {node: self._connected.get(node) or self._look_at(node) for node in nodes}
-        return {node for node, complete in self._connected.items() if complete.is_set()}
+        self._looks = {node: self._looks.get(node) or self._look_at(node) for node in {*connected}}
+        return {node for node, look in self._looks.items() if not look.is_alive()}
 
-    def _look_at(self, node: str) -> threading.Event:
-        """An event for a node that has just connected, set once all its subscriptions have; a new one each time."""
-        complete = threading.Event()
-        thread = threading.Thread(target=self._await, args=(node, complete), name=f"connections of {node}", daemon=True)
-        thread.start()
-        return complete
+    def _look_at(self, node: str) -> threading.Thread:
+        look = threading.Thread(target=self._await, args=(node,), name=f"connections of {node}", daemon=True)
+        look.start()
+        return look
 
-    def _await(self, node: str, complete: threading.Event) -> None:
-        deadline = time.monotonic() + self._patience
-        while not self._is_ready(node) and not rospy.is_shutdown():
-            if time.monotonic() >= deadline:
-                rospy.logwarn("%s answers ticks, but not all of its subscriptions have connected", node)
-                break
-            time.sleep(POLL)
-        complete.set()
+    def _await(self, node: str) -> None:
+        if not (wait_until(lambda: self._is_ready(node), self._patience, POLL) or rospy.is_shutdown()):
+            rospy.logwarn("%s answers ticks, but not all of its subscriptions have connected", node)
