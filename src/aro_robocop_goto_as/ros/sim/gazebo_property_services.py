@@ -13,7 +13,7 @@ from ...robot.model import WHEEL_JOINTS
 from ...simulation.simulation import Simulation
 from .. import convert
 from .gazebo_topics import State, links, models, relative, robot_names, state_of
-from .world_services import serve
+from .services import serve
 
 Fields = Dict[str, Any]  # of a response
 

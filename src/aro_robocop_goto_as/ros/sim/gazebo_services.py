@@ -12,14 +12,14 @@ from gazebo_msgs.msg import ModelState
 from geometry_msgs.msg import Pose
 from std_srvs.srv import Empty, EmptyResponse
 
-from ...errors import FrameError, PlaceError, WorldError
+from ...errors import WorldError
 from ...geometry import STANDARD_GRAVITY, STANDSTILL, Pose3D, compose3
 from ...simulation.simulation import Simulation
 from ...world.edit import with_model_at
 from .. import convert
 from .gazebo_property_services import GazeboProperties
 from .gazebo_topics import raised, robot_names
-from .world_services import WorldServices, serve
+from .services import REFUSALS, Services, serve
 
 SLOP = 1e-6  # [s] by which a time step may differ from the simulator's
 GRAVITY_SLOP = 0.02  # [m/s^2]: Gazebo's worlds have 9.8 or 9.81
@@ -44,22 +44,11 @@ REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, the reason
 class GazeboServices:
     """Every request is carried out by the simulation's owner, between two steps, or refused with success false."""
 
-    def __init__(
-        self,
-        simulation: Simulation,
-        world_services: Optional[WorldServices],
-        refusal: str = "",
-        set_factor: Callable[[float], None] = lambda factor: None,
-    ) -> None:
-        """Without world services pausing and resetting do nothing, and other changes are refused with this reason.
-
-        set_factor: changes the real-time factor
-        """
+    def __init__(self, simulation: Simulation, services: Optional[Services], refusal: str = "") -> None:
+        """Without the simulator's services pausing and resetting do nothing; changes are refused with this reason."""
         self._simulation = simulation
         self._simulator = simulation.simulator
-        self._world_services = world_services
-        self._refusal = refusal
-        self._set_factor = set_factor
+        self._services, self._refusal = services, refusal
         self._names = robot_names(simulation.simulator)
         self._properties = GazeboProperties(simulation)
         self._serve_empty("pause_physics", lambda: simulation.set_paused(True))
@@ -78,12 +67,12 @@ class GazeboServices:
         # Neither wrenches nor efforts are ever applied, so there is nothing to clear.
         rospy.Service("/gazebo/clear_body_wrenches", srv.BodyRequest, lambda _: [])
         rospy.Service("/gazebo/clear_joint_forces", srv.JointRequest, lambda _: [])
-        if world_services is not None:
+        if services is not None:
             rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
 
     def _serve_empty(self, name: str, action: Callable[[], Any]) -> None:
         def respond(_request: Any) -> EmptyResponse:
-            if self._world_services is not None:
+            if self._services is not None:
                 self._simulation.jobs.call(action)
             return EmptyResponse()
 
@@ -94,10 +83,10 @@ class GazeboServices:
         begin, text = f"{kind.__name__}: ", "status_message"
         serve(f"/gazebo/{name}", kind, lambda request: {text: begin + change(request)}, text, begin)
 
-    def _changes(self) -> WorldServices:
-        if self._world_services is None:
+    def _changes(self) -> Services:
+        if self._services is None:
             raise WorldError(self._refusal)
-        return self._world_services
+        return self._services
 
     # -- in the owner's thread --
 
@@ -126,7 +115,7 @@ class GazeboServices:
     def _on_model_state(self, message: ModelState) -> None:
         try:
             self._simulation.jobs.call(lambda: self._set_model_state(message))
-        except (FrameError, PlaceError, WorldError) as error:
+        except REFUSALS as error:
             rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", error)
 
     def _spawn(self, request: Any) -> str:
@@ -143,8 +132,7 @@ class GazeboServices:
 
     def _set_physics_properties(self, request: Any) -> str:
         """Only how fast simulated time passes can be changed."""
-        self._changes()
-        rate, gravity = self._simulator.rate, request.gravity
+        changes, rate, gravity = self._changes(), self._simulator.rate, request.gravity
         if not abs(request.time_step - 1.0 / rate) <= SLOP:  # true for NaN
             raise WorldError(f"time_step is {1.0 / rate:g} s, by the parameter physics_rate; it cannot be changed")
         differences = (gravity.x, gravity.y, gravity.z + STANDARD_GRAVITY)
@@ -152,7 +140,7 @@ class GazeboServices:
             raise WorldError(f"gravity is {-STANDARD_GRAVITY:g} m/s^2 along z; it cannot be changed")
         if not 0.0 <= request.max_update_rate < 1e9:
             raise WorldError(f"max_update_rate is {request.max_update_rate:g}, expected a number of 0 or more")
-        self._set_factor(request.max_update_rate / rate)
+        changes.set_factor(request.max_update_rate / rate)
         return "max_update_rate set; the rest is as it was"
 
 

@@ -5,12 +5,12 @@ types of the same name and md5sum are the same.
 """
 
 import math
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Iterator, List, Sequence, Tuple
 
 import genpy.dynamic
 import rospy
 from geometry_msgs.msg import Pose, Twist, Vector3
-from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
+from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError
 from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted, quaternion_from_rpy
@@ -44,18 +44,21 @@ class GazeboTopics:
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
-        self._types: Dict[str, Any] = {name: message_type(name) for name in ("ModelStates", "LinkStates")}
-        self._models = publisher("/gazebo/model_states", self._types["ModelStates"])
-        self._links = publisher("/gazebo/link_states", self._types["LinkStates"])
-        for robot in simulator.robots:
-            rospy.Service(prefixed(robot.name, "imu_service"), Empty, _calibrate)
+        self._topics = [
+            (publisher(f"/gazebo/{topic}", kind), kind, states)
+            for topic, kind, states in (
+                ("model_states", message_type("ModelStates"), models),
+                ("link_states", message_type("LinkStates"), links),
+            )
+        ]
+        for robot in simulator.robots:  # the service does nothing, as that of Gazebo's plug-in
+            rospy.Service(prefixed(robot.name, "imu_service"), Empty, lambda _: EmptyResponse())
 
     def publish(self) -> None:
         """All models and robots as they are now."""
-        if self._models.get_num_connections():
-            self._models.publish(to_message(self._types["ModelStates"], models(self._simulator)))
-        if self._links.get_num_connections():
-            self._links.publish(to_message(self._types["LinkStates"], links(self._simulator)))
+        for topic, kind, states in self._topics:
+            if topic.get_num_connections():
+                topic.publish(to_message(kind, states(self._simulator)))
 
 
 def to_message(kind: Any, states: List[State]) -> Any:
@@ -65,11 +68,6 @@ def to_message(kind: Any, states: List[State]) -> Any:
         [convert.to_pose_msg(pose) for _, pose, _ in states],
         [twist for _, _, twist in states],
     )
-
-
-def _calibrate(_request: EmptyRequest) -> EmptyResponse:
-    """Do nothing, as Gazebo's plug-in."""
-    return EmptyResponse()
 
 
 def robot_names(simulator: Simulator) -> List[str]:

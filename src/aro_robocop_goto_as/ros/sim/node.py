@@ -14,12 +14,10 @@ from ..names import SIMULATOR
 from ..node_main import load_params, node
 from ..publishing import resume
 from .loading import load_simulator
-from .pose_inputs import PoseInputs
 from .robot_inputs import RobotInputs
+from .services import Services
 from .status import StatusTopics
 from .step_topics import StepTopics
-from .time_services import TimeServices
-from .world_services import WorldServices
 from .world_topics import WorldTopics
 
 SHORT = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
@@ -35,9 +33,7 @@ class SimNode:
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
         self._inputs = RobotInputs(self._simulation)
-        self._pose_inputs = PoseInputs(self._simulation)
-        self._time_services = TimeServices(self._simulation)
-        self._world_services = WorldServices(self._simulation)
+        self._services = Services(self._simulation)
         self._gazebo: Any = None
         self._offer_gazebo(simulator.p.topics)
 
@@ -53,7 +49,7 @@ class SimNode:
             except ImportError as error:
                 advice = "link compat/gazebo_msgs into the workspace, and build"
                 raise ParameterError(f"gazebo_services: {error}; {advice}") from error
-            GazeboServices(self._simulation, self._world_services, "", self._time_services.set_factor)
+            GazeboServices(self._simulation, self._services)
 
     # -- the loop --
 
