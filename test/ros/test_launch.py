@@ -207,7 +207,7 @@ def test_more_robots_than_launch_files_can_be_nested_are_refused(robots):
 
 def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):
     config = tmp_path / "config.yaml"
-    config.write_text("model: waffle\n")
+    config.write_text("model: waffle\nscan_angle_max: !degrees 90\n")  # a tag of rosparam
     described = Launch(f"config:={config}", "robots:=red 0 0; blue:turtlebot2 1 0").named("robot_description")
     names = {name: ElementTree.fromstring(text).get("name") for name, text in described.items()}
     assert names == {"/robot_description": "turtlebot3_waffle", "/blue/robot_description": "turtlebot2"}
@@ -246,7 +246,7 @@ def test_spawn_pose_can_be_given_as_to_turtlebot3_gazebo():
 def test_model_comes_from_the_environment_as_for_turtlebot3_unless_it_is_given(monkeypatch, tmp_path, file):
     monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle_pi")
     config = tmp_path / "config.yaml"
-    config.write_text("model: waffle\n")
+    config.write_text("model: waffle\nscan_angle_max: !degrees 90\n")  # a tag of rosparam
 
     def chosen(*arguments):
         launch = Launch(*arguments, file=file)

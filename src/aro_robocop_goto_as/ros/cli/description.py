@@ -12,13 +12,20 @@ from ...robot.model_names import DEFAULT_MODEL, urdf_of
 MODEL_VARIABLE = "TURTLEBOT3_MODEL"  # the model where no file chooses one, as in the launch file
 
 
+class _Loader(yaml.SafeLoader):
+    """Reads values with a tag, such as rosparam's !degrees, as None: the model's name has none."""
+
+
+_Loader.add_multi_constructor("!", lambda loader, suffix, node: None)
+
+
 def main(arguments: Optional[List[str]] = None) -> None:
     """Print the URDF. Arguments: the package's folder, the launch argument `robots`, parameter files; '' for none."""
     package, robots, *paths = sys.argv[1:] if arguments is None else arguments
     values: Dict[str, Any] = {}
     for path in filter(None, paths):
         with open(path, encoding="utf-8") as stream:  # roslaunch has loaded these files, and refuses those with errors
-            values.update(yaml.safe_load(stream) or {})
+            values.update(yaml.load(stream, _Loader) or {})
     if values.get("robots") and not robots:
         print(
             "robocop_sim.launch: parameter `robots` is set in a file, which gives the simulator these robots but "
