@@ -1,10 +1,18 @@
 """rospy's calls to the grader (its master, its topics, its services): answered without simulated time."""
 
+import contextlib
 import functools
+import queue
+import time
 import xmlrpc.client
-from typing import Any, Callable, Dict, Set
+from typing import Any, Callable, Dict, List, Set, Tuple
 
 from . import scheduler
+
+KEPT = ("/odom", "/scan")
+LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
+SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
+_kept: Dict[Tuple[str, Any], "_Subscription"] = {}
 
 
 def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
@@ -28,6 +36,7 @@ def install(ports: Set[int]) -> None:
 
     names = set(map(str, ports))
     _calls(xmlrpc.client.Transport, "request", is_grader)
+    import rospy
     from rospy.impl.tcpros_base import TCPROSTransport
     from rospy.impl.tcpros_service import TCPROSServiceClient
 
@@ -36,6 +45,61 @@ def install(ports: Set[int]) -> None:
 
     _calls(TCPROSTransport, "connect", lambda _transport, _host, port, *_: port in ports)
     _calls(TCPROSTransport, "receive_once", answers)
+    for module in (rospy, rospy.client):
+        module.wait_for_message = wait_for_message
+
+
+class _Subscription:
+    """A subscription that calls of wait_for_message() share."""
+
+    def __init__(self, topic: str, topic_type: Any) -> None:
+        self._topic, self._type = topic, topic_type
+        self._waiting: List[Tuple[int, queue.Queue[Any]]] = []  # for messages after this time [ns]
+        self.subscriber: Any = None
+
+    def _receive(self, message: Any) -> None:
+        for waiting in list(self._waiting):
+            if waiting[0] < scheduler.now_ns:
+                self._waiting.remove(waiting)
+                waiting[1].put(message)
+
+    def next_message(self, end_ns: int) -> Any:
+        """The next message, at the time of rospy's look for it; None if rospy is shut down, or at the end [ns]."""
+        import rospy
+
+        started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]
+        # With rospy's own subscription it would not be connected yet, and get none of those that are on their way now.
+        self._waiting.append((-1 if self.subscriber is None else started_ns, messages))
+        if self.subscriber is None:
+            self.subscriber = rospy.Subscriber(self._topic, self._type, self._receive)
+        while not rospy.is_shutdown() and scheduler.now_ns < end_ns:
+            with contextlib.suppress(queue.Empty):
+                message = messages.get(timeout=min(SHUTDOWN_LOOK, (end_ns - scheduler.now_ns) / 1e9))
+                time.sleep((LOOK_NS - (scheduler.now_ns - started_ns) % LOOK_NS) / 1e9)
+                return message
+        return None
+
+
+def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
+    """rospy's function, but it is woken up by the message, and stays subscribed to what the robot always sends.
+
+    rospy registers with the master and connects for each message, and looks for it every LOOK_NS.
+    """
+    import rospy
+
+    key = rospy.resolve_name(topic), topic_type
+    subscription = _kept.get(key) or _Subscription(topic, topic_type)
+    if key[0] in KEPT:
+        _kept[key] = subscription
+    end_ns = scheduler.deadline(timeout.to_sec() if isinstance(timeout, rospy.Duration) else timeout)
+    message = subscription.next_message(end_ns)
+    if key not in _kept:
+        subscription.subscriber.unregister()
+    if rospy.is_shutdown():
+        raise rospy.ROSInterruptException("rospy shutdown")
+    if message is None:
+        raise rospy.ROSException(f"timeout exceeded while waiting for message on topic {topic}")
+    return message
 
 
 def topics(ports: Set[int]) -> Dict[str, Any]:

@@ -53,6 +53,8 @@ def main() -> None:
     ros_internals.install()
     _start_master()
     rospy.set_param("/use_sim_time", True)
+    # rospy asks the master for it with every line it logs, unless it is set.
+    rospy.set_param("/rosout_disable_topics_generation", True)
     for name, value in job.parameters.items():
         rospy.set_param(name, value)
     # Without rosout, or the connection to its own log would be taken for the submission's (ServerRun._bring_up).

@@ -29,6 +29,7 @@ MAX_LINE = 2_000  # bytes
 MAX_ANSWER = 1_000_000  # bytes
 NEVER = 1 << 62  # [ns]
 SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
+SOON = 5e-4  # [s, wall] between two looks at whether connections have been made
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
 MOST_STILL = 20  # looks at which the node did not run and did not want to, until it is not waited for any more
 MOST_SWITCHES = 10_000  # times that the threads of a process without agent run; one that ends needs a hundred
@@ -144,7 +145,7 @@ class Node:
             return None
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
-            answer = json.loads(line)
+            answer = json.loads(line.decode())
             return {
                 "next": int(answer["next"]),
                 "busy": bool(answer["busy"]),
@@ -191,7 +192,7 @@ class Node:
         if not self._topics or self._is_connected():
             self._topics = {}
             return False
-        self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown())
+        self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
         self._run_jobs()
         self._topics = {}
         return not self._has_ended()

@@ -1,6 +1,6 @@
 """A scenario's bag: what the submission was sent and answered, and what else a replay shows."""
 
-from typing import Any, Optional
+from typing import Any, Dict, Optional
 
 import rosbag
 import rospy
@@ -21,6 +21,13 @@ MOST_BAG = 32 * 1024**2  # bytes
 NO_COVARIANCE = [0.0] * 36
 
 
+class _NoIndex(Dict[int, Any]):
+    """In place of rosbag's index by time, which only readers use; keeping it sorted is a third of the writing."""
+
+    def __setitem__(self, _connection: int, _entries: Any) -> None:
+        pass
+
+
 class ScenarioBag:
     """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
 
@@ -31,9 +38,10 @@ class ScenarioBag:
         self._bag: Optional[rosbag.Bag] = None
 
     def open(self, path: str) -> None:
-        """Begin a bag; none for an empty path."""
+        """Begin a bag."""
         self.close()
-        self._bag = rosbag.Bag(path, "w") if path else None
+        self._bag = rosbag.Bag(path, "w")
+        setattr(self._bag, "_connection_indexes", _NoIndex())  # noqa: B010  mypy does not know it
 
     def close(self) -> None:
         """Close the bag, if one is open."""

@@ -7,9 +7,11 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 from support import ROOT
+from waiting import wait_for
 
 AGENT = os.path.join(ROOT, "src", "robocop_grading", "agent")
 STEP = 10**7  # [ns] of simulated time between two requests
@@ -149,6 +151,13 @@ def test_program_that_polls_in_a_busy_loop_does_not_stop_time(tmp_path):
         assert program.go_on(STEP)["busy"]
         answers = [program.go_on(step * STEP) for step in range(2, 30)]
         assert not answers[-1]["busy"]
+
+
+def test_loop_without_pauses_does_not_run_until_the_next_request(tmp_path):
+    with Program(tmp_path, "time.sleep(0.001)\nwhile True: pass") as program:
+        assert [program.go_on(step * STEP)["busy"] for step in (1, 2)] == [True, True]
+        tasks = Path(f"/proc/{program.process.pid}/task")
+        wait_for(lambda: {task.read_text().split()[2] for task in tasks.glob("*/stat")} == {"S"}, "asleep")
 
 
 def test_loop_that_waits_for_what_rounding_has_left_of_a_time_goes_on(tmp_path):
