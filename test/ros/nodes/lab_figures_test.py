@@ -61,18 +61,18 @@ class LabFigures(SystemTest):
         self.assertLess(max(angles), GotoParams().angle_tolerance, "it passes the goal's direction")
 
     def test_tuning_with_a_high_speed(self):
-        shortest, longest = printed(r"turns back, and needs (\d+) to (\d+) s")
+        (reached,) = printed(r"turns back, and needs about (\d+) s")
         took, _, angles, _ = self.drive(*TO_THE_RIGHT, angular_gain=5.0, max_angular_velocity=2.8)
-        self.assertTrue(shortest <= took <= longest, took)
+        self.assertAlmostEqual(took, reached, delta=0.7)
         self.assertGreater(max(angles), 0.5)
 
     def test_tuning_with_a_high_gain(self):
-        _, _, angles, message = self.drive(*TO_THE_RIGHT, angular_gain=20.0, max_angular_velocity=2.8)
-        self.assertTrue(message.startswith(("REACHED", "STUCK")), message)
+        (reached,) = printed(r"by more than a radian, back by a quarter of one, and needs about (\d+) s")
+        took, _, angles, message = self.drive(*TO_THE_RIGHT, angular_gain=20.0, max_angular_velocity=2.8)
+        self.assertTrue(message.startswith("REACHED"), message)
+        self.assertAlmostEqual(took, reached, delta=0.7)
         self.assertGreater(max(angles), 1.0)
-        self.assertLess(min(angles), -1.0)
-        changes = sum(a * b < 0 for a, b in zip(angles, angles[1:]))
-        self.assertGreater(changes, 4, "changes of the angle error's sign")
+        self.assertAlmostEqual(min(angles[angles.index(max(angles)) :]), -0.25, delta=0.15)
 
     def test_the_reason_that_is_given(self):
         speed, stops, acceleration, angle = printed(
