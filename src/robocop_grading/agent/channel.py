@@ -16,11 +16,9 @@ from . import ros, scheduler, stuck
 
 STARTING = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
 PATIENCE = 0.5  # [s] likewise for what it does at one time ...
-BRIEFLY = (
-    0.02  # [s] ... and likewise of a node that has ever needed PATIENCE several times in a row: a loop without pauses
-)
-IMPATIENCE = 0.002  # [s] ... and if it did not come to an end the last times
-TIMES = 3
+TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
+IMPATIENCE = 0.002  # [s] as long as it goes on, and
+BRIEFLY = 0.02  # [s] once it has come to an end
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
