@@ -4,7 +4,7 @@ From a velocity command to odometry, scan, tf and clock:
 
     ros.sim.robot_inputs          cmd_vel -> a job for the thread that owns the simulation
     simulation.controllers        applies it, in lockstep at the end of the control tick -> robot.fleet, clamped to the
-                                  robot.base_limits: a row of its arrays, which the engine reads
+                                  robot.command_limits: a row of its arrays, which the engine reads
     simulation.simulator          finds the next step on which something is due
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds

@@ -47,7 +47,7 @@ class Texts:
     def told(self, what: str) -> str:
         """A text in that language, with all that it is made of."""
         if not isinstance(what, Text):
-            return self._translations.get(what) or what
+            return self._translations.get(what) or _english().get(what) or what
         if what.parts:
             return str(sentences(*map(self.told, what.parts)))
         values = [self.told(it) if isinstance(it, str) else it for it in what.values]

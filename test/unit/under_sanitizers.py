@@ -18,10 +18,10 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.grid_index import Tiles
-from aro_robocop_goto_as.robot.base_limits import Limits
+from aro_robocop_goto_as.robot.command_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.convert import imu_covariances
+from aro_robocop_goto_as.ros.covariances import imu_covariances
 from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import (
     DOUBLES,

@@ -6,7 +6,7 @@
 
 #define ARO_FLEET_VERSION 2
 
-/* Columns of limits, as in Limits of base_controller.py */
+/* Columns of limits, as in Limits of command_limits.py */
 enum { MAX_V, MAX_W, MAX_DV, MAX_DW, TIMEOUT, LIMITS };
 
 struct fleet {

@@ -9,7 +9,7 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .base_limits import Limits, clamped
+from .command_limits import Limits, clamped
 from .model import Pair, RobotModel
 
 VERSION = 2  # of the structures that the library's functions take, as in fleet.h

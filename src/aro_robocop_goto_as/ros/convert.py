@@ -15,21 +15,13 @@ from ..geometry import FARTHEST, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
 from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
-from ..sim_params import ImuParams
 from ..simulation.schedule import NANOSECONDS
+from .covariances import ImuCovariances, diagonal
 
 FULL_VOLTAGE, DESIGN_CAPACITY = 12.6, 1.8  # [V], [Ah] of a TurtleBot3's battery, three LiPo cells
 # Of a quaternion's length. A quarter turn typed as z 0.7 w 0.7 has a length of 0.99; what is farther from 1 is an error
 # of its sender, and normalising it would hide that. tf2 refuses transforms from 0.005 on.
 QUATERNION_TOLERANCE = 0.02
-# Variances of x, y, z, roll, pitch, yaw. A huge variance marks what a differential drive cannot measure. The figures
-# are those of Gazebo's differential drive plugin, which existing lab code was written against.
-ODOM_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
-TRUTH_VARIANCES = (1e-12,) * 6
-ORIENTATION_VARIANCE = 1e-6  # the simulated IMU's orientation is exact except for rounding
-REAL_IMU_VARIANCES = (0.0025, 0.02, 0.04)  # orientation, rates, accelerations of a TurtleBot3's firmware
-
-ImuCovariances = Tuple[List[float], List[float], List[float]]  # of orientation, rates, accelerations
 
 
 def to_time(stamp_ns: int) -> Time:
@@ -106,21 +98,6 @@ def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time
     return TransformStamped(Header(0, stamp, parent), child, Transform(translation, rotation))
 
 
-def diagonal(variances: Tuple[float, ...]) -> List[float]:
-    """A row-major diagonal covariance, 6 x 6 or 3 x 3, with these variances."""
-    size = len(variances)
-    return [variances[row] if row == column else 0.0 for row in range(size) for column in range(size)]
-
-
-def imu_covariances(noise: ImuParams, real: bool) -> ImuCovariances:
-    """The covariances of the noise that the simulator adds, or those that a real TurtleBot3 reports."""
-    variances = (
-        REAL_IMU_VARIANCES if real else (ORIENTATION_VARIANCE, noise.gyro_noise**2, noise.accelerometer_noise**2)
-    )
-    orientation, rates, accelerations = (diagonal((variance,) * 3) for variance in variances)
-    return orientation, rates, accelerations
-
-
 def to_odometry(
     pose: Pose2D, twist: Twist2D, stamp: Time, frame: str, child: str, covariance: List[float]
 ) -> OdometryMsg:
@@ -156,7 +133,7 @@ def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
 
 
 def to_imu(sample: np.ndarray, stamp: Time, frame: str, covariances: ImuCovariances) -> Imu:
-    """A sample (10,) of sensors.imu with covariances from `imu_covariances`."""
+    """A sample (10,) of sensors.imu with covariances of `imu_covariances`."""
     orientation, rates, accelerations = covariances
     return Imu(
         Header(0, stamp, frame),

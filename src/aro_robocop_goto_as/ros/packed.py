@@ -19,7 +19,7 @@ from ..geometry import Pose2D, Twist2D
 from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
 from . import convert
-from .convert import ImuCovariances
+from .covariances import ImuCovariances
 
 HEADER, STAMP, POSE, TWIST, DOUBLES, FLOATS = range(6)  # kinds of fields, as in sender.c
 

@@ -5,7 +5,8 @@ from typing import Optional
 
 from ..geometry import STANDSTILL, Twist2D
 
-PATIENCE = 0.35  # [s, wall] without a renewed request until the robot is stopped; pages renew it every 0.1 s
+RATE = 10.0  # [Hz] at which a page renews its request
+PATIENCE = 3.5 / RATE  # [s, wall] without a renewed request until the robot is stopped
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from .kernel_memory import OUTER_NETWORK, network_of
 
 ADDRESS_SPACE = 4 * 1024**3  # bytes of each process; numpy alone reserves more than one GB
 FILES = 256  # open ones of each process: what waits in its pipes and sockets is nobody's memory
-PROCESSES = 200  # including threads; a rospy node has some 30
+TASKS = 200  # processes and threads; a rospy node has some 30
 FILE_SIZE = 64 * 1024**2  # bytes of a file
 SPACE = 64 * 1024**2  # bytes of each writable place, all in memory
 CPU_TIME = 200  # [s] of each process
@@ -120,7 +120,7 @@ def change_owner(folder: Path, owner: int) -> None:
 
 def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
-    limits = {"as": ADDRESS_SPACE, "nproc": PROCESSES, "nofile": FILES, "fsize": FILE_SIZE, "core": 0}
+    limits = {"as": ADDRESS_SPACE, "nproc": TASKS, "nofile": FILES, "fsize": FILE_SIZE, "core": 0}
     limits_of = [f"--{name}={limit}" for name, limit in limits.items()]
     drop = ["--clear-groups", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
     return [

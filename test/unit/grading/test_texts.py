@@ -106,6 +106,11 @@ def test_text_in_text_and_sentences_are_told():
     assert told("something else") == ENGLISH.told("something else") == "something else"
 
 
+def test_english_beside_a_text_replaces_it(monkeypatch):
+    monkeypatch.setattr("robocop_grading.texts._english", lambda: {"too late": "after 3 s", "{} m": "{} metres"})
+    assert [ENGLISH.told(what) for what in ("too late", text("{} m", 2), "late")] == ["after 3 s", "2 metres", "late"]
+
+
 @pytest.mark.parametrize(
     "content, words",
     [

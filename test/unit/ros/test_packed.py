@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.ros import convert, packed
 from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.convert import imu_covariances
+from aro_robocop_goto_as.ros.covariances import imu_covariances
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 from aro_robocop_goto_as.sim_params import ImuParams
 

@@ -11,7 +11,7 @@ from reference_fleet import ReferenceOdometry
 from support import model_named
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
-from aro_robocop_goto_as.robot.base_limits import Limits
+from aro_robocop_goto_as.robot.command_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sim_params import OdometryParams

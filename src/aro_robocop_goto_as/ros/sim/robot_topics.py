@@ -14,7 +14,7 @@ from ...robot.model import CAMERA_FRAME
 from ...simulation.observations import BATTERY, BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..convert import ODOM_VARIANCES, TRUTH_VARIANCES, diagonal, imu_covariances
+from ..covariances import ODOM_VARIANCES, TRUTH_VARIANCES, diagonal, imu_covariances
 from ..names import prefixed
 from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
 from ..publishing import publisher

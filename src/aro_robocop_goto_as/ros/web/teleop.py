@@ -8,7 +8,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from ...geometry import Twist2D
-from ...web.dead_man import DeadMan
+from ...web.dead_man import RATE, DeadMan
 from .. import convert
 from ..names import absolute
 from ..ticker import wait_until
@@ -16,7 +16,6 @@ from .daemon import start_daemon
 from .goals import cancel
 from .part import Context, Part
 
-HOLD_RATE = 10.0  # [Hz] at which a page renews the request of a button that is held
 END_PATIENCE = 0.5  # [s, wall]
 PERIOD = 0.1  # [s, wall]
 LINGER = 3.0  # [s, wall] without driving until cmd_vel is given up
@@ -62,7 +61,7 @@ class Teleop(Part):
                     continue
                 hold = self._holder(Twist2D(share.v * linear, share.w * angular))
                 button = gui.add_button(label, hint="drives while it is held")
-                button.on_hold(hold, callback_hz=HOLD_RATE)
+                button.on_hold(hold, callback_hz=RATE)
                 button.on_click(self._on_release)  # over its button; if released elsewhere, the requests just stop
                 command = gui.add_command(label, hotkey=key, description="drives while the key is held")
                 command.on_trigger(hold)

@@ -22,7 +22,7 @@ def read_map(path: str) -> World:
     occupancy = Occupancy(_read_cells(spec), spec.resolution, spec.origin)
     # In mode raw, the values are the image's own, and the threshold counts.
     lowest_wall = math.floor(100.0 * spec.occupied_thresh) + 1 if spec.mode == "raw" else 100
-    walls = Walls(outline(occupancy.cells >= lowest_wall) * spec.resolution, WALL_HEIGHT)
+    walls = Walls(edges_of_cells(occupancy.cells >= lowest_wall) * spec.resolution, WALL_HEIGHT)
     obstacles = (
         Obstacle("ground_plane/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0))),
         Obstacle("map/walls/collision", lifted(spec.origin), walls),
@@ -69,7 +69,7 @@ def _cells(pixels: np.ndarray, spec: MapSpec) -> np.ndarray:
     return cells.astype(np.int8)
 
 
-def outline(occupied: np.ndarray) -> np.ndarray:
+def edges_of_cells(occupied: np.ndarray) -> np.ndarray:
     """The edges between occupied and other cells, merged into segments (n, [start, end], [x, y]) in units of cells.
 
     occupied: (rows, columns) bool; the outside of the map counts as not occupied.

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.world.grid_map.reader import outline
+from aro_robocop_goto_as.world.grid_map.reader import edges_of_cells
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Walls
 
@@ -70,7 +70,7 @@ def test_outline_is_all_edges_of_occupied_regions_in_maximal_segments(rows, colu
     occupied = np.array(data.draw(st.lists(st.booleans(), min_size=rows * columns, max_size=rows * columns)))
     occupied = occupied.reshape(rows, columns)
     pieces = []
-    segments = outline(occupied)
+    segments = edges_of_cells(occupied)
     for (x, y), (x_end, y_end) in segments.astype(int).tolist():
         along = range(x, x_end) if y == y_end else range(y, y_end)
         pieces += [((k, y), (k + 1, y)) if y == y_end else ((x, k), (x, k + 1)) for k in along]
