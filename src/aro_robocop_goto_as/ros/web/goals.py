@@ -18,7 +18,7 @@ from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers, names
 from ..client.sent_goal import STATES, UNFINISHED
-from ..convert import diagonal
+from ..covariances import diagonal
 from ..names import ACTION, absolute
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
