@@ -54,12 +54,13 @@ def ignore_all() -> None:
 
 
 class Deferred:
-    """A block during which ending signals are deferred to its end. For the main thread, and for short blocks.
+    """A block during which some signals, or all that end a program, are deferred to its end. For the main thread.
 
     It replaces handlers instead of blocking the signals, because processes started in the block would inherit a mask.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *numbers: int) -> None:
+        self._numbers = numbers or ending_signals()
         self._handlers: Dict[int, Any] = {}
         self._number: Optional[int] = None
 
@@ -69,7 +70,7 @@ class Deferred:
         return self._number is not None
 
     def __enter__(self) -> "Deferred":
-        for number in ending_signals():
+        for number in self._numbers:
             self._handlers[number] = signal.signal(number, self._defer)
         return self
 

@@ -63,7 +63,7 @@ def _shape(geometry: "etree._Element", look: Look) -> Optional[Shape]:
         return None
     try:
         triangles = load_triangles(locate(uri, "")) * np.array(_vector(geometry.get("scale", "1 1 1")))
-    except WorldError:
+    except (WorldError, OSError):
         return None
     corners = tuple((x, y, z) for x, y, z in triangles.reshape(-1, 3).tolist())
     return Shape(MESH, color=look[0], opacity=look[1], points=corners)

@@ -18,7 +18,7 @@ STARTING = 20.0  # [s] of processor time for a node until it waits for the first
 PATIENCE = 0.5  # [s] likewise for what it does at one time ...
 TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
 IMPATIENCE = 0.002  # [s] as long as it goes on, and
-BRIEFLY = 0.02  # [s] once it has come to an end
+BRIEFLY = 0.2  # [s] once it has come to an end
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
@@ -41,6 +41,7 @@ class Channel:
     def _serve(self) -> None:
         calls = -1
         for request in self._requests():
+            scheduler.turn += 1
             scheduler.expected.update(((port, of), count) for port, of, count in request["sent"])
             busy = not self._go_on(request["until"])
             answer = {"done": scheduler.now_ns, "next": scheduler.next_deadline(), "busy": busy, "sent": self._sent()}

@@ -2,6 +2,7 @@
 
 import contextlib
 import functools
+import math
 import queue
 import time
 import xmlrpc.client
@@ -9,7 +10,7 @@ from typing import Any, Callable, Dict, List, Set, Tuple
 
 from . import scheduler
 
-KEPT = ("/odom", "/scan")
+KEPT = {"/odom": "nav_msgs/Odometry", "/scan": "sensor_msgs/LaserScan"}
 LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
 SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
 _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
@@ -54,12 +55,12 @@ class _Subscription:
 
     def __init__(self, topic: str, topic_type: Any) -> None:
         self._topic, self._type = topic, topic_type
-        self._waiting: List[Tuple[int, queue.Queue[Any]]] = []  # for messages after this time [ns]
+        self._waiting: List[Tuple[int, queue.Queue[Any]]] = []  # for messages of a later turn than this
         self.subscriber: Any = None
 
     def _receive(self, message: Any) -> None:
         for waiting in list(self._waiting):
-            if waiting[0] < scheduler.now_ns:
+            if waiting[0] < scheduler.turn:
                 self._waiting.remove(waiting)
                 waiting[1].put(message)
 
@@ -69,7 +70,7 @@ class _Subscription:
 
         started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]
         # With rospy's own subscription it would not be connected yet, and get none of those that are on their way now.
-        self._waiting.append((-1 if self.subscriber is None else started_ns, messages))
+        self._waiting.append((-1 if self.subscriber is None else scheduler.turn, messages))
         if self.subscriber is None:
             self.subscriber = rospy.Subscriber(self._topic, self._type, self._receive)
         while not rospy.is_shutdown() and scheduler.now_ns < end_ns:
@@ -89,12 +90,17 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
 
     key = rospy.resolve_name(topic), topic_type
     subscription = _kept.get(key) or _Subscription(topic, topic_type)
-    if key[0] in KEPT:
+    if KEPT.get(key[0]) == topic_type._type:  # a subscription of another type would decide that of later ones
         _kept[key] = subscription
-    end_ns = scheduler.deadline(timeout.to_sec() if isinstance(timeout, rospy.Duration) else timeout)
-    message = subscription.next_message(end_ns)
-    if key not in _kept:
-        subscription.subscriber.unregister()
+    if isinstance(timeout, rospy.Duration):
+        timeout = timeout.to_sec()
+    if timeout is not None:  # rospy sleeps before it looks at the time
+        timeout = max(1, math.ceil(timeout * 1e9 / LOOK_NS)) * LOOK_NS / 1e9
+    try:
+        message = subscription.next_message(scheduler.deadline(timeout))
+    finally:
+        if key not in _kept and subscription.subscriber is not None:
+            subscription.subscriber.unregister()
     if rospy.is_shutdown():
         raise rospy.ROSInterruptException("rospy shutdown")
     if message is None:

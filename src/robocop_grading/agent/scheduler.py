@@ -53,6 +53,7 @@ now_ns = 0
 running: Set[int] = set()  # threads
 starting = 0  # threads that were started and have not begun
 calls = 0  # of the grader, so far
+turn = 0  # number of the grader's request that is being answered
 calling: Dict[int, int] = {}  # threads that wait for an answer of the grader's own, by which they count as running
 reading: Dict[int, Waiter] = {}  # threads in poll()
 received: Dict[int, "Traffic"] = {}  # by descriptor

@@ -63,7 +63,7 @@ def set_up(*parts: str) -> bool:
     if missing:
         say(f"ROS is at {ros}, but these Python modules are missing: {missing} (in ros-noetic-* or python3-* packages)")
         return False
-    with signals.Deferred():  # Ctrl-C also ends the set-up, which is waited for
+    with signals.Deferred(signal.SIGINT):  # Ctrl-C also ends the set-up, which is waited for
         return subprocess.call([SCRIPT, "_set_up", *parts]) == 0
 
 

@@ -39,7 +39,8 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
     parser.add_argument("--trail", action="store_true", help="of odometry: no server is there that publishes one")
     options, rest = parser.parse_known_args(arguments)
-    config = options.config or _written(adapted(observe(options.frame, options.wait, not options.trail)))
+    seen = observe(options.frame, options.wait, not options.trail)
+    config = options.config or _written(adapted(seen))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
     again = str(SHARE / "launch" / "restart_after_crash")
     log = os.environ.get(RVIZ_LOG)

@@ -64,8 +64,12 @@ class Inbox:
     def deliver(self) -> None:
         """Handle all messages that wait; those of one topic in the order of their arrival."""
         for _, waiting, handler in self._subscriptions:
-            while waiting:
-                handler(*waiting.popleft())
+            while True:
+                try:
+                    message = waiting.popleft()
+                except IndexError:  # none is left; clear() may be called by another thread
+                    break
+                handler(*message)
 
     def clear(self) -> None:
         """Forget the messages that wait."""
