@@ -1,7 +1,8 @@
 """The topics on which robots are commanded: cmd_vel, and in lockstep the answers to control ticks."""
 
+import functools
 import threading
-from typing import Callable, Dict, Iterable, List, Set
+from typing import Callable, Dict, Iterable, List, Optional, Set
 
 import rosgraph
 import rospy
@@ -19,7 +20,7 @@ from ..ticker import wait_until
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
 POLL = 0.02  # [s, wall] between two checks of a node's connections
-PATIENCE = 10.0  # [s, wall] for them; a registration may be left over from a node that was killed
+PATIENCE = 10.0  # [s, wall, and of its processor time] for them; a killed node may have left a registration
 
 
 def is_fully_connected(node: str) -> bool:
@@ -39,9 +40,14 @@ class AnsweringNodes:
     at in a thread of its own, as the master may take long to answer.
     """
 
-    def __init__(self, is_ready: Callable[[str], bool] = is_fully_connected, patience: float = PATIENCE) -> None:
-        self._is_ready = is_ready
-        self._patience = patience
+    def __init__(
+        self,
+        is_ready: Callable[[str], bool] = is_fully_connected,
+        patience: float = PATIENCE,
+        peer_of: Callable[[str], Optional[Peer]] = lambda node: None,
+    ) -> None:
+        """`peer_of`: a node's process, which is waited for while it waits for a processor."""
+        self._is_ready, self._patience, self._peer_of = is_ready, patience, peer_of
         self._looks: Dict[str, threading.Thread] = {}  # by node; one ends when all is connected since the node came
 
     def among(self, connected: Iterable[str]) -> Set[str]:
@@ -55,8 +61,12 @@ class AnsweringNodes:
         return look
 
     def _await(self, node: str) -> None:
-        if not (wait_until(lambda: self._is_ready(node), self._patience, POLL) or rospy.is_shutdown()):
-            rospy.logwarn("%s answers ticks, but not all of its subscriptions have connected", node)
+        peer = None
+        while not (wait_until(lambda: self._is_ready(node), self._patience, POLL) or rospy.is_shutdown()):
+            peer = peer or self._peer_of(node)
+            if peer is None or not peer.wants_to_run():
+                rospy.logwarn("%s answers ticks, but not all of its subscriptions have connected", node)
+                return
 
 
 class RobotInputs:
@@ -69,7 +79,7 @@ class RobotInputs:
         self._simulation = simulation
         names = [robot.name for robot in simulation.simulator.robots]
         self._subscribers = [self._subscribe(robot, name) for robot, name in enumerate(names)]
-        self._answering = [AnsweringNodes() for _ in names]
+        self._answering = [AnsweringNodes(peer_of=functools.partial(self._peer, robot)) for robot in range(len(names))]
         self._peers: Dict[ControllerId, List[Peer]] = {}  # that are awaited at this control tick
 
     def _subscribe(self, robot: int, name: str) -> List[rospy.Subscriber]:
@@ -99,6 +109,10 @@ class RobotInputs:
         """Names of the nodes that are connected to answer ticks for a robot, and to all they subscribe to."""
         _, answers = self._subscribers[robot]
         return self._answering[robot].among(publishers_of(answers) - {UNNAMED})
+
+    def _peer(self, robot: int, node: str) -> Optional[Peer]:
+        end = socket_from(self._subscribers[robot][1], node)
+        return None if end is None else Peer(end, PATIENCE)
 
     def begin_tick(self) -> None:
         """Forget the processes that were looked at in the tick before."""

@@ -21,6 +21,24 @@ def test_node_with_a_registration_left_over_is_answering_after_the_patience():
     assert wait_until(lambda: nodes.among({"/a"}) == {"/a"}, 10.0)
 
 
+def test_node_that_waits_for_a_processor_is_waited_for_beyond_the_patience():
+    looks = threading.Semaphore(0)
+
+    class Starved:
+        wants = True
+
+        def wants_to_run(self):
+            looks.release()
+            return self.wants
+
+    peer = Starved()
+    nodes = AnsweringNodes(lambda node: False, patience=0.01, peer_of=lambda node: peer)
+    assert nodes.among({"/a"}) == set()
+    assert all(looks.acquire(timeout=10.0) for _ in range(5)) and nodes.among({"/a"}) == set()
+    peer.wants = False
+    assert wait_until(lambda: nodes.among({"/a"}) == {"/a"}, 10.0)
+
+
 def test_one_node_does_not_wait_for_another():
     nodes = AnsweringNodes(lambda node: node == "/b")
     assert wait_until(lambda: nodes.among({"/a", "/b"}) == {"/b"}, 10.0)
