@@ -16,6 +16,7 @@ class ServerReplaced(unittest.TestCase):
         goal = robot.start(2.0, 0.0)
         for _ in range(5):
             self.assertTrue(robot.tick(goal))
+        links = robot.links()
         first = rosgraph.Master(rospy.get_name()).lookupNode(SERVER)
         with Process(script("robocop_goto_as.py"), f"__name:={SERVER[1:]}") as second:
             self.assertIn("server is shutting down", goal.result("SHUTDOWN").result.message)
@@ -28,6 +29,8 @@ class ServerReplaced(unittest.TestCase):
             )
             self.assertEqual(subscribers, [SERVER])
             self.assertNotEqual(master.lookupNode(SERVER), first)
+            # Both servers have one name: a second robot would send its first messages to the first server.
+            wait_for(lambda: not links & robot.links(), "the end of the first server's connections")
             robot = FakeRobot()
             robot.renew()
             for topic in (f"{ACTION}/feedback", f"{ACTION}/result", "cmd_vel", "/rosout"):
