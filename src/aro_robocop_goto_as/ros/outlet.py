@@ -7,7 +7,7 @@ return to a publisher that has closed the connection, so it stays open, and what
 import ctypes
 import errno
 import socket
-from typing import Any, Optional
+from typing import Any, Optional, Tuple
 
 import rospy
 
@@ -63,10 +63,16 @@ class Outlet:
         if self.push_rest():
             took = self._take(left, socket.MSG_DONTWAIT)
             left = left[took:]
-            reads = bool(took) or (not self.stands_still and (patient or self._is_kept_from_reading()))
+            reads = bool(took) or (patient and not self.stands_still)
+            if left and not reads and not self.stands_still:
+                took, reads = self._take_at_last(left)
+                left = left[took:]
             while left and reads:
-                took = self._take(left)
-                left, reads = left[took:], bool(took) or self._is_kept_from_reading()
+                took, reads = self._take(left), True
+                left = left[took:]
+                if not took:
+                    took, reads = self._take_at_last(left)
+                    left = left[took:]
             self._rest = b"" if len(left) == len(message) else bytes(left)
         self._peer = None
         self._note(not left)
@@ -84,6 +90,13 @@ class Outlet:
             return self.socket.send(data, flags)
         except BlockingIOError:
             return 0
+
+    def _take_at_last(self, data: memoryview) -> Tuple[int, bool]:
+        """The number of bytes that the socket takes now, and whether it may take more if it is waited for."""
+        if self._is_kept_from_reading():
+            return 0, True
+        took = self._take(data, socket.MSG_DONTWAIT)  # it may have got a processor, and read, just before that look
+        return took, bool(took)
 
     def _is_kept_from_reading(self) -> bool:
         """Whether its process waits for a processor, as far as is known."""

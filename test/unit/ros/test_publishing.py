@@ -202,3 +202,28 @@ def test_subscriber_that_waits_for_a_processor_is_waited_for(
     assert len(asked) >= 3 and not scans.outlets[0].stands_still
     reading.join()
     assert all(asked)
+
+
+def test_subscriber_that_has_read_and_sleeps_when_it_is_looked_at_is_waited_for(
+    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scans, read = topic(), [b""]
+    link, message = connect(scans), PackedMessage(LaserScan(ranges=[1.0] * 3_000_000))
+    reading = threading.Thread(
+        target=lambda: read.append(_received(link, message.size - len(read[0])))  # the rest, after the look
+    )
+
+    class AsleepAgain:
+        def __init__(self, *_: object) -> None: ...
+
+        def wants_to_run(self) -> bool:
+            read[0] = link.socket.recv(1_000_000, socket.MSG_WAITALL)
+            reading.start()
+            return False
+
+    monkeypatch.setattr("aro_robocop_goto_as.ros.outlet.Peer", AsleepAgain)
+    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    _send(scans, message)
+    assert not scans.outlets[0].stands_still
+    reading.join()
+    assert b"".join(read) == message.data.tobytes()
