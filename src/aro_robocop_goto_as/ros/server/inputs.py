@@ -96,7 +96,8 @@ class Inputs:
                 if self._arrived.wait_for(complete, patience):
                     return True
             if time.process_time() >= limit or not others_want_to_run():
-                return False
+                with self._arrived:  # a callback may have got a processor, and ended, just before that look
+                    return complete()
 
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.

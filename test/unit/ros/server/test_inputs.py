@@ -131,3 +131,15 @@ def test_messages_of_a_tick_are_waited_for_while_their_callbacks_get_no_processo
         server.inputs.on_odom(odom)
     server.inputs.await_tick(2 * 10**9)
     assert len(looks) == 3
+
+
+def test_data_that_arrives_in_the_moment_of_the_last_look_is_not_missing(server, monkeypatch):
+    server.receive(2.0)
+    server.ros_time = 50.0
+
+    def others_want_to_run():
+        server.receive(2.0)
+        return False
+
+    monkeypatch.setattr(f"{Inputs.__module__}.others_want_to_run", others_want_to_run)
+    assert server.inputs.missing(now=50.0, started=0.0, accepted=100.0) is None
