@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, List, Set, Tuple
 
 from . import scheduler
 
-KEPT = {"/odom": "nav_msgs/Odometry", "/scan": "sensor_msgs/LaserScan"}
+KEPT = {("/odom", "nav_msgs/Odometry"), ("/scan", "sensor_msgs/LaserScan")}
 LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
 SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
 _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
@@ -90,7 +90,8 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
 
     key = rospy.resolve_name(topic), topic_type
     subscription = _kept.get(key) or _Subscription(topic, topic_type)
-    if KEPT.get(key[0]) == topic_type._type:  # a subscription of another type would decide that of later ones
+    # Only of the lab's type: a subscription of another one would decide the type of the node's later ones.
+    if (key[0], getattr(topic_type, "_type", None)) in KEPT:
         _kept[key] = subscription
     if isinstance(timeout, rospy.Duration):
         timeout = timeout.to_sec()
