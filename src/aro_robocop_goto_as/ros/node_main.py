@@ -13,7 +13,12 @@ from ..param_loading import from_dict
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 from . import log_handlers
-from .rospy_internals import log_without_the_master, shutdown_has_begun, stop_registering_on_shutdown
+from .rospy_internals import (
+    log_without_the_master,
+    shutdown_has_begun,
+    start_quickly,
+    stop_registering_on_shutdown,
+)
 
 T = TypeVar("T")
 
@@ -29,6 +34,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
         signal.signal(number, _shut_down)
     raise_descriptor_limit()
     log_handlers.use()
+    start_quickly()
     stop_registering_on_shutdown()
     try:
         rospy.init_node(name, disable_signals=True, **options)

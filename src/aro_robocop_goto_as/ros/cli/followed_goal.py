@@ -20,6 +20,7 @@ from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.sent_goal import SentGoal
 from ..names import ACTION, absolute_if_named, place, prefixed
+from ..rospy_internals import start_quickly
 from ..ticker import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
 
@@ -85,6 +86,7 @@ def go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool] =
 
 def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool]) -> int:
     log_handlers.use()
+    start_quickly()
     rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
     started = rospy.get_rostime()
     latest: List[Optional[Odometry]] = [None]
