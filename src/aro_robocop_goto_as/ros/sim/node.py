@@ -129,9 +129,8 @@ class SimNode:
         if observed.due.clock and self._gazebo is not None:
             self._gazebo.publish()
         time, steps = self._simulation.time_control, self._simulator.steps
-        on_the_way = self._simulation.controllers.in_lockstep and not observed.due.control
         unheld = time.pacer.factor == 0.0 and time.steps_left(steps) > 0
-        self._topics.publish(observed, observed.due.clock, on_the_way and unheld)
+        self._topics.publish(observed, observed.due.clock, on_the_way=unheld and not observed.due.control)
 
     def _publish_changes(self) -> None:
         """Publish anew what has changed other than by a step."""

@@ -4,6 +4,7 @@ Transforms: world -> map -> odom -> base_footprint (REP-105). map -> odom is sta
 others; odom -> base_footprint is sent with each odometry.
 """
 
+import time
 from functools import partial
 from typing import AbstractSet, Callable, Dict, List, Sequence, Tuple
 
@@ -20,6 +21,8 @@ from ..packed import packed_clock, packed_transforms
 from ..publishing import publisher, push
 from ..rospy_internals import set_latched
 from .robot_topics import RobotTopics
+
+KEPT = 1e-3  # [s, wall] for which a step's messages may wait for those of the next steps
 
 
 class StepTopics:
@@ -39,7 +42,7 @@ class StepTopics:
         self._batches: Dict[Tuple[Due, int, bool], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
         self._sensors_at_ticks = simulator.sensors_at_control_ticks()
-        self._kept = False  # whether messages may be kept by the kernel
+        self._kept_since = 0.0  # [s, wall] since when the kernel may keep messages; 0: it does not
 
     def _on_change(self) -> None:
         """A subscriber has connected or disconnected. Called from rospy's threads."""
@@ -64,7 +67,7 @@ class StepTopics:
         """All measurements of one step; then the clock, if wanted, so that a tick's data is there when it ticks.
 
         On the way to a control tick the messages may be kept until the tick's are sent, if the same topics have some
-        then, or until push().
+        then and no more than KEPT passes, or until push().
         """
         key = observed.due, observed.scans.shape[1], clock
         if key not in self._batches:
@@ -72,10 +75,12 @@ class StepTopics:
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
+        now = time.monotonic()
         more = on_the_way and self._sensors_at_ticks.issuperset(observed.due.sensors)
+        more = more and (not self._kept_since or now - self._kept_since < KEPT)
         if not more and not observed.due.control:  # a control tick's messages take with them what is kept
             self.push()
-        self._kept = more
+        self._kept_since = (self._kept_since or now) if more else 0.0
         batch.send(observed.stamp_ns, more)
 
     def publish_static(self) -> Sequence[TransformStamped]:
@@ -98,8 +103,8 @@ class StepTopics:
 
     def push(self) -> None:
         """Send what is kept until the next control tick, as others are about to see or to change the simulation."""
-        if self._kept:
-            self._kept = False
+        if self._kept_since:
+            self._kept_since = 0.0
             push()
 
     def count(self) -> None:

@@ -1,4 +1,4 @@
-"""StepTopics: in lockstep, messages on the way to a control tick are kept until that is sent, or until they matter."""
+"""StepTopics: at full speed, messages on the way to a control tick are kept until that is sent, or they matter."""
 
 from types import SimpleNamespace
 from typing import Any, List, Tuple
@@ -14,8 +14,16 @@ ALWAYS = frozenset({ODOM, SCAN})  # due on each control tick
 Calls = List[Tuple[Any, ...]]
 
 
+@pytest.fixture(name="clock")
+def _clock(monkeypatch: pytest.MonkeyPatch) -> List[float]:
+    """The wall clock [s], which tests set."""
+    times = [100.0]
+    monkeypatch.setattr(step_topics.time, "monotonic", lambda: times[0])
+    return times
+
+
 @pytest.fixture(name="calls")
-def _calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
+def _calls(monkeypatch: pytest.MonkeyPatch, clock: List[float]) -> Calls:
     made: Calls = []
     monkeypatch.setattr(step_topics, "push", lambda: made.append(("push",)))
     return made
@@ -32,7 +40,7 @@ def publish(topics: StepTopics, calls: Calls, sensor: str, control: bool, on_the
 def topics_of_no_robots() -> StepTopics:
     """Without publishers, which need a ROS master."""
     topics = object.__new__(StepTopics)
-    topics._sensors_at_ticks, topics._kept = ALWAYS, False
+    topics._sensors_at_ticks, topics._kept_since = ALWAYS, 0.0
     return topics
 
 
@@ -57,3 +65,11 @@ def test_what_is_kept_is_pushed_once(calls: Calls) -> None:
     topics.push()
     topics.push()
     assert calls == [(SCAN, True), ("push",)]
+
+
+def test_no_message_is_kept_for_more_than_a_millisecond(calls: Calls, clock: List[float]) -> None:
+    topics = topics_of_no_robots()
+    for step_time in (0.0, 0.0006, 0.0006, 0.0006):
+        clock[0] += step_time
+        publish(topics, calls, ODOM, control=False, on_the_way=True)
+    assert calls == [(ODOM, True), (ODOM, True), ("push",), (ODOM, False), (ODOM, True)]
