@@ -1,13 +1,17 @@
 """The ROS graph as the master knows it: published topics, topics between two nodes, action servers."""
 
+import contextlib
+import socket
 from dataclasses import dataclass
 from typing import Dict, List, Tuple
+from urllib.parse import urlparse
 
 import rosgraph
 import rospy
 
 # Topics of an action's server and clients, after its name; their types end in ActionResult and ActionGoal.
 RESULT, GOAL = "/result", "/goal"
+CONNECTION_TIMEOUT = 5.0  # [s, wall]
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,19 @@ def published_topics() -> List[Topic]:
         (Topic(name, types.get(name, ""), tuple(nodes)) for name, nodes in publishers if nodes),
         key=lambda topic: topic.name,
     )
+
+
+def has_living_publisher(topic: str) -> bool:
+    """Whether a publisher of a topic that the master knows accepts connections; a node that was killed does not."""
+    with contextlib.suppress(OSError, rosgraph.MasterException):
+        master = rosgraph.Master(rospy.get_name())
+        publishers, _, _ = master.getSystemState()
+        for node in dict(publishers).get(topic, []):
+            with contextlib.suppress(OSError, rosgraph.MasterException):
+                address = urlparse(master.lookupNode(node))
+                socket.create_connection((address.hostname, address.port), CONNECTION_TIMEOUT).close()
+                return True
+    return False
 
 
 def unpublished_topics() -> List[str]:

@@ -1,5 +1,6 @@
 """What the master knows -> topics and action servers."""
 
+import socket
 from types import SimpleNamespace
 
 import pytest
@@ -15,9 +16,14 @@ SUBSCRIBERS = [["/odom", ["/server"]], ["/cmd_vel", ["/sim"]], ["/mine", ["/me"]
 
 @pytest.fixture(autouse=True)
 def master(monkeypatch):
-    known = SimpleNamespace(getTopicTypes=lambda: TYPES, getSystemState=lambda: (PUBLISHERS, SUBSCRIBERS, []))
+    known = SimpleNamespace(
+        getTopicTypes=lambda: TYPES,
+        getSystemState=lambda: (PUBLISHERS, SUBSCRIBERS, []),
+        lookupNode=lambda _: "http://localhost:1/",
+    )
     monkeypatch.setattr(rosgraph, "Master", lambda _: known)
     monkeypatch.setattr(rospy, "get_name", lambda: "/me")
+    return known
 
 
 def test_topic_without_a_publisher_is_not_published_and_one_of_unknown_type_is():
@@ -37,3 +43,19 @@ def test_topics_between_two_nodes_need_both():
 
 def test_action_server_is_known_by_the_type_of_its_result():
     assert graph.action_servers() == {"/go": "p/GoAction"}
+
+
+def test_node_that_was_killed_is_known_to_the_master_and_does_not_live(master):
+    assert not graph.has_living_publisher("/odom")
+    assert not graph.has_living_publisher("/unknown")
+    with socket.create_server(("localhost", 0)) as server:
+        master.lookupNode = lambda _: f"http://localhost:{server.getsockname()[1]}/"
+        assert graph.has_living_publisher("/odom")
+
+
+def test_nobody_lives_when_the_master_does_not_answer(master):
+    def unanswered():
+        raise rosgraph.MasterError("no answer")
+
+    master.getSystemState = unanswered
+    assert not graph.has_living_publisher("/odom")

@@ -13,6 +13,8 @@ from ..names import ACTION_TYPE
 from ..rospy_internals import is_connected_to, publishers_of, sender
 from ..ticker import wait_until
 
+PATIENCE = 20  # times the timeout
+
 
 def is_up(client: actionlib.ActionClient) -> bool:
     """Whether all five topics of an action client are connected to its server, without waiting.
@@ -61,10 +63,17 @@ def advice() -> str:
 def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float, ended: Callable[[], bool]) -> str:
     """Wait up to `timeout` [s, wall] for the server, or until its system has ended.
 
+    One that exists, but has not connected yet, may be kept from it on a busy machine: it gets PATIENCE times as long.
     An empty string, or why it may be missing and what to do.
     """
     started = time.monotonic()
-    if wait_until(lambda: is_up(client) or ended(), timeout) and not ended():
+    for _ in range(PATIENCE):
+        if wait_until(lambda: is_up(client) or ended(), timeout):
+            break
+        if not graph.has_living_publisher(rospy.resolve_name(f"{action}{graph.RESULT}")):
+            break
+        rospy.logwarn_once("%s is running, but does not answer yet", action)
+    if is_up(client) and not ended():
         return ""
     hint = _hint(action) or "; the terminal in which the system was started shows why its server ended, if it did"
     return f"no answer from {action} for {time.monotonic() - started:.0f} s{hint}"

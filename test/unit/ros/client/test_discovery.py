@@ -34,3 +34,14 @@ def test_the_robot_whose_name_is_similar_is_suggested(monkeypatch):
         graph, "action_servers", lambda: {f"/blue/{ACTION}": ACTION_TYPE, f"/red/{ACTION}": ACTION_TYPE}
     )
     assert discovery.absence(f"/rde/{ACTION}").endswith(" of the same type; did you mean red?")
+
+
+@pytest.mark.parametrize("lives, looks", [(False, 1), (True, 3)])
+def test_server_that_lives_and_has_not_connected_yet_gets_more_time(monkeypatch, lives, looks):
+    waits = []
+    monkeypatch.setattr(discovery, "is_up", lambda _client: len(waits) == 3)
+    monkeypatch.setattr(discovery, "wait_until", lambda condition, _timeout: waits.append(1) or condition())
+    monkeypatch.setattr(graph, "has_living_publisher", lambda topic: lives and topic == f"/{ACTION}/result")
+    monkeypatch.setattr(graph, "action_servers", dict)
+    missing = discovery.wait_or_explain(None, f"/{ACTION}", 5.0, lambda: False)
+    assert (missing == "", len(waits)) == (lives, looks)
