@@ -54,19 +54,22 @@ class Replay(Part):
         self._time.show(round(position, 1))
 
 
-def failures(bag: str) -> List[Failure]:
-    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it."""
+def failures(bag: str, beginning: float) -> List[Failure]:
+    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it.
+
+    beginning: of the recording [s]; a report's times are of the same clock, which goes on from scenario to scenario
+    """
     path = Path(bag)
     try:
         checks = json.loads((path.parent / "report.json").read_text(encoding="utf-8"))["checks"]
         failed = [check for check in checks if check["failure"] and f"{check['part']}-{check['scenario']}" == path.stem]
-        found = [_failure(check) for check in failed]
+        found = [_failure(check, beginning) for check in failed]
     except (OSError, ValueError, KeyError, TypeError):  # no report, or another file of this name
         return []
     return sorted(found, key=lambda failure: failure.time)
 
 
-def _failure(check: Any) -> Failure:
+def _failure(check: Any, beginning: float) -> Failure:
     failure = check["failure"]
     text = f"{failure['cause']} Expected {failure['expected']}, got {failure['seen']}."
-    return Failure(str(check["name"]), float(failure["time"]), text)
+    return Failure(str(check["name"]), float(failure["time"]) - beginning, text)
