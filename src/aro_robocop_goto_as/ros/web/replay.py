@@ -31,7 +31,7 @@ class Replay(Part):
         """speed: at the beginning"""
         super().__init__(context)
         gui = context.server.gui
-        self._player = player
+        self._player, self._reported = player, bool(failed)
         self._progress = gui.add_html("")
         buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
         buttons.on_click(lambda event: player.play(event.target.value == PLAY))
@@ -49,8 +49,10 @@ class Replay(Part):
     def show(self, state: PageState) -> None:
         position, speed = self._player.position, self._player.speed
         how = f"factor {speed:g}" if speed else "paused"
-        row = ("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")
-        self._progress.content = text.table([row])
+        rows = [("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")]
+        if self._reported:  # the causes of its failures name times, too
+            rows.append(("in the report", f"{self._player.beginning + position:.1f} s"))
+        self._progress.content = text.table(rows)
         self._time.show(round(position, 1))
 
 
