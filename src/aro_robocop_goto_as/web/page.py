@@ -51,8 +51,11 @@ def show_places(server: Any, places: Iterable[Vector3]) -> None:
     points = np.clip([(0.0, 0.0, 0.0), *places], -FARTHEST_SHOWN, FARTHEST_SHOWN)[:, :2]
     low, high = points.min(axis=0), points.max(axis=0)
     scale, middle = max(1.0, float((high - low).max()) / ROOM), np.append((low + high) / 2.0, 0.0)
+    position, look_at = middle + np.multiply(CAMERA, scale), middle + np.multiply(LOOK_AT, scale)
     camera = server.initial_camera
-    camera.position, camera.look_at = middle + np.multiply(CAMERA, scale), middle + np.multiply(LOOK_AT, scale)
+    if np.allclose([position, look_at], [camera.position, camera.look_at]):
+        return  # such as the same world, drawn anew: a view that somebody has chosen stays
+    camera.position, camera.look_at = position, look_at
     for client in server.get_clients().values():
         fit_view(client, camera)
 

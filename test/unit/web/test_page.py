@@ -52,9 +52,23 @@ def test_a_window_of_a_desk_has_the_first_view() -> None:
 def cameras_after(places) -> list:
     """The first camera, and those of a phone and a desk, which were open before, when these places are shown."""
     clients = [opened(*PHONE), opened(*DESK)]
-    server = SimpleNamespace(initial_camera=SimpleNamespace(), get_clients=lambda: dict(enumerate(clients)))
+    server = server_of(clients)
     show_places(server, places)
     return [server.initial_camera, *(client.camera for client in clients)]
+
+
+def server_of(clients) -> SimpleNamespace:
+    first = SimpleNamespace(position=np.array(CAMERA), look_at=np.array(LOOK_AT))
+    return SimpleNamespace(initial_camera=first, get_clients=lambda: dict(enumerate(clients)))
+
+
+def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew() -> None:
+    client = opened(*DESK)
+    server, places = server_of([client]), [(8.0, 0.0, 0.0)]
+    show_places(server, places)
+    client.camera.position = (1.0, 2.0, 3.0)
+    show_places(server, places)
+    assert client.camera.position == (1.0, 2.0, 3.0)
 
 
 @pytest.mark.parametrize("places", [[], CORNERS, [(1.9, 0.0, 0.2)], [(-2.5, -2.5, 0.0), (0.5, 2.5, 0.0)]])

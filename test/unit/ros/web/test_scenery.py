@@ -36,6 +36,7 @@ def test_a_map_that_is_too_large_is_thinned_out():
 
 def test_the_cameras_turn_to_a_world_once():
     server, inbox = MagicMock(), MagicMock()
+    server.initial_camera.position, server.initial_camera.look_at = CAMERA, LOOK_AT
     state = SharedState(PageState(root="map"))
     scenery = Scenery(Context(server, PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"))
     scenery.subscribe(inbox)
