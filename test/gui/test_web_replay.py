@@ -22,7 +22,7 @@ from aro_robocop_goto_as.ros.web.replay import BEFORE
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
 
-FAILED = 30.0  # [s]
+FAILED = 30.0  # [s] after the beginning
 DURATION, RATE, SPEED = 60.0, 20, 0.1  # [s], [Hz], [m/s]
 FARTHEST = DURATION * SPEED  # [m]
 START = 1_700_000_000.0  # [s]
@@ -74,7 +74,7 @@ class Shown:
 @pytest.fixture
 def shown(tmp_path):
     write_bag(tmp_path / "server-drive.bag")
-    failure = {"cause": "It was too slow.", "expected": "1 m/s", "seen": "0.1 m/s", "time": FAILED}
+    failure = {"cause": "It was too slow.", "expected": "1 m/s", "seen": "0.1 m/s", "time": START + FAILED}
     check = {"name": "drives", "part": "server", "scenario": "drive", "failure": failure}
     (tmp_path / "report.json").write_text(json.dumps({"checks": [check]}))
     port = free_port()

@@ -1,13 +1,15 @@
 """The page before it shows anything: its colours, where its cameras are, and which point of the floor they show."""
 
 import math
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, Iterable, Optional, Tuple
 
 import numpy as np
 
 from ..geometry import Vector3
 
-CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; a room of 5 x 5 m
+CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; shows ROOM
+ROOM = 5.0  # [m] along both sides, its middle in the origin
+FARTHEST_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
 PHONE = 576  # [pixel] of width, below which viser shows the panel at the bottom
 PHONE_LOOK_AT = (0.0, -3.4, 0.0)  # [m], as the panel covers the lower part
 PHONE_AWAY = 0.75  # of CAMERA's distance, in a view that is as wide as it is high
@@ -41,15 +43,33 @@ def set_up(server: Any) -> None:
     scene.add_light_directional("/light/sun", intensity=1.8, position=SUN)
     camera.position, camera.look_at, camera.fov = CAMERA, LOOK_AT, FIELD
     server.gui.add_html(STYLE)
-    server.on_client_connect(fit_view)
+    server.on_client_connect(lambda client: fit_view(client, camera))
 
 
-def fit_view(client: Any) -> None:
-    """Show the whole room on a phone, above the panel."""
-    camera = client.camera
+def show_places(server: Any, places: Iterable[Vector3]) -> None:
+    """Turn all cameras to the origin, where robots start, and these places [m]; they show ROOM or what is larger."""
+    points = np.clip([(0.0, 0.0, 0.0), *places], -FARTHEST_SHOWN, FARTHEST_SHOWN)[:, :2]
+    low, high = points.min(axis=0), points.max(axis=0)
+    scale, middle = max(1.0, float((high - low).max()) / ROOM), np.append((low + high) / 2.0, 0.0)
+    position, look_at = middle + np.multiply(CAMERA, scale), middle + np.multiply(LOOK_AT, scale)
+    camera = server.initial_camera
+    if np.allclose([position, look_at], [camera.position, camera.look_at]):
+        return  # such as the same world, drawn anew: a view that somebody has chosen stays
+    camera.position, camera.look_at = position, look_at
+    for client in server.get_clients().values():
+        fit_view(client, camera)
+
+
+def fit_view(client: Any, first: Any) -> None:
+    """Show what the first camera shows, on a phone above the panel."""
+    camera, position, look_at = client.camera, first.position, first.look_at
     if camera.image_width < PHONE:
-        camera.position = PHONE_LOOK_AT + np.subtract(CAMERA, LOOK_AT) * PHONE_AWAY / camera.aspect
-        camera.look_at = PHONE_LOOK_AT  # after the position, which moves it as well
+        away = np.subtract(position, look_at)
+        scale = np.linalg.norm(away) / np.linalg.norm(np.subtract(CAMERA, LOOK_AT))
+        look_at = look_at + scale * np.subtract(PHONE_LOOK_AT, LOOK_AT)
+        position = look_at + away * PHONE_AWAY / camera.aspect
+    camera.position = position
+    camera.look_at = look_at  # after the position, which moves it as well
 
 
 def set_theme(server: Any, dark: bool) -> None:

@@ -31,14 +31,16 @@ def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messa
             waits = "; it plays when the page is opened" if played and "rviz" not in nodes else ""
             rows.append(("view", f"in a browser: {_page(node.args)}{waits}"))
     if SERVER in nodes:
+        ways = []
         if "rviz" in nodes:
-            rows.append(("send a goal", "in RViz: press 2D Nav Goal (or G), then click and drag"))
+            ways.append("in RViz: press 2D Nav Goal (or G), then click and drag")
+        if WEB in nodes:
+            ways.append("in the browser: click on the floor")
         robot = f" --robot {robots[0]}" if robots else ""
         in_front = given.get("world", DEFAULT_WORLD) == DEFAULT_WORLD
         goal, note = ("0.3 0", "") if in_front else ("X Y", "   (X and Y in map, in metres)")
-        rows.append(
-            ("" if "rviz" in nodes else "send a goal", f"in a second terminal: {command} goto {goal}{robot}{note}")
-        )
+        ways.append(f"in a second terminal: {command} goto {goal}{robot}{note}")
+        rows += zip(("send a goal", "", ""), ways)
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
         ("inspect", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),

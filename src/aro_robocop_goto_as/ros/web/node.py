@@ -66,7 +66,7 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs."""
     live, goals = context.state.now.live, Goals(context)
-    failed = [] if player is None else failures(player.path)
+    failed = [] if player is None else failures(player.path, player.beginning)
     parts: List[Part] = [goals] if player is None else [Replay(context, player, failed, p.replay_speed), goals]
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):

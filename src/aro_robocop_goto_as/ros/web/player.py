@@ -40,11 +40,11 @@ class Player:
         """WebError if the file is no bag, or has no messages."""
         try:
             self.path, self._bag = path, rosbag.Bag(path)
-            self._start, end = self._bag.get_start_time(), self._bag.get_end_time()
+            self.beginning, end = self._bag.get_start_time(), self._bag.get_end_time()  # [s] in the recorded clock
         except (OSError, rosbag.ROSBagException) as error:
             raise WebError(f"{path} can't be played: {error}") from error
         topics = self._bag.get_type_and_topic_info().topics
-        self.duration = end - self._start
+        self.duration = end - self.beginning
         self.on_seek: Callable[[], None] = lambda: None  # called before another moment is published
         few = max(FEW, self.duration / LEAD)
         self._marked = [name for name, topic in topics.items() if topic.msg_type == MARKERS]
@@ -61,7 +61,7 @@ class Player:
         """Two figures of all messages of a topic, with their times [s] after the beginning; from any thread."""
         with rosbag.Bag(self.path) as bag:
             found = bag.read_messages([topic])
-            return [(stamp.to_sec() - self._start, *figures(message)) for _, message, stamp in found]
+            return [(stamp.to_sec() - self.beginning, *figures(message)) for _, message, stamp in found]
 
     # -- controls, from any thread --
 
@@ -127,7 +127,7 @@ class Player:
         position = 0.0
         while not rospy.is_shutdown():
             for topic, message, stamp in self._bag.read_messages(start_time=self._stamp(position)):
-                if not self._wait_until(stamp.to_sec() - self._start):
+                if not self._wait_until(stamp.to_sec() - self.beginning):
                     break
                 self._publishers[topic].publish(message)
             else:
@@ -156,7 +156,7 @@ class Player:
                     publish(message)
 
     def _stamp(self, position: float) -> rospy.Time:
-        return rospy.Time.from_sec(self._start + position)
+        return rospy.Time.from_sec(self.beginning + position)
 
     def _past(self, topics: Collection[str], position: float) -> Iterator[Tuple[str, Any]]:
         """Topics and messages that lead to the state at a moment: the rare ones all, of the others the last second."""

@@ -31,7 +31,7 @@ class Replay(Part):
         """speed: at the beginning"""
         super().__init__(context)
         gui = context.server.gui
-        self._player = player
+        self._player, self._reported = player, bool(failed)
         self._progress = gui.add_html("")
         buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
         buttons.on_click(lambda event: player.play(event.target.value == PLAY))
@@ -49,24 +49,29 @@ class Replay(Part):
     def show(self, state: PageState) -> None:
         position, speed = self._player.position, self._player.speed
         how = f"factor {speed:g}" if speed else "paused"
-        row = ("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")
-        self._progress.content = text.table([row])
+        rows = [("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")]
+        if self._reported:  # the causes of its failures name times, too
+            rows.append(("in the report", f"{self._player.beginning + position:.1f} s"))
+        self._progress.content = text.table(rows)
         self._time.show(round(position, 1))
 
 
-def failures(bag: str) -> List[Failure]:
-    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it."""
+def failures(bag: str, beginning: float) -> List[Failure]:
+    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it.
+
+    beginning: of the recording [s]; a report's times are of the same clock, which goes on from scenario to scenario
+    """
     path = Path(bag)
     try:
         checks = json.loads((path.parent / "report.json").read_text(encoding="utf-8"))["checks"]
         failed = [check for check in checks if check["failure"] and f"{check['part']}-{check['scenario']}" == path.stem]
-        found = [_failure(check) for check in failed]
+        found = [_failure(check, beginning) for check in failed]
     except (OSError, ValueError, KeyError, TypeError):  # no report, or another file of this name
         return []
     return sorted(found, key=lambda failure: failure.time)
 
 
-def _failure(check: Any) -> Failure:
+def _failure(check: Any, beginning: float) -> Failure:
     failure = check["failure"]
     text = f"{failure['cause']} Expected {failure['expected']}, got {failure['seen']}."
-    return Failure(str(check["name"]), float(failure["time"]), text)
+    return Failure(str(check["name"]), float(failure["time"]) - beginning, text)

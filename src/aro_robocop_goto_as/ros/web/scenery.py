@@ -9,6 +9,7 @@ from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
+from ...web.page import show_places
 from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
 from ..names import SERVER, SIMULATOR, absolute
@@ -55,7 +56,10 @@ class Scenery(Part):
 
     def show(self, state: PageState) -> None:
         scene, locate = self.context.scene, self.context.locate
-        scene.show("world", self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ()))
+        world = self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ())
+        if world and not scene.draws("world"):
+            show_places(self.context.server, (pose.position for _, pose in world.values()))
+        scene.show("world", world)
         scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
         pose = None if self._scan is None else locate(self._scan.header.frame_id)
         if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was received

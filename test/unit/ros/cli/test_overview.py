@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from aro_robocop_goto_as.ros.cli.overview import overview
+from aro_robocop_goto_as.ros.names import SERVER
 
 
 def shown(*nodes, arguments=""):
@@ -43,8 +44,16 @@ def test_goals_are_offered_only_with_a_server():
     assert "send a goal" not in shown("robocop_sim")
 
 
+def test_each_way_to_send_a_goal_is_shown():
+    nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in ("rviz", "robocop_web", SERVER)]
+    lines = overview(SimpleNamespace(nodes=nodes), None, Path("/logs")).splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("send a goal   in RViz: "))
+    assert lines[first + 1] == "              in the browser: click on the floor"
+    assert lines[first + 2].startswith("              in a second terminal: ")
+
+
 def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
-    server = SimpleNamespace(name="aro_robocop_goto_as_node", namespace="/", args="")
+    server = SimpleNamespace(name=SERVER, namespace="/", args="")
     texts = [
         overview(SimpleNamespace(nodes=[server]), {"world": world}, Path("/logs")) for world in ("stage_4", "world")
     ]

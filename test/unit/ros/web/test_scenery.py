@@ -1,12 +1,20 @@
 """Scans and maps as arrays."""
 
 import math
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 from sensor_msgs.msg import LaserScan
+from visualization_msgs.msg import Marker, MarkerArray
 
-from aro_robocop_goto_as.ros.web.scenery import FREE, LARGEST_MAP, OCCUPIED, UNKNOWN, map_image, scan_points
+from aro_robocop_goto_as.ros import markers
+from aro_robocop_goto_as.ros.web.part import Context
+from aro_robocop_goto_as.ros.web.scenery import FREE, LARGEST_MAP, OCCUPIED, UNKNOWN, Scenery, map_image, scan_points
+from aro_robocop_goto_as.web.frames import FrameTree
+from aro_robocop_goto_as.web.page import CAMERA, LOOK_AT
+from aro_robocop_goto_as.web.scene import PageScene
+from aro_robocop_goto_as.web.state import PageState, SharedState
 
 
 def test_a_scan_becomes_the_points_of_its_valid_returns():
@@ -24,3 +32,20 @@ def test_a_map_has_its_own_colours_and_its_lowest_row_first():
 
 def test_a_map_that_is_too_large_is_thinned_out():
     assert map_image(np.zeros(LARGEST_MAP + 1), LARGEST_MAP + 1, 1).shape == (1, LARGEST_MAP // 2 + 1, 4)
+
+
+def test_the_cameras_turn_to_a_world_once():
+    server, inbox = MagicMock(), MagicMock()
+    server.initial_camera.position, server.initial_camera.look_at = CAMERA, LOOK_AT
+    state = SharedState(PageState(root="map"))
+    scenery = Scenery(Context(server, PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"))
+    scenery.subscribe(inbox)
+    receive = inbox.subscribe.call_args_list[0][0][2]
+    camera = server.initial_camera
+    for number, x in enumerate((8.0, -2.0)):  # the second one is spawned while somebody looks
+        block = markers.marker("world", Marker.CUBE, state.now.root, markers.GOAL_COLOR, number)
+        block.pose.position.x = x
+        receive(0.0, MarkerArray([block]))
+        scenery.show(state.now)
+        assert camera.position - camera.look_at == pytest.approx(8.0 / 5.0 * np.subtract(CAMERA, LOOK_AT))
+        assert camera.look_at[0] == pytest.approx(4.0 + 8.0 / 5.0 * LOOK_AT[0])
