@@ -55,11 +55,14 @@ def parse_xml(text: bytes, path: str, error: Type[RobocopError], lenient: bool =
     """The root element of an XML text; path: its name for messages. `error` if it is not XML or has a DOCTYPE.
 
     As in Gazebo, a comment may contain -- and any bytes, and blank lines or comments may precede the <?xml ...?>.
-    lenient: reads on after errors, such as a bare &. Elements of xacro are an error: what they stand for is not here.
+    Elements of xacro are an error: what they stand for is not here.
+    lenient: reads on after errors, such as a bare & or bytes that are not UTF-8.
     """
     # Line feeds are kept, for the lines that errors name.
     text = _COMMENT.sub(lambda comment: comment[1] or b"\n" * comment[0].count(b"\n"), text)
     text = _LATE_DECLARATION.sub(rb"\1\3\2", text)
+    if lenient and b"\0" not in text:  # UTF-16 has such bytes
+        text = text.decode("utf-8", "replace").encode()
     # These files are not trusted: a DTD could include other files, or expand its entities without bound.
     parser = etree.XMLParser(
         resolve_entities=False,
