@@ -17,6 +17,10 @@ Element = Any  # lxml.etree._Element, which is private and has no type hints
 # float() alone would accept "1_000" and "infinity".
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
+# Or a text in CDATA, which may look like a comment. What is not closed reaches to the end.
+_COMMENT = re.compile(rb"(<!\[CDATA\[.*?(?:\]\]>|\Z))|<!--.*?(?:-->|\Z)", re.S)
+_LATE_DECLARATION = re.compile(rb"\A(\xef\xbb\xbf)?(\s+)(<\?xml\s.*?\?>)", re.S)
+
 
 @contextmanager
 def reading(path: str, error: Type[RobocopError], expected: str) -> Iterator[None]:
@@ -50,8 +54,15 @@ def _on_one_line(text: str) -> str:
 def parse_xml(text: bytes, path: str, error: Type[RobocopError], lenient: bool = False) -> Element:
     """The root element of an XML text; path: its name for messages. `error` if it is not XML or has a DOCTYPE.
 
-    lenient: reads on after errors, such as a bare &.
+    As in Gazebo, a comment may contain -- and any bytes, and blank lines or comments may precede the <?xml ...?>.
+    Elements of xacro are an error: what they stand for is not here.
+    lenient: reads on after errors, such as a bare & or bytes that are not UTF-8.
     """
+    # Line feeds are kept, for the lines that errors name.
+    text = _COMMENT.sub(lambda comment: comment[1] or b"\n" * comment[0].count(b"\n"), text)
+    text = _LATE_DECLARATION.sub(rb"\1\3\2", text)
+    if lenient and b"\0" not in text:  # UTF-16 has such bytes
+        text = text.decode("utf-8", "replace").encode()
     # These files are not trusted: a DTD could include other files, or expand its entities without bound.
     parser = etree.XMLParser(
         resolve_entities=False,
@@ -69,6 +80,8 @@ def parse_xml(text: bytes, path: str, error: Type[RobocopError], lenient: bool =
     info = root.getroottree().docinfo
     if info.doctype or info.internalDTD is not None:
         raise error(f"{path}: '{info.doctype}' is not supported; expected a file without DOCTYPE and entities")
+    for macro in root.xpath("//*[contains(namespace-uri(), 'xacro')]"):
+        raise error(f"{path}:{macro.sourceline}: <{macro.prefix}:...>, expected the file that xacro makes of it")
     return root
 
 

@@ -74,7 +74,7 @@ ORDER = {
 ROSDEP_KEYS = {
     name: f"python3-{name}" for name in ("collada", "jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
 }
-ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip", trimesh="python3-trimesh-pip")
+ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip")
 # Imported on request only: in compat/, in deb-packages/class.txt or grade.txt, in requirements-web.txt.
 OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets", "wx"}
 PUBLIC_DESPITE_THEIR_NAMES = ("_exit", "_fields", "_replace")  # of os and of named tuples: in Python's documentation

@@ -12,6 +12,7 @@ from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
 LOWEST = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
 LARGEST_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
+NEAR = 0.5  # [m] an obstacle that is nearer is found among the segments within it along y: few, in a map with many
 
 
 def body_heights(model: RobotModel) -> Tuple[float, ...]:
@@ -42,6 +43,7 @@ class Surroundings:
         self._is_solid = np.array(is_solid, dtype=bool)
         self._start, end = np.moveaxis(np.concatenate([NO_SEGMENTS, *(segments for segments, _ in outlines)]), 1, 0)
         self._along = end - self._start
+        self._low, self._high = np.minimum(self._start, end)[:, 1], np.maximum(self._start, end)[:, 1]
         self._squares = np.maximum((self._along**2).sum(axis=1), 1e-18)
         self._circles = np.concatenate([NO_CIRCLES, *(circles for _, circles in outlines)])
         sizes = [len(part[kind]) for kind in (0, 1) for part in outlines]  # of the segments, then of the circles
@@ -49,26 +51,33 @@ class Surroundings:
 
     def nearest(self, x: float, y: float) -> Nearest:
         """The obstacle nearest to a point [m] in the world."""
-        if not len(self._owners):
+        near = np.flatnonzero((self._low <= y + NEAR) & (self._high >= y - NEAR))
+        found = self._nearest(x, y, near)
+        return found if found.distance <= NEAR else self._nearest(x, y, np.arange(len(self._start)))
+
+    def _nearest(self, x: float, y: float, rows: np.ndarray) -> Nearest:
+        """The nearest of all circles and the segments in some rows, among them all with points at this y."""
+        owners = np.concatenate([self._owners[rows], self._owners[len(self._start) :]])
+        if not len(owners):
             return Nearest(math.inf, "")
-        from_start = np.array([x, y]) - self._start
-        share = np.clip((from_start * self._along).sum(axis=1) / self._squares, 0.0, 1.0)
-        gaps = np.hypot(*(from_start - share[:, None] * self._along).T)
+        from_start, along = np.array([x, y]) - self._start[rows], self._along[rows]
+        share = np.clip((from_start * along).sum(axis=1) / self._squares[rows], 0.0, 1.0)
+        gaps = np.hypot(*(from_start - share[:, None] * along).T)
         rounds = np.hypot(self._circles[:, 0] - x, self._circles[:, 1] - y) - self._circles[:, 2]
         distances = np.maximum(np.concatenate([gaps, rounds]), 0.0)
-        distances[self._around(from_start)[self._owners]] = 0.0
+        distances[self._around(from_start, along, owners[: len(rows)])[owners]] = 0.0
         best = int(distances.argmin())
-        return Nearest(float(distances[best]), self._names[self._owners[best]])
+        return Nearest(float(distances[best]), self._names[owners[best]])
 
-    def _around(self, from_start: np.ndarray) -> np.ndarray:
+    def _around(self, from_start: np.ndarray, along: np.ndarray, owners: np.ndarray) -> np.ndarray:
         """Which solid outlines contain a point: those that a ray from it along x crosses an odd number of times.
 
-        from_start: (m, 2) [m] from the start of each segment to the point
+        from_start: (m, 2) [m] from the start of each segment to the point; along: to its end; owners: its outline
         """
         dx, dy = from_start.T
-        upwards = self._along[:, 1]
+        upwards = along[:, 1]
         crosses = (dy >= 0.0) != (dy >= upwards)
         with np.errstate(divide="ignore", invalid="ignore"):
-            crosses &= dx < self._along[:, 0] * (dy / upwards)
-        counts = np.bincount(self._owners[: len(dx)], weights=crosses, minlength=len(self._names))
+            crosses &= dx < along[:, 0] * (dy / upwards)
+        counts = np.bincount(owners, weights=crosses, minlength=len(self._names))
         return (counts % 2 == 1) & self._is_solid

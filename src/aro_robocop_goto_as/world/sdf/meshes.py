@@ -4,12 +4,14 @@ import codecs
 import io
 import os
 import re
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Callable, Dict, List, Tuple
 
 import numpy as np
 
 from ...errors import WorldError
 from ...reading import finite_numbers, parse_xml, reading
+
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])  # of a binary .stl file
 
 
 def read_triangles(path: str) -> np.ndarray:
@@ -32,20 +34,41 @@ def read_triangles(path: str) -> np.ndarray:
     return triangles
 
 
-def _read_stl(content: bytes, _path: str) -> np.ndarray:
-    import trimesh  # imported late: it takes half a second and 20 MB, and few worlds have meshes
+def _read_stl(content: bytes, path: str) -> np.ndarray:
+    """The facets of a binary or plain .stl file.
 
-    loaded: Any = trimesh.load_mesh(io.BytesIO(content), file_type="stl", process=False)
-    return np.asarray(loaded.triangles, dtype=float)
+    It is binary if it is long enough for the number of facets in its header: as such a number, characters are too
+    large. What follows the facets is skipped, as in Gazebo. Many a binary file, too, begins with "solid".
+    """
+    count = int.from_bytes(content[80:84], "little")
+    if len(content) >= 84 + _FACET.itemsize * count:
+        return np.frombuffer(content, _FACET, count, 84)["corners"].astype(float)
+    if not content.lstrip().lower().startswith(b"solid"):
+        raise WorldError(
+            f"{path}: expected a text that starts with 'solid', or a binary file, for which {len(content)} bytes are "
+            f"too few: {84 + _FACET.itemsize * count} for the {count} triangles of its header"
+        )
+    corners: List[Tuple[float, ...]] = []
+    for number, line in _lines(content):
+        kind, *words = line.lower().split() or [b""]
+        try:
+            if kind == b"vertex":
+                corners.append(finite_numbers(b" ".join(words).decode("ascii", "replace"), 3))
+        except ValueError as exc:
+            raise WorldError(f"{path}:{number}: vertex is '{_quoted(words)}', {exc}") from exc
+        if kind == b"endloop" and len(corners) % 3:
+            raise WorldError(f"{path}:{number}: a facet does not have 3 vertices")
+    return np.array(corners, dtype=float).reshape(-1, 3, 3)
 
 
 def _read_collada(content: bytes, path: str) -> np.ndarray:
-    """Read by pycollada itself: trimesh's reader, which is based on it, takes 2.5 times as long (measured)."""
     unit = _collada_unit(content, path)
     from collada import Collada, common, polylist, triangleset
 
     triangles = [np.zeros((0, 3, 3))]
     scene = Collada(io.BytesIO(content), ignore=[common.DaeError]).scene  # such as a texture that is missing
+    if scene is None:
+        raise WorldError(f"{path}: no <scene>, which says where the parts of the mesh are")
     for geometry in scene.objects("geometry"):
         turn, shift = geometry.matrix[:3, :3].astype(float), geometry.matrix[:3, 3].astype(float)
         for part in geometry.original.primitives:
@@ -59,7 +82,10 @@ def _read_collada(content: bytes, path: str) -> np.ndarray:
 
 def _collada_unit(content: bytes, path: str) -> float:
     """Metres per unit of a COLLADA file; WorldError if it is not XML or has a DOCTYPE."""
-    element = parse_xml(content, path, WorldError).find("{*}asset/{*}unit")
+    root = parse_xml(content, path, WorldError)
+    if not root.tag.endswith("}COLLADA"):
+        raise WorldError(f"{path}:{root.sourceline}: the outermost element is <{root.tag}>, expected COLLADA's")
+    element = root.find("{*}asset/{*}unit")
     text = "1" if element is None else element.get("meter", "1")
     try:
         return finite_numbers(text, 1, positive=True)[0]
@@ -68,13 +94,7 @@ def _collada_unit(content: bytes, path: str) -> float:
 
 
 def _read_obj(content: bytes, path: str) -> np.ndarray:
-    """The faces of a Wavefront .obj file, those with more than three vertices as fans; everything else is skipped.
-
-    trimesh 4.6 has a reader too, but it silently reads a different shape from valid files: negative indices count from
-    the end of the file rather than from the face, and lines that are indented or separated by tabs are dropped. It
-    accepts index 0 as the last vertex, refuses comments after a face and bytes that are not UTF-8, and its errors name
-    no line.
-    """
+    """The faces of a Wavefront .obj file, those with more than three vertices as fans; everything else is skipped."""
     vertices: List[Tuple[float, ...]] = []
     fans: List[Tuple[int, int, int]] = []  # indices of vertices, from 0
     last, last_line = -1, 0  # the largest index so far, and its line: a face may use vertices that are defined later

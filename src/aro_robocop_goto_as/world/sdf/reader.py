@@ -176,8 +176,11 @@ class _Reader:
             raise xml.error(include, f"'{uri}' is {path} again, within itself; expected another model")
         self.open_files.append(os.path.realpath(path))
         try:
-            model = xml.root_of(xml.parse(path), ("model",))
-            self.model(model, parent, include, new_name, new_pose, static)
+            included = xml.root_of(xml.parse(path), ("actor", "light", "model"))
+            if included.tag == "model":
+                self.model(included, parent, include, new_name, new_pose, static)
+            else:
+                self.report(f"{included.tag} '{included.get('name', '')}'", included)
         except WorldError as exc:
             raise WorldError(f"{exc}; included by {file_of(include)}:{include.sourceline}") from exc
         finally:

@@ -64,6 +64,14 @@ def test_mesh_of_a_box_equals_the_box_for_scans_and_physics(tmp_path, kind):
     np.testing.assert_allclose(met[1], met[0], atol=2e-3)
 
 
+@pytest.mark.parametrize("header", [b"made by hand", b"solid made by hand\nfacet normal"])
+def test_bytes_after_the_facets_of_a_binary_stl_are_skipped_as_in_gazebo(tmp_path, header):
+    facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], "<f4").tobytes() + b"\0\0"
+    (tmp_path / "a.stl").write_bytes(header.ljust(80) + b"\1\0\0\0" + facet + b"\n")
+    obstacle = only_obstacle(mesh_world(tmp_path, "a.stl"))
+    assert obstacle.geometry.corners.tolist() == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
+
+
 def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=6, radius=1.0)
     assert len(ball.faces) > 60000
@@ -96,6 +104,8 @@ def test_robot_is_stopped_by_a_mesh_where_its_scan_sees_it(tmp_path, burger, dri
 CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 0 1\n"
 BROKEN_MESHES = {  # file: (content, what the message must name)
     "empty.stl": (b"", ["empty.stl"]),
+    "cut.stl": (b"made by hand".ljust(80) + b"\2\0\0\0", ["84 bytes are too few: 184 for the 2 triangles"]),
+    "words.stl": (b"solid a\n vertex 1 a 0\n", ["words.stl:2: vertex is '1 a 0', expected 3 finite numbers"]),
     "text.obj": (b"hello", ["text.obj", "triangle"]),
     "nan.obj": (b"v 0 0 0\nv 1 0 0\nv nan 0 1\nf 1 2 3\n", ["nan.obj:3: v is 'nan 0 1', expected 3 finite numbers"]),
     "words.obj": (b"v 0 0 0\nv 1 a 0\n", ["words.obj:2: v is '1 a 0', expected 3 finite numbers"]),

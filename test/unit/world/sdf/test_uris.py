@@ -71,10 +71,12 @@ def test_file_of_a_model_on_gazebo_fuel_is_looked_up_in_the_local_model(tmp_path
     assert only_obstacle(mesh_world(tmp_path / "far", uri)).geometry.file == str(chair / "seat.obj")
 
 
-@pytest.mark.parametrize("broken", ["<description>Tea & cake</description>", "<author></name>", "<name>a</name"])
+@pytest.mark.parametrize(
+    "broken", ["<description>Tea & cake</description>", "<author></name>", "<name>a</name", "<author>Jos\xe9</author>"]
+)
 def test_only_the_sdf_entry_of_a_model_config_has_to_be_readable(tmp_path, chair, broken):
     config = chair / "model.config"
-    config.write_text(config.read_text().replace("<model>", f"<model>{broken}"))
+    config.write_text(config.read_text().replace("<model>", f"<model>{broken}"), encoding="latin-1")
     include = "<include><uri>model://chair</uri></include>"
     assert only_obstacle(world_file(tmp_path, include)).name == "chair/l/c"
 
