@@ -109,6 +109,17 @@ def test_time_stands_still_while_the_program_works(tmp_path):
     assert printed(tmp_path, text, 0.5)[-1] == "0.0 True"
 
 
+def test_datetime_follows_simulated_time_and_is_otherwise_itself(tmp_path):
+    text = (
+        "import pickle\nfrom datetime import datetime, timezone\n"
+        "a, b, c = datetime.now(), datetime.utcnow(), datetime.now(timezone.utc)\ntime.sleep(2.5)\n"
+        "passed = datetime.today() - a, datetime.utcnow() - b, datetime.now(timezone.utc) - c\n"
+        "print([round(it.total_seconds(), 3) for it in passed], pickle.loads(pickle.dumps(a)) == a)\n"
+        "import rospy, numpy\nprint(isinstance(numpy.datetime64('2026-01-01T00:00:00').item(), datetime), datetime)\n"
+    )
+    assert printed(tmp_path, text)[-2:] == ["[2.5, 2.5, 2.5] True", "True <class 'datetime.datetime'>"]
+
+
 def test_threads_meet_at_the_same_times_in_every_run(tmp_path):
     text = (
         "import queue, threading\nq = queue.Queue()\n"
