@@ -100,6 +100,13 @@ WRONG = (
         "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
     ),
     _server(
+        "sign_of_dy",
+        "feedback_angle",
+        "A sign is wrong in atan2(dy, dx)",
+        (ERROR, "angle_error = wrap(math.atan2(-dy, dx) - yaw)"),
+        alone=True,
+    ),
+    _server(
         "atan",
         "feedback_angle",
         "atan is used instead of atan2",
@@ -111,6 +118,13 @@ WRONG = (
         "feedback_angle",
         "angle_error has no sign",
         (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))"),
+    ),
+    _server(
+        "unsigned_angle_in_feedback_only",
+        "feedback_angle",
+        "angle_error has no sign",
+        ("feedback.angle_error = angle_error", "feedback.angle_error = abs(angle_error)"),
+        alone=True,
     ),
     _server(
         "map_frame",
@@ -451,6 +465,20 @@ WRONG = (
         ),
     ),
     _server(
+        "shuts_down_after_goal",
+        "stays_alive",
+        "died",
+        ("set_succeeded(result)", "set_succeeded(result)\n            rospy.signal_shutdown('done')"),
+        alone=True,
+    ),
+    _server(
+        "exception_while_driving",
+        "no_exception",
+        "RecursionError",
+        (SLEEP, f"{SLEEP}            exec('def f(): f()\\nf()', {{}}) if x > 0.5 else None\n"),
+        alone=True,
+    ),
+    _server(
         "blocks_for_ever",
         "reaches_goal",
         "made no progress",
@@ -523,12 +551,30 @@ WRONG = (
     _bridge(
         "bridge_cancels_newer",
         "cancels_older",
-        "cancel",
+        "Cancel before send_goal(), not after it",
         ("        if self.sent:\n            self.client.cancel_goal()\n", ""),
         (
             "        self.sent = True\n",
             "        if self.sent:\n            self.client.cancel_goal()\n        self.sent = True\n",
         ),
+    ),
+    _bridge(
+        "bridge_sends_the_click_before",
+        "cancels_older",
+        "has the position of the older click",
+        (
+            "goal.position = pose.pose.position",
+            "self.last, goal.position = pose.pose.position, getattr(self, 'last', pose.pose.position)",
+        ),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_reports_the_first_state",
+        "reports_status",
+        "reports PENDING while the goal is ACTIVE",
+        ("        self.sent = True\n", f"        self.sent = True\n        self.state = {STATE}\n"),
+        (f"'server: %s', {STATE}", "'server: %s', getattr(self, 'state', '')"),
+        alone=True,
     ),
     _bridge(
         "bridge_gives_up",

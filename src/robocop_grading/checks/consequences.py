@@ -44,6 +44,11 @@ def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
 
 
+def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether the node died before anything came from it after it got the goal."""
+    return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
+
+
 def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Whether the server was working on the goal."""
     return failure.goal is not None and not silent(record, failure.goal)

@@ -7,7 +7,7 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
 from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
 from ..texts import text
-from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
+from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
 from .verdict import After, Failed, NotReached, Verdict, check
 
@@ -58,7 +58,10 @@ def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Sit
     return situations
 
 
-@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST), needs=("reaches_goal",))
+NO_NODE = After("stays_alive", died_before)
+
+
+@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST, NO_NODE), needs=("reaches_goal",))
 def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
     judged = False
