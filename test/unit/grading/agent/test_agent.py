@@ -98,6 +98,7 @@ POLL = (
         ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
         ("import sched; s = sched.scheduler(); s.enter(0.8, 1, print); s.run()", 0.8),
         ("import rospy; rospy.rostime.wallsleep(0.1)", 0.1),
+        ("from multiprocessing import Pipe; ends = Pipe()\nfor _ in range(1000): ends[0].poll()", 0.05),
     ],
 )
 def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
