@@ -96,6 +96,7 @@ WRONG = (
         "added instead of subtracted",
         (ERROR, "angle_error = wrap(math.atan2(dy, dx) + yaw)"),
     ),
+    _server("heading_from_acos", "feedback_angle", "heading has no sign", (YAW, "yaw = 2 * math.acos(q.w)")),
     _server(
         "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
     ),
@@ -153,6 +154,7 @@ WRONG = (
         ("dy = goal.position.y - y", "dy = goal.position.y"),
     ),
     _server("squared_distance", "feedback_position", "squared", ("math.hypot(dx, dy)", "dx * dx + dy * dy")),
+    _server("only_y", "feedback_position", "depends on y only", ("math.hypot(dx, dy)", "abs(dy)"), alone=True),
     _server("only_x", "feedback_position", "depends on x only", ("math.hypot(dx, dy)", "abs(dx)")),
     _server("no_feedback", "feedback_rate", "No feedback", (PUBLISH, "")),
     _server(
@@ -161,6 +163,7 @@ WRONG = (
         "each iteration",
         (PUBLISH, "            self.count += 1\n            if self.count % 10 == 0:\n    " + PUBLISH),
     ),
+    _server("fast_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(50)"), alone=True),
     _server("slow_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(3)")),
     _server(
         "unpaced_loop", "feedback_rate", "not paced", ("            rate.sleep()\n", "            rospy.sleep(0)\n")
@@ -243,6 +246,23 @@ WRONG = (
             "            angle_error -= 2 * math.pi if angle_error > math.pi else 0.0\n"
             "            angle_error += 3 * math.pi if angle_error < -math.pi else 0.0",
         ),
+    ),
+    _server(
+        "result_comes_late",
+        "reaches_goal",
+        "stands at the goal, but the result comes later",
+        (
+            "        self.stop()\n        result =",
+            "        self.stop()\n        rospy.sleep(3.0 * success)\n        result =",
+        ),
+        alone=True,
+    ),
+    _server(
+        "preempt_request_is_kept",
+        "next_goal",
+        "is all state that the first goal changed reset",
+        (REQUESTED, "            self.count += self.server.is_preempt_requested()\n            if self.count:"),
+        alone=True,
     ),
     _server(
         "never_reaches",
@@ -446,6 +466,15 @@ WRONG = (
         ("        success = False\n        while", "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         ("        self.stop()\n        result =", "        self.count = 1\n        self.stop()\n        result ="),
+        alone=True,
+    ),
+    _server(
+        "preempted_goal_is_kept",
+        "next_goal",
+        "is all state that the first goal changed reset",
+        (BEGIN, f"        goal = self.goal = self.goal or goal\n{BEGIN}"),
+        ("        self.count = 0\n", "        self.goal = None\n"),
+        ("        self.stop()\n        result =", "        self.goal = None\n        self.stop()\n        result ="),
         alone=True,
     ),
     _server(

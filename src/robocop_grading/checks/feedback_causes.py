@@ -71,10 +71,11 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
     ),
     (
         ("angle_in_degrees", lambda p: math.degrees(p.truth[ANGLE])),
-        # Before the sign, which fits goals to the right as well, and would have been found with one to the left.
+        # What has no sign comes before a wrong sign, which is as likely on the right, but is found on the left.
         ("angle_without_sign", lambda p: abs(p.truth[ANGLE])),
         ("angle_sign", lambda p: -p.truth[ANGLE]),
         ("angle_without_heading", lambda p: p.direction),
+        ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(-p.way[1], p.way[0]) - p.now.yaw),
