@@ -72,7 +72,10 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
 
     GradingError or HostingError says why there is none.
     """
-    top = Path(path).expanduser().resolve()
+    try:
+        top = Path(path).expanduser().resolve()
+    except (OSError, RuntimeError) as error:  # links in a circle
+        raise GradingError(f"{path}: {error}") from error
     if sandbox is not None:
         expect_private(top)
     if top.is_file():

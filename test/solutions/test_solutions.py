@@ -9,7 +9,7 @@ import subprocess
 import time
 
 import pytest
-from graded import HERE, PLAN, RIGHT, SHARE, graded
+from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded
 from processes import busy_processes, processes_mentioning
 from wrong_solutions import WRONG
 
@@ -18,6 +18,7 @@ from robocop_grading.cli import INTERRUPTED
 from robocop_grading.judge import Outcome
 from robocop_grading.plan import load
 from robocop_grading.sandbox import bubblewrap as sandbox
+from robocop_grading.submission import prepare_submission
 
 SOME_RIGHT = ("base_server",)
 SOME_WRONG = ("misspelt_name", "bridge_never_cancels")
@@ -164,6 +165,13 @@ def test_without_bubblewrap_grading_is_refused_unless_unsafe_is_requested(tmp_pa
     with pytest.raises(GradingError, match="bubblewrap is not installed; --unsafe runs the submission without it"):
         sandbox.open_sandbox(False)
     assert sandbox.open_sandbox(True) is None
+
+
+def test_links_in_a_circle_are_refused(tmp_path):
+    link = tmp_path / "robocop_goto_as.py"
+    link.symlink_to(link)
+    with pytest.raises(GradingError, match="robocop_goto_as.py: (Symlink loop|.*Too many levels)"):
+        prepare_submission(str(link), SHARE, STATE, tmp_path, None)
 
 
 def test_wrong_solutions_are_valid_python_with_unique_names_and_checks_from_the_plan():

@@ -96,8 +96,16 @@ WRONG = (
         "added instead of subtracted",
         (ERROR, "angle_error = wrap(math.atan2(dy, dx) + yaw)"),
     ),
+    _server("heading_from_acos", "feedback_angle", "heading has no sign", (YAW, "yaw = 2 * math.acos(q.w)")),
     _server(
         "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
+    ),
+    _server(
+        "sign_of_dy",
+        "feedback_angle",
+        "A sign is wrong in atan2(dy, dx)",
+        (ERROR, "angle_error = wrap(math.atan2(-dy, dx) - yaw)"),
+        alone=True,
     ),
     _server(
         "atan",
@@ -111,6 +119,13 @@ WRONG = (
         "feedback_angle",
         "angle_error has no sign",
         (ERROR, "angle_error = abs(wrap(math.atan2(dy, dx) - yaw))"),
+    ),
+    _server(
+        "unsigned_angle_in_feedback_only",
+        "feedback_angle",
+        "angle_error has no sign",
+        ("feedback.angle_error = angle_error", "feedback.angle_error = abs(angle_error)"),
+        alone=True,
     ),
     _server(
         "map_frame",
@@ -139,6 +154,7 @@ WRONG = (
         ("dy = goal.position.y - y", "dy = goal.position.y"),
     ),
     _server("squared_distance", "feedback_position", "squared", ("math.hypot(dx, dy)", "dx * dx + dy * dy")),
+    _server("only_y", "feedback_position", "depends on y only", ("math.hypot(dx, dy)", "abs(dy)"), alone=True),
     _server("only_x", "feedback_position", "depends on x only", ("math.hypot(dx, dy)", "abs(dx)")),
     _server("no_feedback", "feedback_rate", "No feedback", (PUBLISH, "")),
     _server(
@@ -147,6 +163,7 @@ WRONG = (
         "each iteration",
         (PUBLISH, "            self.count += 1\n            if self.count % 10 == 0:\n    " + PUBLISH),
     ),
+    _server("fast_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(50)"), alone=True),
     _server("slow_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(3)")),
     _server(
         "unpaced_loop", "feedback_rate", "not paced", ("            rate.sleep()\n", "            rospy.sleep(0)\n")
@@ -229,6 +246,23 @@ WRONG = (
             "            angle_error -= 2 * math.pi if angle_error > math.pi else 0.0\n"
             "            angle_error += 3 * math.pi if angle_error < -math.pi else 0.0",
         ),
+    ),
+    _server(
+        "result_comes_late",
+        "reaches_goal",
+        "stands at the goal, but the result comes later",
+        (
+            "        self.stop()\n        result =",
+            "        self.stop()\n        rospy.sleep(3.0 * success)\n        result =",
+        ),
+        alone=True,
+    ),
+    _server(
+        "preempt_request_is_kept",
+        "next_goal",
+        "is all state that the first goal changed reset",
+        (REQUESTED, "            self.count += self.server.is_preempt_requested()\n            if self.count:"),
+        alone=True,
     ),
     _server(
         "never_reaches",
@@ -435,6 +469,15 @@ WRONG = (
         alone=True,
     ),
     _server(
+        "preempted_goal_is_kept",
+        "next_goal",
+        "is all state that the first goal changed reset",
+        (BEGIN, f"        goal = self.goal = self.goal or goal\n{BEGIN}"),
+        ("        self.count = 0\n", "        self.goal = None\n"),
+        ("        self.stop()\n        result =", "        self.goal = None\n        self.stop()\n        result ="),
+        alone=True,
+    ),
+    _server(
         "exception_in_scan",
         "no_exception",
         "IndexError",
@@ -449,6 +492,20 @@ WRONG = (
             "        result = GoToPositionResult()\n"
             "        rospy.Timer(rospy.Duration(0.3), lambda e: __import__('os')._exit(3))\n",
         ),
+    ),
+    _server(
+        "shuts_down_after_goal",
+        "stays_alive",
+        "died",
+        ("set_succeeded(result)", "set_succeeded(result)\n            rospy.signal_shutdown('done')"),
+        alone=True,
+    ),
+    _server(
+        "exception_while_driving",
+        "no_exception",
+        "RecursionError",
+        (SLEEP, f"{SLEEP}            exec('def f(): f()\\nf()', {{}}) if x > 0.5 else None\n"),
+        alone=True,
     ),
     _server(
         "blocks_for_ever",
@@ -523,12 +580,30 @@ WRONG = (
     _bridge(
         "bridge_cancels_newer",
         "cancels_older",
-        "cancel",
+        "Cancel before send_goal(), not after it",
         ("        if self.sent:\n            self.client.cancel_goal()\n", ""),
         (
             "        self.sent = True\n",
             "        if self.sent:\n            self.client.cancel_goal()\n        self.sent = True\n",
         ),
+    ),
+    _bridge(
+        "bridge_sends_the_click_before",
+        "cancels_older",
+        "has the position of the older click",
+        (
+            "goal.position = pose.pose.position",
+            "self.last, goal.position = pose.pose.position, getattr(self, 'last', pose.pose.position)",
+        ),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_reports_the_first_state",
+        "reports_status",
+        "reports PENDING while the goal is ACTIVE",
+        ("        self.sent = True\n", f"        self.sent = True\n        self.state = {STATE}\n"),
+        (f"'server: %s', {STATE}", "'server: %s', getattr(self, 'state', '')"),
+        alone=True,
     ),
     _bridge(
         "bridge_gives_up",

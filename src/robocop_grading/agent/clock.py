@@ -1,5 +1,6 @@
 """Python's clocks: simulated time since the node was started, on top of the true time at its start."""
 
+import datetime
 import functools
 import time
 from typing import Any, Callable, Dict, List, Optional, Tuple
@@ -48,6 +49,30 @@ def clock_gettime(clock: int) -> float:
     return monotonic() if clock == time.CLOCK_MONOTONIC else float(_real["clock_gettime"](clock))
 
 
+class _Kind(type):
+    def __instancecheck__(cls, value: object) -> bool:
+        return isinstance(value, _datetime)  # also one that C code has made
+
+
+_datetime = datetime.datetime
+
+
+class SimulatedDatetime(_datetime, metaclass=_Kind):
+    """datetime.datetime, whose now() asks the system itself; today() asks time.time()."""
+
+    @classmethod
+    def now(cls, tz: Optional[datetime.tzinfo] = None) -> "SimulatedDatetime":
+        return cls.fromtimestamp(now(), tz)
+
+    @classmethod
+    def utcnow(cls) -> "SimulatedDatetime":
+        return cls.utcfromtimestamp(now())
+
+
+SimulatedDatetime.__name__ = SimulatedDatetime.__qualname__ = "datetime"
+SimulatedDatetime.__module__ = "datetime"
+
+
 def install() -> None:
     """Have everything use these clocks, also modules that have been imported already."""
     import queue
@@ -62,6 +87,8 @@ def install() -> None:
     for name, function in functions.items():
         # As an attribute of a class, which logging makes of localtime, a function would get `self`; this does not.
         setattr(time, name, functools.partial(function))
+    dates: Any = datetime
+    dates.datetime = SimulatedDatetime
     copies: List[Tuple[Any, str]] = [(threading, "_time"), (queue, "time"), (socketserver, "time")]
     for module, name in copies:
         setattr(module, name, functools.partial(monotonic))

@@ -1,5 +1,6 @@
 """Waiting for sockets and other files: recv, accept, select, poll and epoll tell the scheduler, and count bytes."""
 
+import _thread
 import functools
 import select
 import selectors
@@ -83,6 +84,7 @@ class Poll:
     def __init__(self) -> None:
         self._poll = scheduler.select_poll()
         self._files: Dict[int, int] = {}
+        self._empty_ns = -1  # simulated time at which nothing was ready
 
     def register(self, file: Any, events: int = select.POLLIN | select.POLLPRI | select.POLLOUT) -> None:
         self._poll.register(file, events)
@@ -97,9 +99,17 @@ class Poll:
         self._files.pop(_descriptor(file), None)
 
     def poll(self, timeout: Optional[float] = None) -> List[Tuple[int, int]]:
-        """Wait for `timeout` [ms, simulated]."""
+        """Wait for `timeout` [ms, simulated]; without one, looks let time go on.
+
+        multiprocessing's Connection.poll() and Queue.empty() look again until the clock is later than at first.
+        """
         seconds = None if timeout is None else timeout / 1e3
-        return list(_when_ready(lambda: self._poll.poll(0), list(self._files.items()), seconds))
+        again = self._empty_ns == scheduler.now_ns and _thread.get_ident() not in scheduler.calling
+        if seconds == 0 and again:
+            seconds = scheduler.SLACK / 1e9
+        ready = list(_when_ready(lambda: self._poll.poll(0), list(self._files.items()), seconds))
+        self._empty_ns = -1 if ready else scheduler.now_ns
+        return ready
 
 
 class Epoll:

@@ -5,7 +5,7 @@ import re
 from typing import List, NamedTuple, Optional, Set
 
 from ..handout import ACTION, CLICKS, Limits
-from ..record import PREEMPTED, STATUS_NAMES, Click, Goal, Record
+from ..record import PENDING, PREEMPTED, STATUS_NAMES, Click, Goal, Record
 from ..texts import text
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
@@ -119,6 +119,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
 
 STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
 NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
+PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
 SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
 MOSTLY = 0.8
 
@@ -137,7 +138,8 @@ def _stated(record: Record) -> List[Report]:
     found: List[Report] = []
     for line in record.lines:
         before = [change for change in changes if change.time <= line.time + 1e-6]
-        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(line.text)}
+        told = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
+        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(told)}
         names = names or {int(one or other) for one, other in NUMBER.findall(line.text)}
         known = names and before and before[-1].status <= 1 and line.time > before[-1].time + SETTLED
         if known and not (found and line.time - found[-1].time <= SAME_REPORT):
@@ -169,7 +171,10 @@ def _cancels_without_pending(failure: Failed, retried: Record, _limits: Limits) 
 
 
 @check(
-    "clicks", after=(CRASH,), needs=NEEDS, retried=Retry("no_pending", _cancels_without_pending, "no_older_goal_seen")
+    "clicks",
+    after=(CRASH, After("forwards_goal", alike)),
+    needs=NEEDS,
+    retried=Retry("no_pending", _cancels_without_pending, "no_older_goal_seen"),
 )
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
@@ -181,12 +186,19 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     cancelled = [change.id for change in record.statuses if change.status == PREEMPTED]
     if not newer:
         return Failed("the newer goal", "no goal", click.time, text("no_newer_goal"), MISSING)
+    x, y = newer[-1].x, newer[-1].y
+    if not _distance(newer[-1], click.x, click.y) <= POSITION_TOLERANCE:
+        same = _distance(older, x, y) <= POSITION_TOLERANCE
+        cause = text("older_position") if same else _other_position(click, newer[-1])
+        wanted, seen = text("x {:g} y {:g}", click.x, click.y), text("x {:.2f} y {:.2f}", x, y)
+        return Failed(wanted, seen, newer[-1].time, cause, POSITION)
+    if newer[-1].id in cancelled:
+        seen = "one for both" if older.id in cancelled else "one for the newer goal"
+        cause = "Cancel before send_goal(), not after it"
+        return Failed("a cancel request for the older goal only", seen, newer[-1].time, cause)
     if older.id not in cancelled:
         wanted = "a cancel request for the older goal"
         return Failed(wanted, "none", click.time, text("cancel_first"), NOT_CANCELLED)
-    if newer[-1].id in cancelled:
-        cause = "Cancel before send_goal(), not after it"
-        return Failed("a cancel request for the older goal only", "one for both", newer[-1].time, cause)
     return None
 
 
@@ -216,7 +228,7 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
+@check("clicks", after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)), needs=NEEDS)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:

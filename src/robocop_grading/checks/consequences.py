@@ -1,7 +1,7 @@
 """Whether a failure follows from that of another check: decided by what happened, and by what the server reported."""
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..record import Feedback, Goal, Record, active_until
+from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until
 from ..texts import text
 from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
 from .verdict import After, Failed
@@ -42,6 +42,11 @@ def silent(record: Record, goal: Goal) -> bool:
 def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Whether nothing at all came from the server after it got the goal, and the earlier failure says so, too."""
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
+
+
+def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether the node died before anything came from it after it got the goal."""
+    return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
 def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -92,6 +97,7 @@ ENDING = (
     EXCEPTION,
     After("stays_alive", lambda record, *_: bool(record.deaths), NO_RESULT),
     After("feedback_position", believed, SUCCESS),
+    After("feedback_position", believed, STATUS_NAMES[SUCCEEDED]),
     After("feedback_position", misled, NO_RESULT),
     After("feedback_position", misled, SUCCESS_LATE),
     MISLED,

@@ -105,6 +105,7 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
 
 
 EMPTY = "an empty message"
+MOVING = "moving"
 RESULT = (
     EXCEPTION,
     After("one_ending", lambda record, failure, _: failure.seen == EMPTY and logged(record, NO_STATE_LOGGED)),
@@ -137,7 +138,7 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
     return None
 
 
-@check("speeds", needs=("reaches_goal",))
+@check("speeds", after=(EXCEPTION,), needs=("reaches_goal",))
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
     """The robot stands still after a goal has ended, in any state."""
     judged = False
@@ -153,7 +154,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
                 if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
                     seen = text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w)
                     cause = text("keeps_moving", status_name(result.status))
-                    return Failed("a robot at rest", seen, sample.time, cause)
+                    return Failed("a robot at rest", seen, sample.time, cause, MOVING, goal)
     return None if judged else NotReached("no goal ended")
 
 

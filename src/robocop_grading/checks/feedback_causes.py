@@ -52,6 +52,7 @@ class Pair(NamedTuple):
 
 Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause's text; the value that it would lead to
 FROM_ORIGIN = "angle_from_origin"
+NEVER_FILLED = {"distance_zero", "angle_zero"}
 # Causes that explain both errors: the robot's or the goal's position is wrong.
 OF_POSITION = {"relative", "distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world"}
 CAUSES: Tuple[Sequence[Hypothesis], ...] = (
@@ -70,10 +71,16 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
     ),
     (
         ("angle_in_degrees", lambda p: math.degrees(p.truth[ANGLE])),
+        # What has no sign comes before a wrong sign, which is as likely on the right, but is found on the left.
+        ("angle_without_sign", lambda p: abs(p.truth[ANGLE])),
         ("angle_sign", lambda p: -p.truth[ANGLE]),
         ("angle_without_heading", lambda p: p.direction),
+        ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
+        ("direction_signs", lambda p: math.atan2(-p.way[1], p.way[0]) - p.now.yaw),
+        ("direction_signs", lambda p: math.atan2(p.way[1], -p.way[0]) - p.now.yaw),
+        ("direction_signs", lambda p: math.atan2(-p.way[1], -p.way[0]) - p.now.yaw),
         ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),
         ("heading_from_z", lambda p: p.direction - math.sin(p.now.yaw / 2.0)),
         (
@@ -81,7 +88,6 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
             lambda p: math.atan2(p.goal.y - p.now.world_y, p.goal.x - p.now.world_x) - p.now.world_yaw,
         ),
         (FROM_ORIGIN, lambda p: math.atan2(p.goal.y, p.goal.x) - p.now.yaw),
-        ("angle_without_sign", lambda p: abs(p.truth[ANGLE])),
         ("angle_zero", lambda p: 0.0),
         ("angle_is_distance", lambda p: p.truth[POSITION]),
         ("direction_once", lambda p: wrapped(errors_at(p.start, p.goal)[ANGLE] + p.start.yaw - p.now.yaw)),
@@ -104,7 +110,7 @@ def likely_cause(index: int, wrong: Sequence[Pair], pairs: Sequence[Pair]) -> st
     best, least = text(OTHERWISE[index]), FITS
     for cause, predict in CAUSES[index]:
         miss = _miss(index, wrong, predict)
-        impossible = cause == FROM_ORIGIN and knows_position
+        impossible = knows_position if cause == FROM_ORIGIN else cause in NEVER_FILLED and any(values)
         if miss < least and not impossible and _miss(index, pairs, predict) < FITS:
             best, least = text(cause), miss
     offset, miss = _offset(index, pairs)

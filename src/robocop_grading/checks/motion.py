@@ -7,7 +7,7 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
 from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
 from ..texts import text
-from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, nothing_came
+from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
 from .verdict import After, Failed, NotReached, Verdict, check
 
@@ -58,7 +58,10 @@ def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Sit
     return situations
 
 
-@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST), needs=("reaches_goal",))
+NO_NODE = After("stays_alive", died_before)
+
+
+@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST, NO_NODE), needs=("reaches_goal",))
 def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
     judged = False
@@ -179,7 +182,9 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
-    return of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _success_too_late(record, goal))
+    return of_goals(
+        record, lambda goal: _wrong_success(record, goal, limits) or _success_too_late(record, goal, limits)
+    )
 
 
 def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
@@ -187,7 +192,7 @@ def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Faile
     return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
 
 
-def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
+def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
     """A robot that drives on although it has come close enough for success."""
     end = active_until(record, goal)
     way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
@@ -196,7 +201,8 @@ def _success_too_late(record: Record, goal: Goal) -> Optional[Failed]:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
             if end - reached <= LATE:
                 return None
-            cause = text("goes_on", GOAL_RADIUS)
+            at_rest = all(abs(sample.v) < limits.standing_v for sample in samples_between(record, reached + LATE, end))
+            cause = text("waits_at_goal" if at_rest else "goes_on", GOAL_RADIUS)
             least = min(distance for _, distance in way)
             seen = text("success {:.2f} s later, {:.2f} m from the goal", end - reached, least)
             return Failed(text("success at {:g} m", GOAL_RADIUS), seen, reached, cause, SUCCESS_LATE, goal)
@@ -247,4 +253,6 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     if end - goal.time <= 2.0 and moved <= 0.05:
         return None
     seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
+    if moved <= 0.05:
+        return Failed("success at once", seen, goal.time, text("waits_at_goal", GOAL_RADIUS), SUCCESS_LATE, goal)
     return Failed("success at once", seen, goal.time, text("check_before_moving", GOAL_RADIUS))

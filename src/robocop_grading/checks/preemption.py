@@ -28,7 +28,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
     return _preempted(record, goal, request.time, limits, "cancel request", text("check_preempt"))
 
 
-@check("states", after=PREEMPTION, needs=("reaches_goal", "stays_alive"))
+@check("states", after=(*PREEMPTION, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
 def newer_goal(record: Record, limits: Limits) -> Verdict:
     """A newer goal preempts the older one and is reached."""
     if len(record.goals) < 2:

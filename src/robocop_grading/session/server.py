@@ -81,12 +81,14 @@ class ServerRun(Run):
     def _scenario(self, index: int, scenario: Scenario) -> None:
         """Run its script to the end, or until it can't continue.
 
-        If a goal ends otherwise than it should, with a node that has served other scenarios, the scenario is repeated
-        with a new node: what earlier scenarios have left behind in a node is judged where one scenario has several
-        goals, and must not fail the others.
+        If a goal ends otherwise than it should or does not end, with a node that has served other scenarios, the
+        scenario is repeated with a new node: what earlier scenarios have left behind in a node is judged where one
+        scenario has several goals, and must not fail the others.
         """
         used = self._used
-        if self._unexpected(self._play(index, scenario)) and used:
+        record = self._play(index, scenario)
+        unended = bool(record.problem) and not record.deaths
+        if used and (unended or self._unexpected(record)):
             self._play(index, scenario)
 
     def _play(self, index: int, scenario: Scenario) -> Record:

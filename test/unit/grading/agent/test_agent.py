@@ -98,6 +98,7 @@ POLL = (
         ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
         ("import sched; s = sched.scheduler(); s.enter(0.8, 1, print); s.run()", 0.8),
         ("import rospy; rospy.rostime.wallsleep(0.1)", 0.1),
+        ("from multiprocessing import Pipe; ends = Pipe()\nfor _ in range(1000): ends[0].poll()", 0.05),
     ],
 )
 def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
@@ -107,6 +108,17 @@ def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
 def test_time_stands_still_while_the_program_works(tmp_path):
     text = f"for number in range(10**6): pass\nprint({AFTER}, time.time() > 1.6e9)"
     assert printed(tmp_path, text, 0.5)[-1] == "0.0 True"
+
+
+def test_datetime_follows_simulated_time_and_is_otherwise_itself(tmp_path):
+    text = (
+        "import pickle\nfrom datetime import datetime, timezone\n"
+        "a, b, c = datetime.now(), datetime.utcnow(), datetime.now(timezone.utc)\ntime.sleep(2.5)\n"
+        "passed = datetime.today() - a, datetime.utcnow() - b, datetime.now(timezone.utc) - c\n"
+        "print([round(it.total_seconds(), 3) for it in passed], pickle.loads(pickle.dumps(a)) == a)\n"
+        "import rospy, numpy\nprint(isinstance(numpy.datetime64('2026-01-01T00:00:00').item(), datetime), datetime)\n"
+    )
+    assert printed(tmp_path, text)[-2:] == ["[2.5, 2.5, 2.5] True", "True <class 'datetime.datetime'>"]
 
 
 def test_threads_meet_at_the_same_times_in_every_run(tmp_path):

@@ -70,7 +70,7 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("feedback_position", fed_back(position=lambda d: d - 0.1), "always 0.10 m too small"),
     ("feedback_angle", fed_back(angle=lambda a: a + 0.4), "always 0.40 rad too large"),
     ("feedback_position", OLD, "position_error in the feedback is an iteration old"),
-    ("reaches_goal", LATE, "the threshold is another one"),
+    ("reaches_goal", LATE, "stands at the goal, but the result comes later"),
     ("reaches_goal", changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
     ("reaches_goal", changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
     ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "result is missing"),
