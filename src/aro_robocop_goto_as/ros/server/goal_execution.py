@@ -79,7 +79,10 @@ class GoalExecution:
             return None, None
         pose, clearance = inputs
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
-        self._turning = self._turning.after(decision)
+        turning = self._turning.after(decision)
+        if turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
+            self._progress = None
+        self._turning = turning
         errors, driven = decision.errors, now - self._stalled
         self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)

@@ -31,10 +31,22 @@ class BlockedRobot:
         return Pose2D(), math.inf
 
 
-def end_of_goal(ticks: Iterable[int]) -> Tuple[int, Outcome]:
+class TurningRobot(BlockedRobot):
+    """One that turns past the goal to and fro, as late commands have it do: to the other side every 4 s."""
+
+    def __init__(self) -> None:
+        self._reads = 0
+
+    def read(self) -> Tuple[Pose2D, float]:
+        """Heading 0.5 rad beside the goal."""
+        self._reads += 1
+        return Pose2D(yaw=0.5 if self._reads // (4_000 // PERIOD) % 2 else -0.5), math.inf
+
+
+def end_of_goal(ticks: Iterable[int], inputs: Optional[BlockedRobot] = None) -> Tuple[int, Outcome]:
     """The time [ms] at which a goal ahead of the robot ends, and how, with a step at each of these times."""
     tuning = cast(Tuning, SimpleNamespace(params=GotoParams()))
-    goal = GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), tuning, cast(Inputs, BlockedRobot()))
+    goal = GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), tuning, cast(Inputs, inputs or BlockedRobot()))
     for tick in ticks:
         _, ending = goal.step(tick * 1_000_000)
         if ending is not None:
@@ -57,3 +69,9 @@ def test_time_in_which_the_server_did_not_run_is_no_lack_of_progress(gap: int) -
 
 def test_slow_control_loop_is_no_gap() -> None:
     assert end_of_goal(range(0, 20_000, 2 * PERIOD)) == (5_000 + 2 * PERIOD, Outcome.STUCK)
+
+
+def test_a_turn_at_a_lower_speed_gets_its_own_time_and_there_are_two_of_them() -> None:
+    ended, outcome = end_of_goal(range(0, 60_000, PERIOD), TurningRobot())
+    assert outcome is Outcome.STUCK
+    assert ended == pytest.approx(8_000 + 5_000, abs=3 * PERIOD)
