@@ -304,3 +304,13 @@ print("how to use it", file=launch._quiet(pathlib.Path(sys.argv[1])), flush=True
 """
     with open("/dev/full", "wb") as full:
         subprocess.run([sys.executable, "-c", script, str(tmp_path)], stdout=full, stderr=full, check=True)
+
+
+def test_a_key_without_a_value_in_a_parameter_file_is_refused_with_file_and_key(tmp_path):
+    (tmp_path / "mine.yaml").write_text("position_tolerance: 0.2\ncontrol_rate:\n")
+    command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
+    ended = subprocess.run([*command, f"goto_config:={tmp_path}/mine.yaml"], stderr=subprocess.PIPE, text=True)
+    assert ended.returncode == 1
+    assert ended.stderr.strip() == (
+        f"[FATAL] PARAMETER: {tmp_path}/mine.yaml: control_rate has no value; remove the line for the default"
+    )

@@ -60,8 +60,8 @@ ORDER = {
     "ros.server": "errors geometry goto goto_params sim_params process ros ros.names simulation trail",
     "ros.client": "bridge_params errors geometry ros ros.names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
-    "ros.cli": "bootstrap errors geometry limits param_loading sim_params process robot.model_names ros ros.client "
-    "ros.names suggestions web web_params world",
+    "ros.cli": "bootstrap errors geometry limits param_loading sim_params process reading robot.model_names ros "
+    "ros.client ros.names suggestions web web_params world",
     "bench": "compiled errors geometry param_loading sim_params process ros ros.sim simulation",
     f"{GRADER}.agent": "",
     f"{GRADER}.hosting": "errors process ros.cli ros.names",

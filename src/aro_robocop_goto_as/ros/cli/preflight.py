@@ -1,8 +1,10 @@
-"""What the simulator would refuse of its parameters, found before anything is started, and in the same words."""
+"""What simulator and parameter server would refuse of parameters, found before anything is started."""
 
+import datetime
 import os
 from typing import Any, Dict
 
+from ...errors import ParameterError
 from ...geometry import Pose2D
 from ...param_loading import from_dict
 from ...robot.model_names import urdf_of
@@ -25,3 +27,21 @@ def check(given: Dict[str, Any], node: str) -> None:
     elif text:
         for request in parse_robots(text):
             urdf_of(request.model or p.robots.model, share())
+
+
+def require_parameters(value: Any, where: str) -> None:
+    """ParameterError, naming the key, for what the parameter server can't have: no value, a date, a large integer."""
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            if not isinstance(key, str):
+                raise ParameterError(f"{where}: {key!r} is no name; put it in quotes if it is meant to be one")
+            require_parameters(entry, f"{where}: {key}")
+    elif isinstance(value, list):
+        for entry in value:
+            require_parameters(entry, where)
+    elif value is None:
+        raise ParameterError(f"{where} has no value; remove the line for the default")
+    elif isinstance(value, int) and not -(2**31) <= value < 2**31:
+        raise ParameterError(f"{where}: {value} is too large for an integer of ROS; as a number write {float(value):g}")
+    elif isinstance(value, (datetime.date, set, tuple)):
+        raise ParameterError(f"{where}: {value} is no number, text or list; put it in quotes if it is a text")

@@ -1,13 +1,17 @@
 """Everything that uses private parts of roslaunch, each with the reason."""
 
+import functools
+import os
 import subprocess
 import threading
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Callable, Optional
 
 import rosgraph
+import rosparam  # with its tags for YAML, such as !degrees
 from rosgraph.xmlrpc import XmlRpcNode
-from roslaunch import nodeprocess, pmon
+from roslaunch import loader, nodeprocess, pmon
 from roslaunch.parent import ROSLaunchParent
 from roslaunch.pmon import ProcessListener
 from rosmaster.master_api import NUM_WORKERS, ROSMasterHandler
@@ -15,7 +19,9 @@ from rosmaster.master_api import NUM_WORKERS, ROSMasterHandler
 from ...bootstrap import master
 from ...errors import MasterError, ParameterError
 from ...process.orphans import end_with_parent
+from ...reading import reading
 from ..names import PACKAGE
+from .preflight import require_parameters
 
 PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
 POLL = 0.001  # [s, wall]
@@ -36,6 +42,7 @@ class Launcher(ROSLaunchParent, ProcessListener):
         super().__init__(*args, **options)
         pmon._init_signal_handlers()  # roslaunch does it when it starts the first process
         nodeprocess.subprocess = SimpleNamespace(Popen=_popen)  # roslaunch has no hook between fork and exec
+        loader.Loader.load_rosparam = _checking_files(loader.Loader.load_rosparam)
 
     def load(self) -> None:
         """Load the launch files; start() loads them only if nobody has.
@@ -94,6 +101,20 @@ class Launcher(ROSLaunchParent, ProcessListener):
             return
         if exit_code != 0 and process.required and process.package in PACKAGES:
             self.failed = True
+
+
+def _checking_files(load_rosparam: Callable[..., None]) -> Callable[..., None]:
+    """A loader of <rosparam> that checks files; roslaunch prints a traceback for values that XML-RPC can't send."""
+
+    @functools.wraps(load_rosparam)
+    def checked(*arguments: Any, **options: Any) -> None:
+        _, _, _, command, _, file, *_ = arguments
+        if command == "load" and file and os.path.isfile(file):
+            with reading(file, ParameterError, "parameters in YAML"):
+                require_parameters(rosparam.yaml.safe_load(Path(file).read_text()) or {}, file)
+        load_rosparam(*arguments, **options)
+
+    return checked
 
 
 def _popen(command: Any, preexec_fn: Callable[[], None], **options: Any) -> "subprocess.Popen[Any]":

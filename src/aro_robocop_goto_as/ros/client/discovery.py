@@ -72,7 +72,7 @@ def wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float,
             break
         if not graph.has_living_publisher(rospy.resolve_name(f"{action}{graph.RESULT}")):
             break
-        rospy.logwarn_once("%s is running, but does not answer yet", action)
+        rospy.loginfo_once("%s is running, but does not answer yet", action)
     if is_up(client) and not ended():
         return ""
     hint = _hint(action) or "; the terminal in which the system was started shows why its server ended, if it did"

@@ -1,9 +1,11 @@
 """What is refused before a simulator is started."""
 
+import datetime
+
 import pytest
 
 from aro_robocop_goto_as.errors import RobocopError
-from aro_robocop_goto_as.ros.cli.preflight import check
+from aro_robocop_goto_as.ros.cli.preflight import check, require_parameters
 
 
 @pytest.mark.parametrize(
@@ -34,3 +36,23 @@ def test_what_the_simulator_would_refuse_is_refused(given, words):
 )
 def test_what_it_accepts_is_accepted(given):
     check(given, "/robocop_sim")
+
+
+@pytest.mark.parametrize(
+    "value, words",
+    [
+        ({"a": None}, "FILE: a has no value"),
+        ({"a": {"b": [1, {"c": None}]}}, "FILE: a: b: c has no value"),
+        ({1: 2}, "FILE: 1 is no name"),
+        ({"a": datetime.date(2026, 1, 2)}, "FILE: a: 2026-01-02 is no number, text or list"),
+        ({"a": 2**31}, "FILE: a: 2147483648 is too large"),
+    ],
+)
+def test_what_the_parameter_server_cannot_have_is_refused(value, words):
+    with pytest.raises(RobocopError) as refused:
+        require_parameters(value, "FILE")
+    assert str(refused.value).startswith(words)
+
+
+def test_what_the_parameter_server_can_have_is_accepted():
+    require_parameters({"a": {"b": [1, -2.5, True, "text", -(2**31)]}}, "FILE")
