@@ -6,7 +6,7 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from .limits import FARTHEST as FARTHEST
+from .farthest import FARTHEST as FARTHEST
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 UPRIGHT = 1e-9  # largest |qx| + |qy| of an orientation without roll and pitch

@@ -29,9 +29,9 @@ MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
 ORDER = {
     "errors": "",
-    "limits": "",
+    "farthest": "",
     "suggestions": "",
-    "geometry": "limits",
+    "geometry": "farthest",
     "robot.model_names": "errors suggestions",
     "ros.names": "",
     "sensors.scan_profiles": "",
@@ -60,7 +60,7 @@ ORDER = {
     "ros.server": "errors geometry goto goto_params sim_params process ros ros.names simulation trail",
     "ros.client": "bridge_params errors geometry ros ros.names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
-    "ros.cli": "bootstrap errors geometry limits param_loading sim_params process reading robot.model_names ros "
+    "ros.cli": "bootstrap errors farthest geometry param_loading sim_params process reading robot.model_names ros "
     "ros.client ros.names suggestions web web_params world",
     "bench": "compiled errors geometry param_loading sim_params process ros ros.sim simulation",
     f"{GRADER}.agent": "",

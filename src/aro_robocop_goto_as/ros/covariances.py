@@ -20,6 +20,11 @@ def diagonal(variances: Tuple[float, ...]) -> List[float]:
     return [variances[row] if row == column else 0.0 for row in range(size) for column in range(size)]
 
 
+def odom_covariance(real: bool) -> List[float]:
+    """That of pose and twist: as Gazebo's plugin sends it, or zeros, as a real TurtleBot3 does."""
+    return diagonal((0.0,) * 6 if real else ODOM_VARIANCES)
+
+
 def imu_covariances(noise: ImuParams, real: bool) -> ImuCovariances:
     """The covariances of the noise that the simulator adds, or those that a real TurtleBot3 reports."""
     variances = (

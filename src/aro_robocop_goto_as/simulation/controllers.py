@@ -55,14 +55,12 @@ class Controllers:
 
     def command(self, controller: ControllerId, twist: Twist2D) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
-        if self.lockstep.is_stamped(controller):
-            return  # this controller sends the same command with its answer
         if not self.in_lockstep:
             self._apply(controller.robot, twist)
-            return
-        self.lockstep.tick = self.tick
-        self.lockstep.commanded(controller)
-        self._pending[controller.robot] = _Pending(controller, twist)
+        elif not self.lockstep.is_stamped(controller):  # which sends the same command with its answer
+            self.lockstep.tick = self.tick
+            self.lockstep.commanded(controller)
+            self._pending[controller.robot] = _Pending(controller, twist)
 
     def answer(self, controller: ControllerId, stamp_ns: int, twist: Optional[Twist2D]) -> None:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
@@ -137,7 +135,7 @@ class Controllers:
 
     def _apply(self, robot: int, twist: Twist2D) -> None:
         try:
-            self._simulator.fleet.command(robot, twist, self._simulator.time)
+            self._simulator.command(twist, robot)
         except CommandError as error:
             self._refused.append(error)
 

@@ -6,7 +6,7 @@ import re
 import sys
 from typing import List
 
-from ...limits import FARTHEST
+from ...farthest import FARTHEST
 
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a running system
 START_PATIENCE = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine

@@ -1,5 +1,7 @@
 """The GoToPosition action server: actionlib's, for one goal at a time, robust against floods and clock resets.
 
+What a goal is refused for, and how it ends, is up to goal_execution.
+
 It overrides and sets private parts of actionlib, which has no public way to any of this.
 """
 

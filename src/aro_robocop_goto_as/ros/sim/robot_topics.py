@@ -14,7 +14,7 @@ from ...robot.model import CAMERA_FRAME
 from ...simulation.observations import BATTERY, BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..covariances import ODOM_VARIANCES, TRUTH_VARIANCES, diagonal, imu_covariances
+from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance
 from ..names import prefixed
 from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
 from ..publishing import publisher
@@ -52,7 +52,7 @@ class RobotTopics:
 
             frame = prefixed(name, CAMERA_FRAME)
             self.topics[CAMERA] = CameraTopics(prefixed(name, ""), camera, frame, on_change)
-        covariance, exact = diagonal((0.0,) * 6 if real else ODOM_VARIANCES), diagonal(TRUTH_VARIANCES)
+        covariance, exact = odom_covariance(real), diagonal(TRUTH_VARIANCES)
         poses, twists, footprint = odometry.poses[index], odometry.twists[index], self.footprint_frame
         self._packed = {
             ODOM: packed_odometry(self.odom_frame, footprint, covariance, poses, twists),
