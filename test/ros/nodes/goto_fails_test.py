@@ -15,6 +15,11 @@ class GotoFails(SystemTest):
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: obstacle ")
 
+    def test_a_misspelt_frame_is_answered_with_the_one_meant(self):
+        with Process(COMMAND, "0.5", "0.0", "--frame", "base_footprnt") as command:
+            self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertIn("; did you mean base_footprint?", command.output)
+
     def test_unknown_frame_is_reported_and_nothing_is_sent(self):
         with Process(COMMAND, "0.5", "0.0", "--frame", "kitchen") as command:
             self.assertNotEqual(command.wait_for_exit(), 0)

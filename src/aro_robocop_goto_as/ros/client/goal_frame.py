@@ -6,11 +6,13 @@ import ros_numpy
 import rospy
 import tf2_geometry_msgs
 import tf2_ros
+import yaml
 from geometry_msgs.msg import Point, PointStamped, PoseStamped
 from nav_msgs.msg import Odometry
 
 from ...errors import FrameError
 from ...geometry import Pose2D, compose
+from ...suggestions import did_you_mean
 from .. import convert
 from ..ticker import wait_until
 from .tf_buffer import TfBuffer, is_possible
@@ -68,7 +70,8 @@ class GoalTransformer:
                 return position
             position = self._by_latest(point, frame)
         except tf2_ros.TransformException as error:
-            within = f"within {self.timeout:g} s: {error}"
+            known = yaml.safe_load(self.buffer.all_frames_as_yaml()) or ()
+            within = f"within {self.timeout:g} s: {str(error).strip()}{did_you_mean(frame, known)}"
             raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} {within}") from error
         rospy.logwarn(
             f"no transform from {frame!r} to {self.goal_frame!r} at the goal's time {stamp.to_sec():.3f} within "
