@@ -32,6 +32,7 @@ SLOWEST = 0.003, 0.02  # [m/s], [rad/s] at rest
 
 ATTEMPTS = 100  # to find a place that the robot can drive to
 NEAR = 1.2  # [m] farther returns are in no goal's way
+SCAN_AGE = 0.5  # [s] simulated; scans come at 5 Hz, and topics do not arrive in step
 CLEAR_AHEAD, CLEAR_ASIDE, CLEAR_AROUND = 0.45, 0.25, 0.2  # [m] more than the server's cone and the robot need
 
 
@@ -42,6 +43,12 @@ def _is_free(returns, turn, distance):
         if far < CLEAR_AROUND or (0.0 < ahead < distance + CLEAR_AHEAD and abs(aside) < CLEAR_ASIDE):
             return False
     return True
+
+
+def _moves(_time, v, w):
+    """Whether a robot with these velocities [m/s], [rad/s] is not at rest."""
+    v_max, w_max = SLOWEST
+    return abs(v) > v_max or abs(w) > w_max
 
 
 class _Lists(dict):
@@ -193,13 +200,29 @@ class Client:
         angle = 2.0 * math.atan2(q.z, q.w) + turn
         return here.x + distance * math.cos(angle), here.y + distance * math.sin(angle)
 
+    def rests(self):
+        """Whether the robot was at rest when it was last seen."""
+        return bool(self.truth) and not _moves(*self.truth[-1])
+
     def _returns(self):
         """The newest scan's returns as (angle [rad], distance [m]); none in a world without obstacles."""
         if self._scan is None:
             return []
-        scan = LaserScan().deserialize(self._scan._buff)
+        scan = wait_for(self._scan_of_now, self._behind)
         angles = (scan.angle_min + number * scan.angle_increment for number in range(len(scan.ranges)))
         return [(angle, distance) for angle, distance in zip(angles, scan.ranges) if distance < NEAR]
+
+    def _scan_of_now(self):
+        """The newest scan; None while it or the odometry is older than what is known of the robot's motion."""
+        scan = LaserScan().deserialize(self._scan._buff)
+        return scan if min(self._stamps(scan)) >= self.truth[-1][0] - SCAN_AGE else None
+
+    def _stamps(self, scan):
+        return scan.header.stamp.to_sec(), self.odom.header.stamp.to_sec()
+
+    def _behind(self):
+        stamps = self._stamps(LaserScan().deserialize(self._scan._buff))
+        return f"scan and odometry, at {stamps} s, from where the robot is seen at {self.truth[-1][0]} s"
 
     def cancel(self, goal_id="", stamp=None):
         """Cancel one goal, those up to a stamp, or all."""
@@ -242,8 +265,6 @@ class Client:
 
     def require_rest_since(self, stamp):
         """Violation if the robot has moved since a simulated time [s]."""
-        v_max, w_max = SLOWEST
-        since = [(v, w) for time, v, w in list(self.truth) if time >= stamp]
-        moving = [(v, w) for v, w in since if abs(v) > v_max or abs(w) > w_max]
+        moving = [(v, w) for time, v, w in list(self.truth) if time >= stamp and _moves(time, v, w)]
         if moving:
             raise Violation(f"robot {self.namespace!r} moves after {stamp:.2f} s, when it should rest: {moving[-1]}")

@@ -99,14 +99,17 @@ class SimulatedStage:
 
     def require_rest(self):
         """Violation unless all robots are at rest one second after the newest result."""
-        # Topics do not arrive in step: the clock may be older than the result.
-        begin = max([self.now, *(client.ended_at for client in self.clients)]) + REST
+        # Topics do not arrive in step: the clock may be older than the result, and than the motion.
+        seen = [client.truth[-1][0] for client in self.clients if client.truth]
+        begin = max([self.now, *(client.ended_at for client in self.clients), *seen]) + REST
         for client in self.clients:
             wait_for(lambda c=client: c.truth and c.truth[-1][0] >= begin, f"the robot's motion after {begin:.2f} s")
             client.require_rest_since(begin)
 
     def require_rest_without_server(self):
         """As require_rest, with a server that has ended: the simulator's command timeout stops its robot."""
+        for client in self.clients:  # which may be behind the simulator
+            wait_for(client.rests, f"robot {client.namespace!r} at rest without its server")
         self.require_rest()
 
     def call(self, service, kind=Trigger, *arguments):
