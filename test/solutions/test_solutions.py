@@ -170,7 +170,7 @@ def test_without_bubblewrap_grading_is_refused_unless_unsafe_is_requested(tmp_pa
 def test_links_in_a_circle_are_refused(tmp_path):
     link = tmp_path / "robocop_goto_as.py"
     link.symlink_to(link)
-    with pytest.raises(GradingError, match="robocop_goto_as.py: (Symlink loop|.*Too many levels)"):
+    with pytest.raises(GradingError, match="robocop_goto_as.py: expected a package, .* but nothing is there"):
         prepare_submission(str(link), SHARE, STATE, tmp_path, None)
 
 

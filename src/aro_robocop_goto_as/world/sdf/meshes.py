@@ -11,7 +11,8 @@ import numpy as np
 from ...errors import WorldError
 from ...reading import finite_numbers, parse_xml, reading
 
-_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])  # of a binary .stl file
+# A facet of a binary .stl file.
+_FACET: "np.dtype[np.void]" = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attributes", "<u2")])
 
 
 def read_triangles(path: str) -> np.ndarray:
