@@ -144,10 +144,10 @@ def stop_registering_on_shutdown() -> None:
 
 
 def start_quickly() -> None:
-    """Call before init_node: a third of a node's start is a pause of rospy's, and each subscriber asks the master.
+    """Call before init_node: rospy may pause meanwhile, and each of its subscribers asks the master.
 
-    The pause is a tenth of a second for the end of the registration; here rospy looks for it each millisecond. The
-    question is whether to publish statistics of its messages, to which the first answer holds.
+    The pause is a tenth of a second if the registration has not ended at once, as on a busy machine; here rospy looks
+    for it each millisecond. The question is whether to publish statistics, to which the first answer holds.
     """
     vars(rospy.impl.init)["time"] = types.SimpleNamespace(sleep=lambda seconds: time.sleep(min(seconds, 1e-3)))
     statistics = rospy.impl.statistics.SubscriberStatisticsLogger
