@@ -58,6 +58,16 @@ def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("clock", ["rospy.get_time()", "time.time()", "rospy.sleep(0) or rospy.Time.now().to_sec()"])
+def test_loop_that_waits_by_looking_at_a_clock_gets_full_marks(clock, tmp_path):
+    pace, wait = "            rate.sleep()\n", f"            end = {clock} + 0.1\n            while {clock} < end:\n"
+    text = RIGHT["base_server"].read_text().replace("import math\n", "import math\nimport time\n")
+    assert text.count(pace) == 1
+    grade = graded("looks", text.replace(pace, f"{wait}                pass\n"), tmp_path)
+    assert grade.failed() == []
+
+
+@pytest.mark.slow
 def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
     text = RIGHT["base_server"].read_text().replace("'/odom'", "'/ground_truth_odom'")
     (problem,) = graded("truth", text, tmp_path).problems

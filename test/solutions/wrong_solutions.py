@@ -166,7 +166,11 @@ WRONG = (
     _server("fast_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(50)"), alone=True),
     _server("slow_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(3)")),
     _server(
-        "unpaced_loop", "feedback_rate", "not paced", ("            rate.sleep()\n", "            rospy.sleep(0)\n")
+        "unpaced_loop",
+        "feedback_rate",
+        "not paced",
+        ("            rate.sleep()\n", "            rospy.sleep(0)\n"),
+        alone=True,
     ),
     _server(
         "pose_read_once",

@@ -8,11 +8,12 @@ import time
 import xmlrpc.client
 from typing import Any, Callable, Dict, List, Set, Tuple
 
-from . import scheduler
+from . import clock, scheduler
 
 KEPT = {("/odom", "nav_msgs/Odometry"), ("/scan", "sensor_msgs/LaserScan")}
 LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
 SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
+MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how long more take [s]: 1 ms each
 _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
 
 
@@ -48,6 +49,19 @@ def install(ports: Set[int]) -> None:
     _calls(TCPROSTransport, "receive_once", answers)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
+    for module in (rospy, rospy.rostime):
+        module.get_rostime = _then(rospy.rostime.get_rostime, clock.looked)
+    rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
+
+
+def _then(function: Any, afterwards: Callable[[], None]) -> Any:
+    @functools.wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        value = function(*arguments, **options)
+        afterwards()
+        return value
+
+    return call
 
 
 class _Subscription:

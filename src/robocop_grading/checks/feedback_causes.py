@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from statistics import mean, median
 from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
@@ -10,10 +11,11 @@ from ..record import ERRORS, Feedback, Goal, Sample, errors_at, wrapped
 from ..texts import text
 
 FITS = 0.1  # [m], [rad] largest median error of a hypothesis
+FAR = 1.0  # [m], [rad] that a miss counts at most
 OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
-EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value
+EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value; less is no difference
 
 
 class Pair(NamedTuple):
@@ -78,10 +80,11 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
+        # Before two wrong signs, which are the same for goals behind, but are found with the first goal, ahead.
+        ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(-p.way[1], p.way[0]) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(p.way[1], -p.way[0]) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(-p.way[1], -p.way[0]) - p.now.yaw),
-        ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),
         ("heading_from_z", lambda p: p.direction - math.sin(p.now.yaw / 2.0)),
         (
             "heading_in_world",
@@ -99,45 +102,54 @@ OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
 def likely_cause(index: int, wrong: Sequence[Pair], pairs: Sequence[Pair]) -> str:
-    """The hypothesis that fits the wrong values best, if one fits these and all values.
+    """The hypothesis that fits all values best, of those that fit most of the wrong ones and most of all.
 
     A few wrong values fit many hypotheses, which the right ones then contradict.
     """
     values = [pair.feedback.errors[index] for pair in wrong]
     if not all(map(math.isfinite, values)):
         return text("Some values of {} are not finite", ERRORS[index])
-    knows_position = _miss(POSITION, pairs, lambda pair: pair.truth[POSITION]) < FITS
-    best, least = text(OTHERWISE[index]), FITS
+    knows_position = median(_misses(POSITION, pairs, lambda pair: pair.truth[POSITION])) < FITS
+    best, least = text(OTHERWISE[index]), math.inf
     for cause, predict in CAUSES[index]:
-        miss = _miss(index, wrong, predict)
         impossible = knows_position if cause == FROM_ORIGIN else cause in NEVER_FILLED and any(values)
-        if miss < least and not impossible and _miss(index, pairs, predict) < FITS:
+        misses = _misses(index, pairs, predict)
+        if impossible or median(misses) >= FITS or median(_misses(index, wrong, predict)) >= FITS:
+            continue
+        miss = _mean(misses)
+        if miss < least - EXACT:
             best, least = text(cause), miss
-    offset, miss = _offset(index, pairs)
-    if miss < least:
-        best, least = offset, miss
+    offset, misses = _offset(index, pairs)
+    if misses[9 * len(misses) // 10] < FITS and _mean(misses) < least - EXACT:
+        best, least = offset, _mean(misses)
     if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
         return text("always_the_same", ERRORS[index], values[0])
     return best
 
 
-def _offset(index: int, pairs: Sequence[Pair]) -> Tuple[str, float]:
-    """The cause if most values differ from the true ones by the same amount, and how much they deviate from it."""
+def _offset(index: int, pairs: Sequence[Pair]) -> Tuple[str, List[float]]:
+    """The cause if most values differ from the true ones by the same amount; deviations from it, the smallest first."""
     differences = [pair.feedback.errors[index] - pair.truth[index] for pair in pairs]
     if index == ANGLE:
         differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
     middle = sorted(differences)[len(differences) // 2]
-    spread = sorted(abs(difference - middle) for difference in differences)
     word = "large" if middle > 0.0 else "small"
     cause = text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
-    return cause, spread[9 * len(spread) // 10] if abs(middle) > OFFSET else math.inf
+    if abs(middle) <= OFFSET:
+        return cause, [math.inf]
+    return cause, sorted(abs(difference - middle) for difference in differences)
 
 
-def _miss(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float]) -> float:
-    """The median difference between values and predictions; degrees and squares, which vary more, are scaled."""
+def _misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float]) -> List[float]:
+    """Differences between values and predictions; of degrees and squares, which vary more, a tenth."""
     values = [pair.feedback.errors[index] for pair in pairs]
     misses = [value - predict(pair) for value, pair in zip(values, pairs)]
     if index == ANGLE:
         misses = [wrapped(miss) if abs(value) < 4.0 else miss for value, miss in zip(values, misses)]
-    middle = sorted(abs(miss) for miss in misses)[len(misses) // 2]
-    return middle if max(abs(value) for value in values) < 7.0 else middle / 10.0
+    scale = 1.0 if max(abs(value) for value in values) < 7.0 else 0.1
+    return [abs(miss) * scale for miss in misses]
+
+
+def _mean(misses: Sequence[float]) -> float:
+    """The mean, in which a single value counts for little, however far off it is."""
+    return mean(min(miss, FAR) for miss in misses)

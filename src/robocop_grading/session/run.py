@@ -28,7 +28,8 @@ from .node import Node
 from .stage import Stage
 
 TICK = 0.1  # [s]
-MAX_ENTRIES = 20_000  # of each kind in one record
+MAX_ENTRIES = 50  # of each kind at one tick, and
+MAX_LINES = 20_000  # in one record, as a traceback comes at once
 NODE_LOST = "the grader's ROS node was shut down while the submission ran"
 
 
@@ -40,6 +41,7 @@ class Run:
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
+        self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
         self.subscribers = {  # by topic
@@ -60,6 +62,7 @@ class Run:
     def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at the start of the site of this index."""
         self.parts = defaultdict(list)
+        self._before.clear()
         self.marks = {}
         self.stage.bag.open(str(self.job.out / f"{self.job.part}-{name}.bag"))
         self.stage.command(STANDSTILL)
@@ -76,8 +79,8 @@ class Run:
         return record
 
     def add(self, part: str, entry: Any) -> None:
-        """Record an entry; of a flood of them only the first ones."""
-        if len(self.parts[part]) < MAX_ENTRIES:
+        """Record an entry; of a flood of them only the first ones at each tick."""
+        if len(self.parts[part]) - self._before[part] < MAX_ENTRIES:
             self.parts[part].append(entry)
 
     def names(self, others: Dict[str, str]) -> Dict[str, Any]:
@@ -129,6 +132,8 @@ class Run:
         """One control tick; a watched run is shown at real time."""
         if shutdown_has_begun():
             raise GraderLostError(NODE_LOST)
+        for part, entries in self.parts.items():
+            self._before[part] = len(entries)
         sample = self.stage.tick(real_time)
         self.add("samples", sample)
         if self.stage.watch is not None:
@@ -188,4 +193,6 @@ class Run:
             self._on_line(f"[{level}] {message.msg}")
 
     def _on_line(self, text: str) -> None:
-        self.add("lines", rec.Line(self.stage.now, text))
+        lines = self.parts["lines"]
+        if len(lines) < MAX_LINES:
+            lines.append(rec.Line(self.stage.now, text))
