@@ -1,5 +1,6 @@
 """Velocity commands: applied at once, or in lockstep at the end of the control tick, for which time is held."""
 
+import math
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Tuple
 
@@ -7,12 +8,14 @@ from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
 from ..sim_params import LockstepParams
 from .jobs import Clock
-from .lockstep import ControllerId, Lockstep
+from .lockstep import FIRST, ControllerId, Lockstep
 from .simulator import Simulator
 
 DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controllers while waiting for their answers
 
 SECOND_LOOK = 0.005  # [s, wall] during which what has arrived meanwhile is processed
+# [s, wall] rospy.sleep() looks at the time, then waits for up to 0.5 s: a clock message in between does not wake it up.
+STILL = 0.6
 
 NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
 # Whether a controller is kept from answering, for want of a processor, of which it may use so much [s].
@@ -51,7 +54,7 @@ class Controllers:
         self._report = TickReport()
         self._held_since = self._next_look = 0.0  # [s, wall]
         self._is_reset = False  # since the tick began
-        self._is_silent = False  # at the last look, nobody was kept from answering
+        self._silent_since = math.inf  # [s, wall] at all looks since then, nobody was kept from answering
 
     def command(self, controller: ControllerId, twist: Twist2D) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
@@ -87,14 +90,14 @@ class Controllers:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
         self.enroll(answering)
         self.lockstep.tick = self.tick
-        self._report, self._is_reset, self._is_silent = TickReport(), False, False
+        self._report, self._is_reset, self._silent_since = TickReport(), False, math.inf
         self._held_since = self._clock.now()
         self._next_look = self._held_since + DISCONNECT_POLL
 
     def hold(self, connected: NodesOf, is_kept: IsKept) -> float:
         """How long to hold simulated time [s, wall] before asking again; 0: nobody is waited for any more.
 
-        After the timeout, a controller is given up only if at two looks it is not kept from answering.
+        After the timeout, a controller is given up only if it is not kept from answering, at each look for some time.
         """
         while not self._is_reset and self.lockstep.missing():
             now = self._clock.now()
@@ -102,16 +105,18 @@ class Controllers:
                 self._forget_disconnected(connected)
                 self._next_look = now + DISCONNECT_POLL
                 continue
-            patience = self.lockstep.patience() * self.timeout
+            share = self.lockstep.patience()
+            patience = share * self.timeout
             remaining = self._held_since + patience - now
             if remaining > 0.0:
                 return min(remaining, self._next_look - now)
-            was_silent = self._is_silent
-            self._is_silent = not any(is_kept(controller, patience) for controller in self.lockstep.missing())
-            if not self._is_silent:
+            if any(is_kept(controller, patience) for controller in self.lockstep.missing()):
+                self._silent_since = math.inf
                 return self._next_look - now
-            if not was_silent:
-                return SECOND_LOOK
+            self._silent_since = min(self._silent_since, now)
+            remaining = self._silent_since + (STILL if share >= FIRST else SECOND_LOOK) - now
+            if remaining > 0.0:
+                return min(remaining, self._next_look - now)
             self._report.late = self.lockstep.give_up()
         return 0.0
 

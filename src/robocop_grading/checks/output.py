@@ -22,7 +22,8 @@ UNCAUGHT = re.compile(
     rf"^(?:Syntax|Indentation|Tab)Error|^Exception in thread |{_ERROR}bad callback: |{EXCEPTION_LOGGED.pattern}"
 )
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
-LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/")  # the path of a file that is not the node's
+# The path of a file that is not the node's: of a library, or of the agent under which it runs.
+LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop_grading/agent/")
 TRACEBACK = 40  # lines before the error in which its place is looked for
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 
