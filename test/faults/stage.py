@@ -157,6 +157,7 @@ class MessageStage:
         self.now_ns = 0
         self.pose, self.twist = Pose2D(), Twist2D()
         self.answered_ns = -1
+        self._ended = {}  # connections of servers that have ended, by the identities of their headers
         self.change_odom = self.change_scan = lambda message: message  # returns a message, or None for none
         self._clock = publisher("/clock", Clock)
         self._odom = publisher("/odom", Odometry)
@@ -274,10 +275,16 @@ class MessageStage:
         begin = self.now + REST
         self.pass_time(REST + TICK)
         self.client.require_rest_since(begin)
-        commands = self.client.commands  # of another connection than the answers, by which the robot moves
-        wait_for(lambda: not commands or commands[-1] == Twist(), "a last command that stops the robot")
+        # It comes by another connection than the answers, by which the robot moves.
+        wait_for(lambda: self._last_command() == Twist(), "a last command that stops the robot")
+
+    def _last_command(self):
+        """Of a server that has not ended; a stop if there is none."""
+        living = [one for one in list(self.client.commands) if id(one._connection_header) not in self._ended]
+        return living[-1] if living else Twist()
 
     def require_rest_without_server(self):
         """A robot of messages is stopped here, as by a command timeout."""
         self.twist = Twist2D()
-        self.client.commands.clear()
+        headers = [message._connection_header for message in list(self.client.commands)]
+        self._ended.update((id(header), header) for header in headers)
