@@ -94,9 +94,18 @@ def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
     assert "PREEMPTED: PREEMPTED: " in command.output
 
 
+def test_unknown_world_is_a_wrong_argument_and_nothing_is_started(goto):
+    command = goto("1", "0", "--world", "stag_1")
+    assert command.wait_for_exit() == 2
+    assert "--world: there is no world 'stag_1'" in command.output
+    assert "did you mean stage_1?" in command.output and "starting" not in command.output
+
+
 @pytest.mark.slow
-def test_unknown_world_is_reported_with_the_log_to_read(goto):
-    command = goto("1", "0", "--world", "no_such")
+def test_world_that_cannot_be_read_is_reported_with_the_log_to_read(goto, tmp_path):
+    world = tmp_path / "half.sdf"
+    world.write_text("<sdf version='1.6'><world")
+    command = goto("1", "0", "--world", str(world))
     assert command.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in command.output
+    assert f"{world}:1:" in command.output
     assert "robocop_goto.log" in command.output

@@ -218,6 +218,24 @@ def setup(parts: List[str]) -> None:
     say(f"ready in {program.state()}; ./robocop run starts the lab")
 
 
+def show_help(commands: List[str]) -> None:
+    """What the help text says about commands."""
+    for command in commands:
+        print(completion.described().get(command) or refuse_unknown(command), end="")
+
+
+def refuse_unknown(command: str) -> NoReturn:
+    """End with an error for a command that does not exist."""
+    hint = did_you_mean(command, completion.described())
+    say(f"unknown command '{command}' (./robocop help lists them){hint}")
+    sys.exit(UNKNOWN_COMMAND)
+
+
+def no_arguments(arguments: List[str]) -> None:
+    """End with an error: the shell script itself removes what was built, if there are none."""
+    refuse(f"clean: expected no arguments, got {' '.join(arguments)}")
+
+
 def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
     """The command that passes its arguments on to one of the package's scripts, which needs these parts."""
 
@@ -228,7 +246,7 @@ def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
     return start_script
 
 
-# What the words of help.txt do, without those that the shell script does itself.
+# What the words of help.txt do; without arguments, the shell script does the last two itself.
 COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "run": run,
     "sim": sim,
@@ -252,6 +270,8 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "version": lambda _: print(program.version()),
     "--version": lambda _: print(program.version()),
     "completion": lambda _: print(completion.completion(), end=""),
+    "clean": no_arguments,
+    "help": show_help,
 }
 OWN_HELP = ("goto", "teleop", "new", "grade", "grade-class", "bench", "test", "shell")  # they read --help themselves
 
@@ -260,9 +280,7 @@ def main(words: Sequence[str]) -> None:
     """Do what a command and its arguments say."""
     command, *arguments = words
     if command not in COMMANDS:
-        hint = did_you_mean(command, completion.options())
-        say(f"unknown command '{command}' (./robocop help lists them){hint}")
-        sys.exit(UNKNOWN_COMMAND)
+        refuse_unknown(command)
     if command not in OWN_HELP and {"-h", "--help"} & set(arguments):
         print(completion.described().get(command, ""), end="")
         return

@@ -4,24 +4,36 @@
 #   _robocop_options    the options of each command
 #   _robocop_arguments  the launch arguments of those that have some
 
+# World names that begin with $1, and files.
+_robocop_worlds() {
+  _robocop_names worlds .sdf "$1"
+  mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -W random -- "$1")
+  mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "$1")
+  compopt -o filenames
+}
+
+# $1: a folder of the checkout, $2: an extension, $3: the word so far; the names of the files, without it.
+_robocop_names() {
+  local values; values=$(cd "$_robocop_root/$1" && printf '%s ' *"$2")
+  mapfile -t COMPREPLY < <(compgen -W "${values//$2/}" -- "$3")
+}
+
 # Launch arguments with their values: $1 is the word so far, NAME or NAME:=VALUE; $2 the command.
 _robocop_launch_arguments() {
-  local values="" start=${1%"${1##*[:=]}"}
-  if [[ $1 != *:=* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "${_robocop_arguments[$2]}" -- "$1")
-    COMPREPLY=("${COMPREPLY[@]#"$start"}")
-    compopt -o nospace
-    return
-  fi
-  case ${1%%:=*} in
-    world) values="random $(cd "$_robocop_root/worlds" && printf '%s ' *.sdf)" ;;
-    model) values=$(cd "$_robocop_root/config/models" && printf '%s ' *.yaml) ;;
+  local start=${1%"${1##*[:=]}"} value=${1#*:=}
+  case $1 in
+    world:=*) _robocop_worlds "$value" ;;
+    model:=*) _robocop_names config/models .yaml "$value" ;;
+    *:=*)
+      mapfile -t COMPREPLY < <(compgen -f -- "$value")
+      compopt -o filenames
+      ;;
+    *)
+      mapfile -t COMPREPLY < <(compgen -W "${_robocop_arguments[$2]}" -- "$1")
+      COMPREPLY=("${COMPREPLY[@]#"$start"}")
+      compopt -o nospace
+      ;;
   esac
-  values=${values//.sdf/} values=${values//.yaml/}
-  mapfile -t COMPREPLY < <(compgen -W "$values" -- "${1#*:=}")
-  [ "${1%%:=*}" != model ] || return  # the others may be paths
-  mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "${1#*:=}")
-  compopt -o filenames
 }
 
 _robocop() {
@@ -37,6 +49,12 @@ _robocop() {
     _robocop_launch_arguments "$word" "$command"
   elif [ "$command" = shell ]; then
     mapfile -t COMPREPLY < <(compgen -c -- "$word")
+  elif [ "$command" = setup ]; then
+    _robocop_names deb-packages .txt "$word"
+  elif [ "$command" = help ]; then
+    mapfile -t COMPREPLY < <(compgen -W "${!_robocop_options[*]}" -- "$word")
+  elif [ "${COMP_WORDS[COMP_CWORD - 1]}" = --world ]; then
+    _robocop_worlds "$word"
   fi
   # The others take paths: readline completes them where there is no reply.
 }

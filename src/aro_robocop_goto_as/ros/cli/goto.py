@@ -16,11 +16,11 @@ import rosgraph
 import rospkg
 
 from ...bootstrap import master
-from ...errors import MasterError
+from ...errors import MasterError, RobocopError
 from ...process import child, orphans, signals
 from ...process.ports import free_port
-from ..names import COMMAND_VARIABLE, PACKAGE
-from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, complain, parse
+from ..names import COMMAND_VARIABLE, PACKAGE, SIMULATOR
+from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, WRONG_ARGUMENTS, complain, parse
 
 LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs
 END_PATIENCE = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
@@ -53,11 +53,18 @@ def _run(args: argparse.Namespace) -> int:
             f"--robot {args.robot}: no ROS master answers, and a simulator started for one goal has one robot only"
         )
         return NOT_REACHED
-    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
     arguments = ["rviz:=false", "bridge:=false"]
     if args.world:
         world = os.path.abspath(args.world) if os.path.isfile(args.world) else args.world
         arguments.append(f"world:={world}")
+        from . import preflight  # only where it is needed, as it takes time
+
+        try:
+            preflight.check({"world": world}, SIMULATOR)
+        except RobocopError as error:
+            complain(f"--world: {error}")
+            return WRONG_ARGUMENTS
+    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
     log = Path(rospkg.get_ros_home(), "robocop_goto.log")
     status = NOT_REACHED
     with _own_system(arguments, log) as system:

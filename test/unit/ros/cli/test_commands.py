@@ -15,9 +15,21 @@ LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_g
 
 
 def test_help_lists_every_command():
-    """With the two that the shell script does itself."""
     described = set(re.findall(r"(?m)^  ([a-z][a-z-]*)", robocop("help").stdout))
-    assert described == {*COMMANDS, "clean", "help"} - {"--version"}
+    assert described == {*COMMANDS} - {"--version"}
+
+
+def test_help_describes_the_commands_that_are_asked_for():
+    done = robocop("help", "run", "clean")
+    assert done.returncode == 0 and done.stdout == robocop("run", "-h").stdout + robocop("clean", "-h").stdout
+    unknown = robocop("help", "got")
+    assert unknown.returncode == 2 and "unknown command 'got'" in unknown.stderr
+
+
+def test_clean_with_an_argument_removes_nothing():
+    done = robocop("clean", "web", ROBOCOP_DRY_RUN="1")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == "robocop: clean: expected no arguments, got web\n"
 
 
 @pytest.mark.parametrize("words", [("run", "--help"), ("sim", "world:=stage_1", "-h"), ("grade-worker", "--help")])
@@ -32,7 +44,7 @@ def test_no_command_prints_the_beginning_of_the_help_which_names_every_command()
     overview = robocop().stdout
     assert robocop("help").stdout.startswith(overview) and len(overview.splitlines()) <= 16
     lists = re.findall(r"(?m)^    the? ?\w*:  +(.*)$|^    this checkout:  +(.*)$", overview)
-    assert set(" ".join(map("".join, lists)).split()) == {*COMMANDS, "clean"} - {"--version"}
+    assert set(" ".join(map("".join, lists)).split()) == {*COMMANDS} - {"--version", "help"}
 
 
 def test_unknown_command_is_refused_with_the_one_that_may_be_meant():

@@ -90,6 +90,11 @@ def shell(tmp_path_factory):
         ("grade my_package --rep", "grade my_package --report"),
         ("grade-class --work", "grade-class --workers"),
         ("setup --rep", "setup --rep"),
+        ("setup axc", "setup axclient"),
+        ("help goto", "help goto"),
+        ("help tel", "help teleop"),
+        ("goto 1 0 --world maz", "goto 1 0 --world maze_1"),
+        ("goto 1 0 --world my_m", "goto 1 0 --world my_maze.sdf"),
         ("shell rostop", "shell rostopic"),
     ],
 )
