@@ -11,7 +11,7 @@ from faults import ANY, DONE, STOPPED, drive, fault
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
 from rosgraph_msgs.msg import Clock
 from stage import TICK
-from system import BRIDGE, Violation, is_connected, publisher, wait_for
+from system import BRIDGE, Violation, is_connected, publisher, topics_received, wait_for
 from tf2_msgs.msg import TFMessage
 
 
@@ -19,8 +19,7 @@ from tf2_msgs.msg import TFMessage
 def second_publisher(e):
     """Somebody else publishes velocity commands during a goal, also impossible ones."""
     prefix = f"/{e.client.namespace}" if e.client.namespace else ""
-    topic = publisher(f"{prefix}/cmd_vel", Twist)
-    with contextlib.closing(_Closing(topic)):
+    with _other_publisher(e, f"{prefix}/cmd_vel", Twist) as topic:
         wait_for(lambda: is_connected(topic, rospy.get_name()), "the client receives the other commands, too")
         drive(e)
         twist = Twist()
@@ -33,9 +32,18 @@ def second_publisher(e):
     return ANY
 
 
-class _Closing:
-    def __init__(self, topic):
-        self.close = topic.unregister
+@contextlib.contextmanager
+def _other_publisher(e, name, kind):
+    """One more publisher of a topic; at the end, all nodes have received what it has sent."""
+    topic = publisher(name, kind)
+    try:
+        yield topic
+    finally:
+        topic.unregister()
+    for node in [process for process in e.system.processes if process.startswith("/")]:
+        wait_for(
+            lambda node=node: name not in topics_received(e.system, node), f"{node} receives nothing more on {name}"
+        )
 
 
 @fault("surroundings", costly=True)
@@ -89,8 +97,7 @@ def use_sim_time_changed(e):
 @fault("clock", needs="simulator", costly=True)
 def clock_of_another(e):
     """Another node publishes a clock, 10 s behind, an hour ahead, or both."""
-    topic = publisher("/clock", Clock)
-    with contextlib.closing(_Closing(topic)):
+    with _other_publisher(e, "/clock", Clock) as topic:
         for client in e.clients:
             wait_for(lambda c=client: is_connected(topic, c.server), "the server receives the other clock, too")
         drive(e)
@@ -99,14 +106,15 @@ def clock_of_another(e):
             topic.publish(Clock(rospy.Time.from_sec(max(0.0, e.stage.now + offset))))
             e.stage.pass_time(TICK)
         e.stage.wait_for(e.client.all_ended, "the goal's end beside another clock")
+    for client in e.clients:
+        client.ended_at = 0.0  # by the other clock, perhaps
     return ANY
 
 
 @fault("surroundings", needs="bridge")
 def tf_contradicting(e):
     """Other nodes publish transforms that contradict, loop, are impossible or an hour ahead; then comes a click."""
-    topic = publisher("/tf", TFMessage)
-    with contextlib.closing(_Closing(topic)):
+    with _other_publisher(e, "/tf", TFMessage) as topic:
         wait_for(lambda: is_connected(topic, f"/{BRIDGE}"), "the bridge receives the transforms")
         drive(e)
         for _ in range(20):

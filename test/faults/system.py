@@ -177,8 +177,17 @@ class System:
 
 def connections_from(system, node, to=CLIENT):
     """Topics that a node sends to another, or to this one, as it says itself; empty while it does not answer."""
+    return _topics(system, node, to, "o")
+
+
+def topics_received(system, node):
+    """Topics that a node receives from this one, as it says itself; empty while it does not answer."""
+    return _topics(system, node, rospy.get_node_uri(), "i")
+
+
+def _topics(system, node, end, direction):
     try:
-        return {link[4] for link in system.api(node).getBusInfo(CLIENT)[2] if link[1:3] == [to, "o"]}
+        return {link[4] for link in system.api(node).getBusInfo(CLIENT)[2] if link[1:3] == [end, direction]}
     except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
         return set()
 
