@@ -9,7 +9,7 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .command_limits import Limits, clamped
+from .command_limits import Limits
 from .model import Pair, RobotModel
 
 VERSION = 2  # of the structures that the library's functions take, as in fleet.h
@@ -53,7 +53,7 @@ class Fleet:
     """Commands, base controllers and true states of n robots; rows in the order of the robots, changed in place.
 
     radii: (n,) [m] of the footprints
-    commands, velocities: (n, 2) v [m/s], w [rad/s]: commanded, and reached by the base controllers
+    commands, velocities: (n, 2) v [m/s], w [rad/s]: commanded, within the limits, and reached by the base controllers
     commanded_at: (n,) [s] simulated time of the newest command
     targets: (n, 2) wheel speeds [rad/s] that the base controllers ask for, left and right
     poses: (n, 3) world_from_footprint: x, y [m], yaw [rad] within [-pi, pi]
@@ -65,7 +65,8 @@ class Fleet:
         """`limits` and `radii` [m]: one for each model."""
         n = len(models)
         self.models = tuple(models)
-        self.limits = np.array(limits, dtype=float).reshape(n, len(Limits._fields))
+        self.limits = tuple(limits)
+        self._limits = np.array(limits, dtype=float).reshape(n, len(Limits._fields))
         self.wheels = np.array([(model.wheel_radius, model.wheel_separation) for model in models]).reshape(n, 2)
         self.radii = np.array(radii, dtype=float)
         self.commands, self.commanded_at, self.velocities = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2))
@@ -73,7 +74,7 @@ class Fleet:
         self.wheel_angles, self.wheel_speeds = np.zeros((n, 2)), np.zeros((n, 2))
         self.struct = FleetStruct(
             n,
-            address("limits", self.limits, (n, len(Limits._fields))),
+            address("limits", self._limits, (n, len(Limits._fields))),
             address("wheels", self.wheels, (n, 2)),
             *(
                 address(name, getattr(self, name), (n, columns) if columns else (n,))
@@ -83,14 +84,6 @@ class Fleet:
 
     def __len__(self) -> int:
         return len(self.models)
-
-    def command(self, robot: int, command: Twist2D, now: float) -> None:
-        """Set a robot's command at a simulated time [s], clamped to its limits.
-
-        CommandError on NaN or infinity leaves the previous command in force.
-        """
-        self.commands[robot] = clamped(command, Limits(*self.limits[robot].tolist()))
-        self.commanded_at[robot] = now
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Put a robot at a pose, at rest and without a command; its wheels keep their angles."""

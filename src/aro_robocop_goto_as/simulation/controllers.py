@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import AbstractSet, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import AbstractSet, Callable, Dict, List, Optional, Tuple
 
 from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
@@ -20,11 +20,6 @@ STILL = 0.6
 NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
 # Whether a controller is kept from answering, for want of a processor, of which it may use so much [s].
 IsKept = Callable[[ControllerId, float], bool]
-
-
-class _Pending(NamedTuple):
-    controller: ControllerId
-    twist: Twist2D
 
 
 @dataclass
@@ -49,7 +44,8 @@ class Controllers:
         self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
         self._clock = clock
-        self._pending: Dict[int, _Pending] = {}  # lockstep: newest command of each robot, applied at the tick's end
+        # In lockstep the newest command of each robot, which is applied at the tick's end:
+        self._pending: Dict[int, Tuple[ControllerId, Twist2D]] = {}
         self._refused: List[CommandError] = []
         self._report = TickReport()
         self._held_since = self._next_look = 0.0  # [s, wall]
@@ -63,7 +59,7 @@ class Controllers:
         elif not self.lockstep.is_stamped(controller):  # which sends the same command with its answer
             self.lockstep.tick = self.tick
             self.lockstep.commanded(controller)
-            self._pending[controller.robot] = _Pending(controller, twist)
+            self._pending[controller.robot] = controller, twist
 
     def answer(self, controller: ControllerId, stamp_ns: int, twist: Optional[Twist2D]) -> None:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
@@ -72,7 +68,7 @@ class Controllers:
             return  # sent before a reset set simulated time back
         self.lockstep.answered(controller, tick)
         if twist is not None:
-            self._pending[controller.robot] = _Pending(controller, twist)
+            self._pending[controller.robot] = controller, twist
 
     @property
     def tick(self) -> int:
@@ -127,14 +123,14 @@ class Controllers:
                 self._report.gone.append(controller)
                 self.lockstep.gone(controller)
                 pending = self._pending.get(controller.robot)
-                if pending is None or pending.controller == controller:
-                    self._pending[controller.robot] = _Pending(controller, STANDSTILL)
+                if pending is None or pending[0] == controller:
+                    self._pending[controller.robot] = controller, STANDSTILL
 
     def end_tick(self) -> TickReport:
         """Apply the commands of the tick."""
         pending, self._pending = self._pending, {}
-        for robot, command in pending.items():
-            self._apply(robot, command.twist)
+        for robot, (_, twist) in pending.items():
+            self._apply(robot, twist)
         self._report.slower = [(name, self._rate / period) for name, period in self.lockstep.take_slower()]
         return self._report
 

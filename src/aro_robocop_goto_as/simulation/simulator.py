@@ -10,6 +10,7 @@ from ..geometry import Pose2D, Twist2D, compose, inverse
 from ..physics.engine import Engine
 from ..raycast.occupancy import occupancy_of
 from ..raycast.surroundings import Surroundings, body_heights
+from ..robot.command_limits import clamped
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
@@ -70,8 +71,12 @@ class Simulator:
     # -- steps --
 
     def command(self, twist: Twist2D, robot: int = 0) -> None:
-        """Set a robot's velocity command now, as Fleet.command."""
-        self.fleet.command(robot, twist, self.time)
+        """Set a robot's velocity command, clamped to its limits, from now on.
+
+        CommandError on NaN or infinity leaves the previous command in force.
+        """
+        self.fleet.commands[robot] = clamped(twist, self.fleet.limits[robot])
+        self.fleet.commanded_at[robot] = self.time
 
     def step(self, subscriptions: Subscriptions) -> Optional[Observations]:
         """Advance by one step, then measure what is due and subscribed to; None when nothing is due."""

@@ -9,7 +9,7 @@ import pytest
 from lxml import etree
 from support import ORIGIN, model_named, world_named
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.physics.bullet import BulletEngine
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
 from aro_robocop_goto_as.robot.command_limits import limits_from
@@ -65,7 +65,7 @@ def test_robot_is_where_it_is_placed_and_stays_there(engine: BulletEngine) -> No
 
 
 def test_base_stays_where_it_is_while_the_robot_turns_in_place(engine: BulletEngine) -> None:
-    engine.fleet.command(0, Twist2D(0.0, 1.0), 0.0)
+    engine.fleet.commands[0] = 0.0, 1.0
     places, speeds = [], []
     for step in range(0, 480, 24):
         engine.advance(step, 24)

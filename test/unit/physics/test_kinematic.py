@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from reference_fleet import MARGIN, after_arc, free_part, others
 from support import ORIGIN, model_named, world_named
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, wrap_angle
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, wrap_angle
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast import grid_index
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
@@ -56,8 +56,7 @@ def _kinematics(world: World, *spawns: Pose2D, rate: int = 30) -> KinematicEngin
 
 
 def _drive(engine: KinematicEngine, steps: int, *velocities: Tuple[float, float]) -> None:
-    for robot, (v, w) in enumerate(velocities):
-        engine.fleet.command(robot, Twist2D(v, w), 0.0)
+    engine.fleet.commands[: len(velocities)] = velocities
     engine.advance(0, steps)
 
 
@@ -218,7 +217,7 @@ def test_robots_of_different_heights_and_radii_are_blocked_by_what_is_at_their_h
     fleet = Fleet([model_named("burger"), model_named("waffle")], [AT_ONCE] * 2, [0.1, 0.2])
     engine = KinematicEngine(_world(bar, _post(1.5, 2.0, 0.1)), fleet, 30)
     engine.reset([ORIGIN, Pose2D(0.0, 2.0)])
-    fleet.command(1, Twist2D(1.0, 0.0), 0.0)
+    fleet.commands[1] = 1.0, 0.0
     _drive(engine, 60, (1.0, 0.0))
     assert fleet.poses[0, 0] == pytest.approx(0.95 - 0.1, abs=1e-4)
     assert fleet.poses[1, 0] == pytest.approx(1.4 - 0.2, abs=1e-4), "lower than the bar"

@@ -42,7 +42,7 @@ def test_velocities_and_wheel_speeds_are_those_of_the_definition(runs: List[Tupl
         velocity, step, reached, expected = np.zeros(2), 0, [], []
         most = limits.max_v, limits.max_w
         for command, steps in sent:
-            fleet.command(robot, command, step * DT)
+            fleet.commands[robot], fleet.commanded_at[robot] = clamped(command, limits), step * DT
             asked, since = np.clip(command, np.negative(most), most), step * DT
             for _ in range(steps):
                 step += 1
@@ -57,7 +57,7 @@ def test_velocities_and_wheel_speeds_are_those_of_the_definition(runs: List[Tupl
 
 def _forward_speed_after(limits: Limits, seconds: float) -> float:
     fleet = _fleet(limits)
-    fleet.command(0, Twist2D(0.2, 0.0), 0.0)
+    fleet.commands[0] = 0.2, 0.0
     for step in range(1, int(seconds / DT) + 1):
         _control(fleet, step * DT)
     return float(fleet.velocities[0, 0])

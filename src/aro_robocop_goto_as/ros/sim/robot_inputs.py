@@ -1,7 +1,7 @@
 """The topics on which robots are commanded: cmd_vel, and in lockstep the answers to control ticks."""
 
-import functools
 import threading
+from functools import partial
 from typing import Callable, Dict, Iterable, List, Optional, Set
 
 import rosgraph
@@ -79,7 +79,7 @@ class RobotInputs:
         self._simulation = simulation
         names = [robot.name for robot in simulation.simulator.robots]
         self._subscribers = [self._subscribe(robot, name) for robot, name in enumerate(names)]
-        self._answering = [AnsweringNodes(peer_of=functools.partial(self._peer, robot)) for robot in range(len(names))]
+        self._answering = [AnsweringNodes(peer_of=partial(self._peer, robot)) for robot in range(len(names))]
         self._peers: Dict[ControllerId, List[Peer]] = {}  # that are awaited at this control tick
 
     def _subscribe(self, robot: int, name: str) -> List[rospy.Subscriber]:
@@ -87,12 +87,12 @@ class RobotInputs:
 
         def on_command(message: Twist) -> None:
             controller, twist = ControllerId(robot, sender(message)), convert.from_twist_msg(message)
-            jobs.post(lambda: controllers.command(controller, twist))
+            jobs.post(partial(controllers.command, controller, twist))
 
         def on_answer(message: TickAnswer) -> None:
             controller, stamp_ns = ControllerId(robot, sender(message)), convert.to_ns(message.tick)
             twist = convert.from_twist_msg(message.command) if message.has_command else None
-            jobs.post(lambda: controllers.answer(controller, stamp_ns, twist))
+            jobs.post(partial(controllers.answer, controller, stamp_ns, twist))
 
         # TCP_NODELAY: otherwise the publisher's kernel may hold a command back for 40 ms, at ten times real time 0.4 s.
         subscribers = [rospy.Subscriber(prefixed(name, "cmd_vel"), Twist, on_command, tcp_nodelay=True)]
