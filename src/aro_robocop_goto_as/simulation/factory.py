@@ -39,7 +39,7 @@ def robots_from(p: RobotParams, world: World, load: Callable[[str], RobotModel])
 
 def make_simulator(p: SimParams, world: World, robots: Sequence[RobotSpec]) -> Simulator:
     """A simulator of these robots in this world, with limits and radii as given, else as their models have them."""
-    world = world if p.world.moving else world.without_motion()
+    world = world.with_motion(p.world.moving)
     models, radius = [robot.model for robot in robots], p.robots.footprint_radius
     radii = [model.figures.footprint_radius if radius is None else radius for model in models]
     fleet = Fleet(models, [limits_from(p.limits, model.figures) for model in models], radii)

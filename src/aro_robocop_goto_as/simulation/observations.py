@@ -75,7 +75,6 @@ class Observations:
             self._make_renderer = CameraRenderer
         self._renderer: Any = None  # a CameraRenderer of this world, made for the first image
         self._measures: Dict[str, Callable[[Robots], object]] = {
-            GROUND_TRUTH: lambda _: engine.update_fleet(),
             JOINTS: self._read_joints,
             ODOM: self._update_odometry,
             SCAN: self._scan,
@@ -89,9 +88,13 @@ class Observations:
         return self.due.sensors.get(sensor, ())
 
     def measures_of(self, names: Sequence[str], due: Subscriptions) -> Sequence[Callable[[], object]]:
-        """What measures these sensors, but for IMUs. Odometry is integrated whether or not anybody subscribes."""
-        measured = [name for name in names if name in self._measures and (name in due or name == ODOM)]
-        return [functools.partial(self._measures[name], due.get(name, ())) for name in measured]
+        """What measures these sensors, but for IMUs. Odometry is integrated whether or not anybody subscribes.
+
+        The fleet's rows, which are ground truth, are updated first, and no more often than something reads them.
+        """
+        measured = [name for name in names if name == ODOM or (name in due and name in self._measures)]
+        measures = [functools.partial(self._measures[name], due.get(name, ())) for name in measured]
+        return [self._engine.update_fleet, *measures] if measures or GROUND_TRUTH in due else []
 
     @property
     def world_time(self) -> float:
@@ -116,11 +119,9 @@ class Observations:
 
     def exact_distances(self, lidar: Lidar, robots: Robots) -> np.ndarray:
         """What scanners of this kind would measure now without noise and range_min: (r, n_beams) [m]; none: +inf."""
-        self._engine.update_fleet()
         return self.scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
 
     def _update_odometry(self, _robots: Robots) -> None:
-        self._engine.update_fleet()
         shape = len(self._models), 2
         self.odometry.update(self._noise_of(SLIP_STREAM).standard_normal(shape) if self.odometry.slipping else None)
         if self._p.topics.localization == "truth":
@@ -128,7 +129,6 @@ class Observations:
                 self.map_from_odom[robot] = compose(self.fleet.pose(robot), inverse(Pose2D(*pose)))
 
     def _read_joints(self, _robots: Robots) -> None:
-        self._engine.update_fleet()
         self.joint_angles[:] = self.odometry.joint_angles()
 
     def _read_bumpers(self, robots: Robots) -> None:

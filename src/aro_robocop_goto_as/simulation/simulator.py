@@ -11,6 +11,7 @@ from ..physics.engine import Engine
 from ..raycast.occupancy import occupancy_of
 from ..raycast.surroundings import Surroundings, body_heights
 from ..robot.command_limits import clamped
+from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
@@ -33,7 +34,6 @@ class Simulator:
         self.steps = 0
         self.rate = p.rates.physics_rate  # [Hz]
         self.engine = engine
-        self.fleet = engine.fleet  # up to date after engine.update_fleet()
         self.observed = Observations(p, world, engine)
         self.lidar = self.observed.lidar
         rates = _rates(p)
@@ -75,8 +75,8 @@ class Simulator:
 
         CommandError on NaN or infinity leaves the previous command in force.
         """
-        self.fleet.commands[robot] = clamped(twist, self.fleet.limits[robot])
-        self.fleet.commanded_at[robot] = self.time
+        fleet = self.engine.fleet
+        fleet.commands[robot], fleet.commanded_at[robot] = clamped(twist, fleet.limits[robot]), self.time
 
     def step(self, subscriptions: Subscriptions) -> Optional[Observations]:
         """Advance by one step, then measure what is due and subscribed to; None when nothing is due."""
@@ -127,8 +127,15 @@ class Simulator:
 
     # -- the state of the world and of its robots --
 
+    @property
+    def fleet(self) -> Fleet:
+        """The robots' commands and true states, after the last step."""
+        self.engine.update_fleet()
+        return self.engine.fleet
+
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
+        self.engine.update_fleet()
         return self.observed.exact_distances(self.lidar, [robot])[0]
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
@@ -137,12 +144,10 @@ class Simulator:
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
-        self.engine.update_fleet()
         return self.fleet.pose(robot)
 
     def velocity(self, robot: int = 0) -> Twist2D:
         """The robot's true velocity after the last step."""
-        self.engine.update_fleet()
         return self.fleet.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
@@ -172,7 +177,7 @@ class Simulator:
 
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
-        self.world = world if self.p.world.moving else world.without_motion()
+        self.world = world.with_motion(self.p.world.moving)
         self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
         self.engine.change_world(self.world, self.world_time)
@@ -192,8 +197,8 @@ class Simulator:
 
     def require_room(self, pose: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
-        self.engine.update_fleet()
-        x, y, radii = pose.x, pose.y, self.fleet.radii.tolist()
+        x, y, fleet = pose.x, pose.y, self.fleet
+        radii = fleet.radii.tolist()
         nearest = Surroundings(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
         if nearest.distance < radii[robot]:
             raise PlaceError(
@@ -201,7 +206,7 @@ class Simulator:
                 f"radius of {radii[robot]:g} m"
             )
         for index, other in enumerate(self.robots):
-            stands = self.fleet.pose(index)
+            stands = fleet.pose(index)
             distance, least = math.hypot(stands.x - x, stands.y - y), radii[robot] + radii[index]
             if index != robot and distance < least:
                 raise PlaceError(

@@ -10,7 +10,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from ..geometry import Pose2D, Pose3D, compose, inverse, rotation_matrix
-from .model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, World
+from .model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 LOW = 0.2  # [m] above z = 0: the highest top of a slab that is ground
 LARGE = 3.0  # [m] the shortest side of a slab that is ground
@@ -48,7 +48,11 @@ def top(obstacle: Obstacle) -> float:
     if isinstance(shape, Cylinder):
         upwards = min(abs(float(turn[2, 2])), 1.0)
         return z + upwards * shape.length / 2.0 + math.sqrt(1.0 - upwards**2) * shape.radius
-    return z + (shape.radius if isinstance(shape, Sphere) else shape.height)
+    if isinstance(shape, Sphere):
+        return z + shape.radius
+    if isinstance(shape, Walls):
+        return z + shape.height
+    raise TypeError(f"no top for {shape!r}")
 
 
 def is_in_ground(obstacle: Obstacle) -> bool:

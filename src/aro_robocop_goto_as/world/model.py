@@ -151,8 +151,10 @@ class World:
         """The obstacles that move."""
         return tuple(obstacle for obstacle in self.obstacles if obstacle.motion is not None)
 
-    def without_motion(self) -> "World":
-        """The same world with all obstacles at rest. Obstacles that never move stay the same objects."""
+    def with_motion(self, enabled: bool) -> "World":
+        """This world, at rest unless motion is enabled; obstacles that never move stay the same objects."""
+        if enabled:
+            return self
         return replace(
             self, obstacles=tuple(o if o.motion is None else replace(o, motion=None) for o in self.obstacles)
         )

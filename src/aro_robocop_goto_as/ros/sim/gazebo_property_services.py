@@ -101,7 +101,6 @@ class GazeboProperties:
         robot, _, joint = request.joint_name.rpartition("::")
         if joint not in WHEEL_JOINTS:
             raise FrameError(f"joint [{request.joint_name}] does not exist; there are: {', '.join(WHEEL_JOINTS)}")
-        self._simulator.engine.update_fleet()
         state = self._simulator.fleet.state(self._robot(robot) if robot else 0)
         side = WHEEL_JOINTS.index(joint)
         return {

@@ -76,9 +76,8 @@ def robot_names(simulator: Simulator) -> List[str]:
 
 
 def _robots(simulator: Simulator) -> Iterator[Tuple[str, RobotModel, RobotState]]:
-    simulator.engine.update_fleet()
-    states = map(simulator.fleet.state, range(len(simulator.robots)))
-    return zip(robot_names(simulator), simulator.fleet.models, states)
+    fleet = simulator.fleet
+    return zip(robot_names(simulator), fleet.models, map(fleet.state, range(len(fleet))))
 
 
 def _world_twist(state: RobotState) -> Twist:
