@@ -7,7 +7,7 @@ return to a publisher that has closed the connection, so it stays open, and what
 import ctypes
 import errno
 import socket
-from typing import Any, Optional, Tuple
+from typing import Any, Optional
 
 import rospy
 
@@ -62,17 +62,9 @@ class Outlet:
         left = message[max(0, taken) :]
         if self.push_rest():
             took = self._take(left, socket.MSG_DONTWAIT)
-            left = left[took:]
-            reads = bool(took) or (patient and not self.stands_still)
-            if left and not reads and not self.stands_still:
-                took, reads = self._take_at_last(left)
-                left = left[took:]
-            while left and reads:
-                took, reads = self._take(left), True
-                left = left[took:]
-                if not took:
-                    took, reads = self._take_at_last(left)
-                    left = left[took:]
+            left, reads = left[took:], took > 0
+            if reads or not self.stands_still:
+                left = self._send(left, reads or patient)
             self._rest = b"" if len(left) == len(message) else bytes(left)
         self._peer = None
         self._note(not left)
@@ -91,12 +83,16 @@ class Outlet:
         except BlockingIOError:
             return 0
 
-    def _take_at_last(self, data: memoryview) -> Tuple[int, bool]:
-        """The number of bytes that the socket takes now, and whether it may take more if it is waited for."""
-        if self._is_kept_from_reading():
-            return 0, True
-        took = self._take(data, socket.MSG_DONTWAIT)  # it may have got a processor, and read, just before that look
-        return took, bool(took)
+    def _send(self, left: memoryview, reads: bool) -> memoryview:
+        """Send data for as long as the subscriber reads, or is kept from it; returns what is left."""
+        while left:
+            waits = reads or self._is_kept_from_reading()
+            # Even if nothing is to be waited for: it may have got a processor, and read, just before that look.
+            took = self._take(left, 0 if waits else socket.MSG_DONTWAIT)
+            if not (took or waits):
+                break
+            left, reads = left[took:], took > 0
+        return left
 
     def _is_kept_from_reading(self) -> bool:
         """Whether its process waits for a processor, as far as is known."""
