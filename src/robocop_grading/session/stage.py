@@ -21,6 +21,7 @@ from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, TF, Observations, Subscriptions
 from aro_robocop_goto_as.simulation.simulation import Simulation
+from aro_robocop_goto_as.simulation.simulator import CLOCK
 
 from .. import record as rec
 from ..handout import AHEAD
@@ -60,7 +61,7 @@ class Stage:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(plan), [robot])
         self.simulation = Simulation(self.sim)
-        self._topics = StepTopics(self.sim, hidden={JOINTS})
+        self._topics = StepTopics(self.sim, hidden={JOINTS, CLOCK})
         self.robot = self._topics.robots[0]
         self.odd_scan = False
         self.bag = ScenarioBag(self.sim, self.robot, PARAMS.frames)
@@ -178,7 +179,7 @@ class Stage:
             self.watch.observe(observed, self._real_time)
         if self.odd_scan and observed.of(SCAN):
             _make_odd(observed.scans[0])
-        self._topics.publish(observed, clock=False)
+        self._topics.publish(observed)
         self._topics.count()  # the agent is told how much was sent
         if self.watch is not None and observed.of(TF):
             self.watch.tf.publish(self.robot.transform_messages(stamp))

@@ -7,7 +7,6 @@ import rospy
 
 from ...errors import ParameterError
 from ...sim_params import SimParams, TopicParams
-from ...simulation.observations import Observations
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
 from ..names import SIMULATOR
@@ -63,7 +62,11 @@ class SimNode:
         while not rospy.is_shutdown():
             observed = simulator.advance(subscriptions, time.steps_left(simulator.steps))
             if observed is not None:
-                self._publish_step(observed)
+                if observed.due.control and simulator.moving:
+                    self._world.publish_moving()
+                if observed.due.clock and self._gazebo is not None:
+                    self._gazebo.publish()
+                self._topics.publish(observed, time.runs_on(simulator.steps))
                 if observed.due.control and controllers.in_lockstep:
                     self._await_controllers()
             if time.end_span(simulator.steps) or (observed is not None and observed.due.clock):
@@ -120,17 +123,7 @@ class SimNode:
             self._topics.count()
             resume()
 
-    # -- publishing --
-
-    def _publish_step(self, observed: Observations) -> None:
-        """All of one step with its stamp."""
-        if observed.due.control and self._simulator.moving:
-            self._world.publish_moving()
-        if observed.due.clock and self._gazebo is not None:
-            self._gazebo.publish()
-        time, steps = self._simulation.time_control, self._simulator.steps
-        unheld = time.pacer.factor == 0.0 and time.steps_left(steps) > 0
-        self._topics.publish(observed, observed.due.clock, on_the_way=unheld and not observed.due.control)
+    # -- what is published other than by a step --
 
     def _publish_changes(self) -> None:
         """Publish anew what has changed other than by a step."""

@@ -14,7 +14,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
 from ...simulation.observations import TF, Due, Observations, Subscriptions
-from ...simulation.simulator import Simulator
+from ...simulation.simulator import CLOCK, Simulator
 from .. import convert
 from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
@@ -29,7 +29,7 @@ class StepTopics:
     """What is sent on steps on which the same is due is put together once, until the subscribers change."""
 
     def __init__(self, simulator: Simulator, hidden: AbstractSet[str] = frozenset()) -> None:
-        """`hidden`: sensors that are not published."""
+        """`hidden`: sensors that are not published, and CLOCK if /clock is not published with the steps."""
         self._simulator, self._hidden = simulator, hidden
         self._tf = publisher("/tf", TFMessage, on_change=self._on_change)
         self._tf_static = publisher("/tf_static", TFMessage, latch=True)
@@ -39,7 +39,7 @@ class StepTopics:
         set_latched(self._clock, self._clock_message)
         self._changed = True
         self._subscriptions: Subscriptions = {}
-        self._batches: Dict[Tuple[Due, int, bool], Tuple[Sequence[Callable[[], None]], Batch]] = {}
+        self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
         self._sensors_at_ticks = simulator.sensors_at_control_ticks()
         self._kept_since = 0.0  # [s, wall] since when the kernel may keep messages; 0: it does not
@@ -63,25 +63,35 @@ class StepTopics:
             self._subscriptions = subscriptions
         return self._subscriptions
 
-    def publish(self, observed: Observations, clock: bool, on_the_way: bool = False) -> None:
-        """All measurements of one step; then the clock, if wanted, so that a tick's data is there when it ticks.
+    def publish(self, observed: Observations, runs_on: bool = False) -> None:
+        """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
 
-        On the way to a control tick the messages may be kept until the tick's are sent, if the same topics have some
-        then and no more than KEPT passes, or until push().
+        `runs_on`: simulated time does not wait for the wall clock after this step.
         """
-        key = observed.due, observed.scans.shape[1], clock
+        due = observed.due
+        key = due, observed.scans.shape[1]
         if key not in self._batches:
-            self._batches[key] = self._prepared(observed.due, clock)
+            self._batches[key] = self._prepared(due)
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
-        now = time.monotonic()
-        more = on_the_way and self._sensors_at_ticks.issuperset(observed.due.sensors)
-        more = more and (not self._kept_since or now - self._kept_since < KEPT)
-        if not more and not observed.due.control:  # a control tick's messages take with them what is kept
+        keep = runs_on and self._may_keep(due)
+        if due.control:  # its messages take with them what is kept
+            self._kept_since = 0.0
+        elif not keep:
             self.push()
-        self._kept_since = (self._kept_since or now) if more else 0.0
-        batch.send(observed.stamp_ns, more)
+        batch.send(observed.stamp_ns, keep)
+
+    def _may_keep(self, due: Due) -> bool:
+        """Whether the kernel may keep the messages of a step until those of the next control tick are sent.
+
+        It may if the same topics have some then, for no longer than KEPT and not beyond push().
+        """
+        if due.control or not self._sensors_at_ticks.issuperset(due.sensors):
+            return False
+        now = time.monotonic()
+        self._kept_since = self._kept_since or now
+        return now - self._kept_since < KEPT
 
     def publish_static(self) -> Sequence[TransformStamped]:
         """world -> map, and each robot's map -> odom where that is static; returns what was sent."""
@@ -112,7 +122,7 @@ class StepTopics:
         for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
             batch.count()
 
-    def _prepared(self, due: Due, clock: bool) -> Tuple[Sequence[Callable[[], None]], Batch]:
+    def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
         """What publishes the measurements that are not packed, and the batch of all others."""
         unpacked: List[Callable[[], None]] = []
         messages: List[Posted] = []
@@ -128,4 +138,5 @@ class StepTopics:
                     unpacked.append(partial(robot.publish, sensor))
                 else:
                     messages.append((robot.topics[sensor], message))
-        return unpacked, Batch(messages, [(self._clock, self._clock_message)] if clock else [])
+        with_clock = due.clock and CLOCK not in self._hidden
+        return unpacked, Batch(messages, [(self._clock, self._clock_message)] if with_clock else [])

@@ -29,12 +29,12 @@ def _calls(monkeypatch: pytest.MonkeyPatch, clock: List[float]) -> Calls:
     return made
 
 
-def publish(topics: StepTopics, calls: Calls, sensor: str, control: bool, on_the_way: bool) -> None:
+def publish(topics: StepTopics, calls: Calls, sensor: str, control: bool = False, runs_on: bool = True) -> None:
     """A step with one sensor and the clock."""
     observed: Any = SimpleNamespace(due=Due(True, control, {sensor: [0]}), scans=np.zeros((1, 3)), stamp_ns=0)
     batch: Any = SimpleNamespace(send=lambda _stamp, more: calls.append((sensor, more)))
-    topics._batches = {(observed.due, 3, True): ([], batch)}
-    topics.publish(observed, True, on_the_way)
+    topics._batches = {(observed.due, 3): ([], batch)}
+    topics.publish(observed, runs_on)
 
 
 def topics_of_no_robots() -> StepTopics:
@@ -46,22 +46,22 @@ def topics_of_no_robots() -> StepTopics:
 
 def test_messages_on_the_way_are_kept_and_those_of_the_tick_are_not(calls: Calls) -> None:
     topics = topics_of_no_robots()
-    publish(topics, calls, ODOM, control=False, on_the_way=True)
-    publish(topics, calls, ODOM, control=True, on_the_way=False)
+    publish(topics, calls, ODOM)
+    publish(topics, calls, ODOM, control=True)
     topics.push()
     assert calls == [(ODOM, True), (ODOM, False)]
 
 
 def test_what_is_kept_is_sent_before_a_step_with_a_sensor_that_is_not_due_on_each_tick(calls: Calls) -> None:
     topics = topics_of_no_robots()
-    publish(topics, calls, ODOM, control=False, on_the_way=True)
-    publish(topics, calls, JOINTS, control=False, on_the_way=True)
+    publish(topics, calls, ODOM)
+    publish(topics, calls, JOINTS)
     assert calls == [(ODOM, True), ("push",), (JOINTS, False)]
 
 
 def test_what_is_kept_is_pushed_once(calls: Calls) -> None:
     topics = topics_of_no_robots()
-    publish(topics, calls, SCAN, control=False, on_the_way=True)
+    publish(topics, calls, SCAN)
     topics.push()
     topics.push()
     assert calls == [(SCAN, True), ("push",)]
@@ -71,5 +71,5 @@ def test_no_message_is_kept_for_more_than_a_millisecond(calls: Calls, clock: Lis
     topics = topics_of_no_robots()
     for step_time in (0.0, 0.0006, 0.0006, 0.0006):
         clock[0] += step_time
-        publish(topics, calls, ODOM, control=False, on_the_way=True)
+        publish(topics, calls, ODOM)
     assert calls == [(ODOM, True), (ODOM, True), ("push",), (ODOM, False), (ODOM, True)]
