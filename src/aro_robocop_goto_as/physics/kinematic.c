@@ -13,7 +13,7 @@
 #define NEARBY 1.0  /* [m] the range within which walls are looked up in a grid */
 
 /* A world's cross-sections at all heights of a robot's body, in one plane. */
-struct outlines {
+struct body_section {
     const double *segments;  /* (n_segments, 2, 2) [m] */
     const struct grid *grid; /* of the segments */
     int64_t n_circles;
@@ -22,12 +22,12 @@ struct outlines {
 
 struct kinematic {
     struct fleet *fleet;
-    const struct outlines *walls;
-    const int64_t *walls_of; /* (n,) index of each robot's walls */
-    double *free_travel;      /* (n,) [m] that a robot can travel before walls must be looked at; a lower bound */
-    uint8_t *blocked;        /* (n,) whether a robot was blocked or pushed in its last step */
-    uint8_t *crowded;        /* (n,) whether a robot may meet another one in this step */
-    double separation;       /* [m] that any two robots can travel together before they meet; a lower bound */
+    const struct body_section *sections;
+    const int64_t *section_of; /* (n,) index of the one that each robot's body meets */
+    double *free_travel;       /* (n,) [m] that a robot can travel before walls must be looked at; a lower bound */
+    uint8_t *blocked;          /* (n,) whether a robot was blocked or pushed in its last step */
+    uint8_t *crowded;          /* (n,) whether a robot may meet another one in this step */
+    double separation;         /* [m] that any two robots can travel together before they meet; a lower bound */
 };
 
 /* A displacement of a disc, and the fraction of it that is free as far as is known. */
@@ -47,19 +47,19 @@ static void tiles_between(double low, double high, double side, int64_t count, i
 }
 
 /* Visit the segments [ax, ay, bx, by] [m] within a square of half a side [m] around a point, perhaps others, some twice. */
-static void visit_near(const struct outlines *walls, double x, double y, double half,
+static void visit_near(const struct body_section *section, double x, double y, double half,
                        void (*visit)(void *context, const double *segment), void *context)
 {
-    const struct grid *grid = walls->grid;
+    const struct grid *grid = section->grid;
     int64_t row, last_row, column, last_column, k;
     tiles_between(x - half - grid->x, x + half - grid->x, grid->side, grid->columns, &column, &last_column);
     tiles_between(y - half - grid->y, y + half - grid->y, grid->side, grid->rows, &row, &last_row);
     for (k = 0; k < grid->n_everywhere; k++)
-        visit(context, walls->segments + 4 * (int64_t)grid->everywhere[k]);
+        visit(context, section->segments + 4 * (int64_t)grid->everywhere[k]);
     for (; row <= last_row && column <= last_column; row++) {
         const int32_t *starts = grid->starts + row * grid->columns;
         for (k = starts[column]; k < starts[last_column + 1]; k++)
-            visit(context, walls->segments + 4 * (int64_t)grid->members[k]);
+            visit(context, section->segments + 4 * (int64_t)grid->members[k]);
     }
 }
 
@@ -80,12 +80,12 @@ static void compare_distance(void *context, const double *segment)
 /* Distance [m] from a robot's rim to the nearest wall, at most NEARBY; negative inside a wall. */
 static double gap(const struct kinematic *kin, int64_t robot, double length)
 {
-    const struct outlines *walls = kin->walls + kin->walls_of[robot];
+    const struct body_section *section = kin->sections + kin->section_of[robot];
     const double *pose = kin->fleet->poses + 3 * robot, *circle;
     double radius = kin->fleet->radii[robot];
     struct nearest nearest = {pose[0], pose[1], radius + NEARBY};
-    visit_near(walls, pose[0], pose[1], radius + length + NEARBY, compare_distance, &nearest);
-    for (circle = walls->circles; circle < walls->circles + 3 * walls->n_circles; circle += 3)
+    visit_near(section, pose[0], pose[1], radius + length + NEARBY, compare_distance, &nearest);
+    for (circle = section->circles; circle < section->circles + 3 * section->n_circles; circle += 3)
         nearest.distance = fmin(nearest.distance, hypot(circle[0] - pose[0], circle[1] - pose[1]) - circle[2]);
     return nearest.distance - radius;
 }
@@ -136,16 +136,16 @@ static void keep_margin(struct motion *motion, double before)
 /* Stop a robot's motion at walls, and renew its free travel. */
 static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *motion)
 {
-    const struct outlines *walls = kin->walls + kin->walls_of[robot];
+    const struct body_section *section = kin->sections + kin->section_of[robot];
     double room = gap(kin, robot, motion->length) - MARGIN, before = motion->free;
     const double *circle;
     kin->free_travel[robot] = room - motion->length;
     if (room >= motion->length)
         return;
     motion->free = 1.0;
-    for (circle = walls->circles; circle < walls->circles + 3 * walls->n_circles; circle += 3)
+    for (circle = section->circles; circle < section->circles + 3 * section->n_circles; circle += 3)
         stop_at_circle(motion, circle[0], circle[1], circle[2] + motion->radius);
-    visit_near(walls, motion->x, motion->y, motion->radius + motion->length + NEARBY, stop_at_segment, motion);
+    visit_near(section, motion->x, motion->y, motion->radius + motion->length + NEARBY, stop_at_segment, motion);
     keep_margin(motion, before);
 }
 
@@ -255,14 +255,14 @@ void aro_kinematic_push(struct kinematic *kin, double travelled)
     struct fleet *fleet = kin->fleet;
     int64_t i, k;
     for (i = 0; i < fleet->n; i++) {
-        const struct outlines *walls = kin->walls + kin->walls_of[i];
+        const struct body_section *section = kin->sections + kin->section_of[i];
         double *pose = fleet->poses + 3 * i, deepest = 0.0, away = 0.0;
         struct motion motion = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
         kin->free_travel[i] -= travelled;
         if (kin->free_travel[i] >= 0.0)
             continue;
-        for (k = 0; k < walls->n_circles; k++) {
-            const double *circle = walls->circles + 3 * k;
+        for (k = 0; k < section->n_circles; k++) {
+            const double *circle = section->circles + 3 * k;
             double dx = pose[0] - circle[0], dy = pose[1] - circle[1], distance = hypot(dx, dy);
             double depth = circle[2] + fleet->radii[i] + MARGIN - distance;
             if (depth > deepest) {

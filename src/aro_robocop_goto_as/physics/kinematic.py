@@ -23,8 +23,8 @@ from ..robot.model import BodyState
 from ..world.model import World
 
 
-class _OutlinesStruct(ctypes.Structure):
-    """`struct outlines` of kinematic.c."""
+class _BodySectionStruct(ctypes.Structure):
+    """`struct body_section` of kinematic.c."""
 
     _fields_ = [
         ("segments", ctypes.c_void_p),
@@ -39,29 +39,31 @@ class _KinematicStruct(ctypes.Structure):
 
     _fields_ = [
         ("fleet", ctypes.POINTER(FleetStruct)),
-        ("walls", ctypes.POINTER(_OutlinesStruct)),
-        *members(ctypes.c_void_p, "walls_of free_travel blocked crowded"),
+        ("sections", ctypes.POINTER(_BodySectionStruct)),
+        *members(ctypes.c_void_p, "section_of free_travel blocked crowded"),
         ("separation", ctypes.c_double),
     ]
 
 
-class _Outlines:
-    """The union of a world's cross-sections at several heights [m]: indexed segments, and circles."""
+class _BodySection:
+    """What a robot's body can meet: the union of a world's cross-sections at several heights [m], indexed."""
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float) -> None:
         sections = [CrossSection(world, height) for height in heights]
-        self._segments = np.unique(np.concatenate([cut.segments for cut in sections]), axis=0)
+        self._segments = np.unique(np.concatenate([section.segments for section in sections]), axis=0)
         self._tiles = Tiles(self._segments)
         # A pillar is cut at several heights; once each is enough. Motions compare by their values.
         found = dict.fromkeys(
-            (*circle, motion) for cut in sections for circle, motion in zip(cut.circles.tolist(), cut.motions)
+            (*circle, motion)
+            for section in sections
+            for circle, motion in zip(section.circles.tolist(), section.motions)
         )
         self._circles = np.array([entry[:3] for entry in found], dtype=float).reshape(-1, 3)
         motions = enumerate(entry[3] for entry in found)
         self._movers = Movers(self._circles, [(row, motion) for row, motion in motions if motion is not None])
         self.move = self._movers.move
         self.move(time)
-        self.struct = _OutlinesStruct(
+        self.struct = _BodySectionStruct(
             address("segments", self._segments, (None, 2, 2)),
             ctypes.pointer(self._tiles.struct),
             len(self._circles),
@@ -77,16 +79,15 @@ class KinematicEngine:
         n = len(fleet)
         self.fleet = fleet
         self._rate = rate
-        self._heights = [body_heights(model) for model in fleet.models]
-        kinds = sorted(set(self._heights))
-        self._kinds = kinds
-        self._walls_of = np.array([kinds.index(heights) for heights in self._heights], dtype=np.int64)
+        heights = [body_heights(model) for model in fleet.models]
+        self._heights = sorted(set(heights))
+        self._section_of = np.array([self._heights.index(of_one) for of_one in heights], dtype=np.int64)
         self._free_travel, self._blocked, self._crowded = np.zeros(n), np.zeros(n, np.uint8), np.zeros(n, np.uint8)
         self._library = library()
         self._struct = _KinematicStruct(
             ctypes.pointer(fleet.struct),
             None,
-            address("walls_of", self._walls_of, (n,), np.int64),
+            address("section_of", self._section_of, (n,), np.int64),
             address("free_travel", self._free_travel, (n,)),
             address("blocked", self._blocked, (n,), np.uint8),
             address("crowded", self._crowded, (n,), np.uint8),
@@ -96,9 +97,9 @@ class KinematicEngine:
 
     def change_world(self, world: World, time: float) -> None:
         """Replace the world by another one, with its moving obstacles as they are at a time [s]."""
-        self._walls = [_Outlines(world, heights, time) for heights in self._kinds]
-        self._structs = (_OutlinesStruct * len(self._walls))(*(walls.struct for walls in self._walls))
-        self._struct.walls = self._structs
+        self._sections = [_BodySection(world, heights, time) for heights in self._heights]
+        self._structs = (_BodySectionStruct * len(self._sections))(*(section.struct for section in self._sections))
+        self._struct.sections = self._structs
         self._free_travel[:] = 0.0
 
     def advance(self, first: int, steps: int) -> None:
@@ -113,7 +114,7 @@ class KinematicEngine:
 
         Robots in their way are pushed, but not into walls or other robots.
         """
-        travelled = max([walls.move(time) for walls in self._walls], default=0.0)
+        travelled = max([section.move(time) for section in self._sections], default=0.0)
         self._library.aro_kinematic_push(self._pointer, travelled)
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
@@ -124,8 +125,8 @@ class KinematicEngine:
 
     def reset(self, poses: Sequence[Pose2D]) -> None:
         """Place all robots at rest at these poses, wheels at angle 0, with moving obstacles back at their start."""
-        for walls in self._walls:
-            walls.move(0.0)
+        for section in self._sections:
+            section.move(0.0)
         self.fleet.wheel_angles[:] = 0.0
         for robot, pose in enumerate(poses):
             self.place(robot, pose)

@@ -7,7 +7,7 @@ from typing import Optional, Sequence
 import numpy as np
 
 from ..compiled import address
-from .caster_library import FanStruct, PlaneStruct, SceneStruct, load
+from .caster_library import FanStruct, ScanPlaneStruct, SceneStruct, load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
@@ -18,20 +18,20 @@ NO_OWNERS = np.zeros(0, np.int64)
 class ScanPlane:
     """What scanners at one height see: a world's cross-section and circles fixed to robots."""
 
-    def __init__(self, walls: CrossSection, bodies: np.ndarray = NO_CIRCLES, owners: np.ndarray = NO_OWNERS) -> None:
+    def __init__(self, section: CrossSection, bodies: np.ndarray = NO_CIRCLES, owners: np.ndarray = NO_OWNERS) -> None:
         """Bodies (b, [x, y, radius]) [m], each in the frame of the robot that owners (b,) names by its index."""
-        self.walls, self.bodies, self.owners = walls, bodies, owners
-        self._tiles, self._moved_bodies = walls.tiles, np.empty_like(bodies)  # the structure points to them
-        self.struct = PlaneStruct(
-            len(walls.segments),
-            len(walls.circles),
+        self.section, self.bodies, self.owners = section, bodies, owners
+        self._tiles, self._moved_bodies = section.tiles, np.empty_like(bodies)  # the structure points to them
+        self.struct = ScanPlaneStruct(
+            len(section.segments),
+            len(section.circles),
             len(bodies),
-            address("segments", walls.segments, (None, 2, 2)),
-            address("circles", walls.circles, (None, 3)),
+            address("segments", section.segments, (None, 2, 2)),
+            address("circles", section.circles, (None, 3)),
             address("bodies", bodies, (None, 3)),
             address("owners", owners, (len(bodies),), np.int64),
             address("moved_bodies", self._moved_bodies, (len(bodies), 3)),
-            None if walls.tiles is None else ctypes.pointer(walls.tiles.struct),
+            None if section.tiles is None else ctypes.pointer(section.tiles.struct),
         )
 
 
@@ -59,7 +59,7 @@ class Scene:
         self.footprints = np.zeros((count, 3)) if footprints is None else footprints
         self._mounts = mounts
         self._planes = list(planes)
-        self._plane_structs = (PlaneStruct * len(planes))(*(plane.struct for plane in planes))
+        self._plane_structs = (ScanPlaneStruct * len(planes))(*(plane.struct for plane in planes))
         self.struct = SceneStruct(
             count,
             len(planes),
@@ -113,12 +113,12 @@ class Fan:
             raise ValueError(REFUSED[status])
         return distances
 
-    def cast(self, world_from_scans: np.ndarray, walls: CrossSection, reach: float = math.inf) -> np.ndarray:
+    def cast(self, world_from_scans: np.ndarray, section: CrossSection, reach: float = math.inf) -> np.ndarray:
         """Distances (r, samples) [m] from poses (r, 3) [x m, y m, yaw rad]; +inf where nothing is within `reach` [m].
 
         For repeated scans in one world a Scene is faster.
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([ScanPlane(walls)], [0] * len(poses), np.zeros_like(poses), footprints=poses)
+        scene = Scene([ScanPlane(section)], [0] * len(poses), np.zeros_like(poses), footprints=poses)
         return self.scan(scene, range(len(poses)), reach)

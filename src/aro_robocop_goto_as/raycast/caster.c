@@ -35,7 +35,7 @@ struct fan {
 };
 
 /* What scanners at one height see. */
-struct plane {
+struct scan_plane {
     int64_t n_segments, n_circles, n_bodies;
     const double *segments; /* (n_segments, 2, 2) [m] in the world */
     const double *circles;  /* (n_circles, 3) x, y, radius [m] in the world */
@@ -50,7 +50,7 @@ struct scene {
     const double *footprints;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
     const double *mounts;    /* (n_robots, 3) the scanner's pose in its robot's frame */
     const int64_t *plane_of; /* (n_robots,) */
-    struct plane *planes;
+    struct scan_plane *planes;
 };
 
 struct scan {
@@ -185,7 +185,7 @@ static void cast_circle(const struct scan *scan, const double *circle)
     }
 }
 
-static void cast_tile(const struct scan *scan, const struct plane *plane, struct grid *grid, int64_t tile)
+static void cast_tile(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, int64_t tile)
 {
     int32_t k;
     if (grid->tile_marks[tile] == grid->mark)
@@ -206,7 +206,7 @@ static int64_t within(double place, int64_t count)
 }
 
 /* Cast the tiles along one beam, in order, until it has hit something nearer than the next tile. */
-static void walk(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y,
+static void walk(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y,
                  double enter, int64_t beam)
 {
     const double *nearest = scan->nearest + beam;
@@ -239,7 +239,7 @@ static void walk(const struct scan *scan, const struct plane *plane, struct grid
 }
 
 /* Cast the tiles around the scanner at (x, y) [tiles]; returns up to what distance [tiles] all beams are done. */
-static double cast_block(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y)
+static double cast_block(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y)
 {
     int64_t column, row, first_column = (int64_t)x - BLOCK, first_row = (int64_t)y - BLOCK;
     double to_column = fmin(x - (double)first_column, (double)(first_column + 2 * BLOCK + 1) - x);
@@ -251,7 +251,7 @@ static double cast_block(const struct scan *scan, const struct plane *plane, str
     return fmin(to_column, to_row);
 }
 
-static void cast_grid(const struct scan *scan, const struct plane *plane, struct grid *grid, double x, double y)
+static void cast_grid(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y)
 {
     double done;
     int64_t i;
@@ -264,7 +264,7 @@ static void cast_grid(const struct scan *scan, const struct plane *plane, struct
             walk(scan, plane, grid, x, y, done, i);
 }
 
-static void cast_plane(const struct scan *scan, const struct plane *plane, int64_t robot)
+static void cast_plane(const struct scan *scan, const struct scan_plane *plane, int64_t robot)
 {
     struct grid *grid = plane->grid;
     double x = grid ? (scan->x - grid->x) / grid->side : -1.0, y = grid ? (scan->y - grid->y) / grid->side : -1.0;
@@ -301,7 +301,7 @@ int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, 
         if (robots[i] < 0 || robots[i] >= scene->n_robots)
             return NO_SUCH_ROBOT;
     for (i = 0; i < scene->n_planes; i++) {
-        const struct plane *plane = scene->planes + i;
+        const struct scan_plane *plane = scene->planes + i;
         for (k = 0; k < plane->n_bodies; k++) {
             double *moved = plane->moved_bodies + 3 * k;
             to_world(scene->footprints + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);

@@ -32,8 +32,8 @@ class GridStruct(ctypes.Structure):
     ]
 
 
-class PlaneStruct(ctypes.Structure):
-    """`struct plane` of caster.c."""
+class ScanPlaneStruct(ctypes.Structure):
+    """`struct scan_plane` of caster.c."""
 
     _fields_ = [
         *members(ctypes.c_int64, "n_segments n_circles n_bodies"),
@@ -48,7 +48,7 @@ class SceneStruct(ctypes.Structure):
     _fields_ = [
         *members(ctypes.c_int64, "n_robots n_planes"),
         *members(ctypes.c_void_p, "footprints mounts plane_of"),
-        ("planes", ctypes.POINTER(PlaneStruct)),
+        ("planes", ctypes.POINTER(ScanPlaneStruct)),
     ]
 
 

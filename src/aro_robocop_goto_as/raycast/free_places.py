@@ -84,11 +84,11 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     The centre is free_place of the given pose. If there are too few places with CLEARANCE, those where the footprint
     has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
     """
-    walls, room = CrossSection(world, HEIGHT), _Room(world, model)
+    section, room = CrossSection(world, HEIGHT), _Room(world, model)
     centre = _place(room, around)
     places: List[Pose2D] = []
     for clearance in (CLEARANCE, room.least):
-        places = _connected_places(walls, room, centre, count, clearance)
+        places = _connected_places(section, room, centre, count, clearance)
         if len(places) >= count:
             return places
     raise ParameterError(
@@ -96,7 +96,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     )
 
 
-def _connected_places(walls: CrossSection, room: _Room, centre: Pose2D, count: int, clearance: float) -> List[Pose2D]:
+def _connected_places(section: CrossSection, room: _Room, centre: Pose2D, count: int, clearance: float) -> List[Pose2D]:
     """At most `count` places that are at least `clearance` [m] from all obstacles, the centre among them."""
     waiting: List[Tuple[int, Cell]] = [(0, (0, 0))]
     seen: Set[Cell] = {(0, 0)}
@@ -109,7 +109,7 @@ def _connected_places(walls: CrossSection, room: _Room, centre: Pose2D, count: i
             neighbour = (cell[0] + di, cell[1] + dj)
             pose = _pose(centre, neighbour)
             is_clear = neighbour not in seen and room.at(pose.x, pose.y) >= clearance
-            if is_clear and _is_visible(pose, place, walls):
+            if is_clear and _is_visible(pose, place, section):
                 seen.add(neighbour)
                 heapq.heappush(waiting, (neighbour[0] ** 2 + neighbour[1] ** 2, neighbour))
     return places
@@ -119,9 +119,9 @@ def _pose(centre: Pose2D, cell: Cell) -> Pose2D:
     return compose(centre, Pose2D(cell[0] * SPACING, cell[1] * SPACING))
 
 
-def _is_visible(pose: Pose2D, other: Pose2D, walls: CrossSection) -> bool:
+def _is_visible(pose: Pose2D, other: Pose2D, section: CrossSection) -> bool:
     """Whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
     dx, dy = other.x - pose.x, other.y - pose.y
     away = math.hypot(dx, dy)
-    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), walls, reach=away)[0, 0]
+    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), section, reach=away)[0, 0]
     return bool(ray > away)

@@ -41,15 +41,15 @@ class Scanners:
         """Replace the world."""
         self._sections = [CrossSection(world, height) for height in self._heights]
         planes = []
-        for height, walls in zip(self._heights, self._sections):
+        for height, section in zip(self._heights, self._sections):
             circles = [circles_at(model, height) for model in self._models]
             owners = np.repeat(np.arange(len(circles)), [len(of_one) for of_one in circles])
-            planes.append(ScanPlane(walls, np.concatenate(circles), owners))
+            planes.append(ScanPlane(section, np.concatenate(circles), owners))
         mounts = [model.base_from_scan.on_plane() for model in self._models]
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
         self._scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
 
-    def walls(self, robot: int) -> CrossSection:
+    def section(self, robot: int) -> CrossSection:
         """The world's cross-section at the height of one robot's scanner."""
         return self._sections[self._plane_of[robot]]
 
@@ -58,6 +58,6 @@ class Scanners:
 
         In the plane that TF describes: scanners are level, at their height on an upright robot.
         """
-        for walls in self._sections:
-            walls.move(time)
+        for section in self._sections:
+            section.move(time)
         return fan.scan(self._scene, robots, max_range)

@@ -113,13 +113,9 @@ class Observations:
 
     def _scan(self, robots: Robots) -> None:
         lidar = self.lidar.next_turn(self._noise_of(0)) if self.lidar.spec.varying else self.lidar
-        distances = self.exact_distances(lidar, robots)
+        distances = self.scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
         self.scans = self.ranges(lidar.spec.samples)
         lidar.measure(distances, robots, self.seed, self.step, self.scans)
-
-    def exact_distances(self, lidar: Lidar, robots: Robots) -> np.ndarray:
-        """What scanners of this kind would measure now without noise and range_min: (r, n_beams) [m]; none: +inf."""
-        return self.scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
 
     def _update_odometry(self, _robots: Robots) -> None:
         shape = len(self._models), 2

@@ -136,7 +136,8 @@ class Simulator:
     def exact_distances(self, robot: int = 0) -> np.ndarray:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
         self.engine.update_fleet()
-        return self.observed.exact_distances(self.lidar, [robot])[0]
+        fan, range_max = self.lidar.fan, self.lidar.spec.range_max
+        return self.observed.scanners.distances(fan, range_max, [robot], self.world_time)[0]
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
@@ -168,10 +169,10 @@ class Simulator:
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
-        walls = self.observed.scanners.walls(0)
+        section = self.observed.scanners.section(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
-        return occupancy_of(walls.segments, walls.circles_at_start, starts, self.p.world.map_resolution)
+        return occupancy_of(section.segments, section.circles_at_start, starts, self.p.world.map_resolution)
 
     # -- changes from outside --
 

@@ -138,4 +138,4 @@ def test_invalid_scenes_and_scans_are_refused() -> None:
     with pytest.raises(ValueError, match=r"^mounts: expected shape \(2, 3\), got \(1, 3\)"):
         Scene([plane], [0, 0], np.zeros((1, 3)))
     with pytest.raises(ValueError, match="^owners: expected numbers from 0 to 0"):
-        Scene([ScanPlane(plane.walls, np.zeros((1, 3)), np.array([1], np.int64))], [0], np.zeros((1, 3)))
+        Scene([ScanPlane(plane.section, np.zeros((1, 3)), np.array([1], np.int64))], [0], np.zeros((1, 3)))
