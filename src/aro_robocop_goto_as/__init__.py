@@ -2,19 +2,19 @@
 
 From a velocity command to odometry, scan, tf and clock:
 
-    ros.sim.robot_inputs          cmd_vel -> a job for the thread that owns the simulation
-    simulation.controllers        applies it, in lockstep at the end of the control tick -> robot.fleet, clamped to the
-                                  robot.command_limits: a row of its arrays, which the engine reads
-    simulation.simulator          finds the next step on which something is due
+    ros.sim.command_topics        cmd_vel -> a job for the thread that owns the simulation
+    simulation.controllers        the job: applies it, in lockstep at the end of the control tick
+    simulation.simulator          a command, clamped to robot.command_limits -> its row of robot.fleet
+                                  in each round of the loop: finds the next step on which something is due
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.observations       measures what is due and subscribed to
         sensors                   models of odometry, scanner, IMU, magnetometer and camera
-    ros.sim.node                  the loop
+    ros.sim.node                  the loop: has the simulator advance, then publishes what it has measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.sim.robot_topics      at the start: packed messages, whose fields are bound to the rows of a robot
-        ros.batch                 the batch: sender.c copies these rows into the packed messages and sends them
+        ros.sim.sensor_topics     at the start: packed messages, whose fields are bound to the rows of a robot
+        ros.batch                 the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, battery, magnetic field, camera).
 

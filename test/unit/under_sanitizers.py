@@ -22,7 +22,6 @@ from aro_robocop_goto_as.robot.command_limits import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.covariances import imu_covariances
-from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import (
     DOUBLES,
     Field,
@@ -35,6 +34,7 @@ from aro_robocop_goto_as.ros.packed import (
     packed_scan,
     packed_transforms,
 )
+from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
@@ -119,7 +119,7 @@ def drives(random: np.random.Generator, engine: KinematicEngine) -> None:
 def messages(random: np.random.Generator) -> None:
     """Fill and send messages of all kinds."""
     near, far = socket.socketpair()
-    topic: Any = SimpleNamespace(outlets=(Outlet(SimpleNamespace(), near),), impl=None)
+    topic: Any = SimpleNamespace(links=(SubscriberLink(SimpleNamespace(), near),), impl=None)
     rows = random.choice(PLACES, (4, 10))
     covariances = imu_covariances(ImuParams(), real=True)
     made = [
@@ -143,9 +143,9 @@ def beyond(library: str, random: np.random.Generator) -> None:
         plane = ScanPlane(cut_of(np.ones((400, 2, 2)), np.zeros((0, 3))))
         plane.struct.n_segments += 1
         Fan(*FANS[0]).scan(Scene([plane], [0], np.zeros((1, 3))), [0])
-    elif library == "sender":
+    elif library == "batch":
         field = Field(DOUBLES, 4, np.zeros(2**15))  # more than its message has room for
-        Batch([(SimpleNamespace(outlets=(), impl=None), PackedMessage(Clock(), [field]))]).send(0)
+        Batch([(SimpleNamespace(links=(), impl=None), PackedMessage(Clock(), [field]))]).send(0)
     else:
         engine = KinematicEngine(forest(0, random), fleet_of(100, random), 30)
         engine.fleet.struct.n += 1

@@ -1,4 +1,7 @@
-"""The compiled ray caster, and the C structures it works on."""
+"""The compiled library of raycast and sensors.lidar, and the C structures of the ray caster.
+
+caster.c casts rays, movers.c moves circles, and sensors/lidar.c makes ranges with noise of exact distances.
+"""
 
 import ctypes
 import functools

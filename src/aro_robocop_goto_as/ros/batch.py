@@ -1,4 +1,4 @@
-"""Messages of one step, filled and sent together: one call of sender.c writes them all to their subscribers' sockets.
+"""Messages of one step, filled and sent together: one call of batch.c writes them all to their subscribers' sockets.
 
 rospy's way to a socket costs about as much Python as making the message: a lock, a test of the connection's state and
 a system call that releases and takes the interpreter's lock, for each message and each subscriber.
@@ -15,25 +15,25 @@ from .packed import PackedMessage
 from .publishing import DirectPublisher
 from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
 
-VERSION = 5  # of sender.c
+VERSION = 5  # of batch.c
 
 Posted = Tuple[DirectPublisher, PackedMessage]
 
 
 class _FieldStruct(ctypes.Structure):
-    """`struct field` of sender.c."""
+    """`struct field` of batch.c."""
 
     _fields_ = [*members(ctypes.c_int64, "kind count"), *members(ctypes.c_void_p, "to source")]
 
 
 class _ParcelStruct(ctypes.Structure):
-    """`struct parcel` of sender.c."""
+    """`struct parcel` of batch.c."""
 
     _fields_ = [*members(ctypes.c_void_p, "data stands"), *members(ctypes.c_int64, "size socket taken")]
 
 
 class _BatchStruct(ctypes.Structure):
-    """`struct batch` of sender.c."""
+    """`struct batch` of batch.c."""
 
     _fields_ = [
         *members(ctypes.c_int64, "n_fields n_parcels n_first"),
@@ -44,7 +44,7 @@ class _BatchStruct(ctypes.Structure):
 
 @functools.lru_cache(maxsize=None)
 def _library() -> ctypes.PyDLL:
-    library = compiled.load("sender", VERSION)
+    library = compiled.load("batch", VERSION)
     library.aro_send.restype = ctypes.c_int64
     library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int]
     return library
@@ -60,20 +60,20 @@ class Batch:
     def __init__(self, messages: Sequence[Posted], last: Sequence[Posted] = ()) -> None:
         """`last`: messages that are not sent before all others are, such as the clock."""
         self._messages = [*messages, *last]
-        self._parcels = [(*posted, outlet) for posted in self._messages for outlet in posted[0].outlets]
+        self._parcels = [(*posted, link) for posted in self._messages for link in posted[0].links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
             for _, message in self._messages
             for field in message.fields
         ]
         parcels = [
-            _ParcelStruct(message.address, outlet.address, message.size, outlet.descriptor)
-            for _, message, outlet in self._parcels
+            _ParcelStruct(message.address, link.address, message.size, link.descriptor)
+            for _, message, link in self._parcels
         ]
         self._struct = _BatchStruct(
             len(fields),
             len(parcels),
-            sum(len(topic.outlets) for topic, _ in messages),
+            sum(len(topic.links) for topic, _ in messages),
             (_FieldStruct * len(fields))(*fields),
             (_ParcelStruct * len(parcels))(*parcels),
         )
@@ -100,14 +100,14 @@ class Batch:
         """Send the rest of what was not sent whole; a subscriber that is gone is disconnected."""
         lost: Set[int] = set()  # ids of connections
         patient = True
-        for (topic, message, outlet), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
-            if parcel.taken != message.size and id(outlet.connection) not in lost:
-                stood = outlet.stands_still
+        for (topic, message, link), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
+            if parcel.taken != message.size and id(link.connection) not in lost:
+                stood = link.stands_still
                 try:
-                    sent = outlet.finish(message.data.data, parcel.taken, patient)
+                    sent = link.finish(message.data.data, parcel.taken, patient)
                 except OSError:  # as rospy: this subscriber is lost, and only this one
-                    lost.add(id(outlet.connection))
-                    disconnect(topic, outlet.connection)
+                    lost.add(id(link.connection))
+                    disconnect(topic, link.connection)
                 else:
                     patient = patient and (sent or stood)
 
@@ -116,5 +116,5 @@ class Batch:
         times, self._times = self._times, 0
         for topic, message in self._messages:
             count_messages(topic, times, message.size)
-        for _, message, outlet in self._parcels:
-            count_sent(outlet.connection, times, message.size)
+        for _, message, link in self._parcels:
+            count_sent(link.connection, times, message.size)

@@ -1,4 +1,4 @@
-"""Messages of every step, serialized once; sender.c then writes the simulation's numbers into their bytes.
+"""Messages of every step, serialized once; batch.c then writes the simulation's numbers into their bytes.
 
 Building and serializing a message anew for each step was a quarter of the cost of a simulated second: genpy makes a
 Python object of every number.
@@ -21,7 +21,7 @@ from ..sensors.scan_profiles import LidarSpec
 from . import convert
 from .covariances import ImuCovariances
 
-HEADER, STAMP, POSE, TWIST, DOUBLES, FLOATS = range(6)  # kinds of fields, as in sender.c
+HEADER, STAMP, POSE, TWIST, DOUBLES, FLOATS = range(6)  # kinds of fields, as in batch.c
 
 _LENGTH = struct.Struct("<I")  # of a message, a string or a list
 _HEADER = struct.calcsize("<III")  # bytes of seq, stamp.secs, stamp.nsecs; frame_id follows
@@ -47,7 +47,7 @@ class Field(NamedTuple):
 
     kind: int
     offset: int  # bytes, from the message's length on
-    source: Optional[np.ndarray]  # numbers of the simulation, as sender.c expects them for this kind
+    source: Optional[np.ndarray]  # numbers of the simulation, as batch.c expects them for this kind
 
     @property
     def size(self) -> int:

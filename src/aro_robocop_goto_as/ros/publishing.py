@@ -11,8 +11,8 @@ from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 
-from .outlet import Outlet
 from .rospy_internals import connections_of, send_latched, write_with
+from .subscriber_link import SubscriberLink
 
 STALL_LIMIT = 2  # [s, wall] without taking any data, after which a subscriber's process is looked at
 
@@ -23,11 +23,11 @@ class DirectPublisher(rospy.Publisher):
     """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss."""
 
     def __init__(self, topic: str, kind: Any, latch: bool, on_change: Callable[[], None]) -> None:
-        self.outlets: Tuple[Outlet, ...] = ()
-        self._outlets_lock = threading.Lock()
+        self.links: Tuple[SubscriberLink, ...] = ()
+        self._links_lock = threading.Lock()
 
         def changed() -> None:
-            self._update_outlets()
+            self._update_links()
             on_change()
 
         listener = rospy.SubscribeListener()
@@ -36,21 +36,21 @@ class DirectPublisher(rospy.Publisher):
         changed()  # for a subscriber that connected before the listener was there
         _publishers.add(self)
 
-    def _update_outlets(self) -> None:
-        with self._outlets_lock:
-            known = {id(outlet.connection): outlet for outlet in self.outlets}
-            found: List[Optional[Outlet]] = [
-                known.get(id(connection)) or _outlet(connection, connected)
+    def _update_links(self) -> None:
+        with self._links_lock:
+            known = {id(link.connection): link for link in self.links}
+            found: List[Optional[SubscriberLink]] = [
+                known.get(id(connection)) or _link(connection, connected)
                 for connection, connected in connections_of(self)
             ]
-            self.outlets = tuple(outlet for outlet in found if outlet is not None)
+            self.links = tuple(link for link in found if link is not None)
 
     def resume(self) -> None:
         """Send the latched message, which they have missed, to subscribers that stood still and read again."""
-        for outlet in self.outlets:
-            if outlet.stands_still:
+        for link in self.links:
+            if link.stands_still:
                 with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
-                    send_latched(self, outlet.connection, outlet.push_rest)
+                    send_latched(self, link.connection, link.push_rest)
 
 
 def resume() -> None:
@@ -65,12 +65,12 @@ def resume() -> None:
 def push() -> None:
     """Have the kernel send now what it keeps for messages that were to follow; the thread that publishes calls it."""
     for topic in list(_publishers):
-        for outlet in topic.outlets:
+        for link in topic.links:
             with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
-                outlet.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                link.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
-def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
+def _link(connection: Any, connected: socket.socket) -> Optional[SubscriberLink]:
     """Limits how long a write to a new subscriber may block, and sends small messages at once.
 
     Without TCP_NODELAY, which few subscribers ask for, the kernel holds a small message back until the previous one is
@@ -86,9 +86,9 @@ def _outlet(connection: Any, connected: socket.socket) -> Optional[Outlet]:
             with suppress(OSError):
                 connected.shutdown(socket.SHUT_RDWR)  # rospy notices that, and forgets it
         return None
-    outlet = Outlet(connection, duplicate)
-    write_with(connection, weakref.WeakMethod(outlet.write))
-    return outlet
+    link = SubscriberLink(connection, duplicate)
+    write_with(connection, weakref.WeakMethod(link.write))
+    return link
 
 
 def publisher(

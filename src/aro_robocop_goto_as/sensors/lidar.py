@@ -1,4 +1,4 @@
-"""A planar laser scanner: exact distances in a cross-section of the world, and ranges with the scanner's errors."""
+"""A planar laser scanner: its beams, along which raycast measures, and its errors, such as noise, added by lidar.c."""
 
 import ctypes
 import math

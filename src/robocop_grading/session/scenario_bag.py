@@ -9,7 +9,7 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
-from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
+from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
 from aro_robocop_goto_as.simulation.observations import ODOM, SCAN, TF, Observations
@@ -31,7 +31,7 @@ class _NoIndex(Dict[int, Any]):
 class ScenarioBag:
     """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
 
-    def __init__(self, sim: Simulator, robot: RobotTopics, frames: FrameNames) -> None:
+    def __init__(self, sim: Simulator, robot: SensorTopics, frames: FrameNames) -> None:
         self._sim = sim
         self._robot = robot
         self._frames = frames

@@ -19,7 +19,7 @@ from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.ros import convert, markers
 from aro_robocop_goto_as.ros.publishing import publisher
 from aro_robocop_goto_as.ros.share import share
-from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
+from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, Observations
@@ -51,7 +51,7 @@ FORWARDED = {
 class Watch:
     """The viewer, what it shows, and the pace. When it is closed the run continues as fast as without it."""
 
-    def __init__(self, robot: RobotTopics, params: SimParams, plan: Plan, viewer: Viewer, log: Path) -> None:
+    def __init__(self, robot: SensorTopics, params: SimParams, plan: Plan, viewer: Viewer, log: Path) -> None:
         self._robot = robot
         self._plan = plan
         self._period = 1.0 / params.rates.clock_rate

@@ -13,8 +13,8 @@ from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.ros import publishing
 from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.outlet import Outlet
 from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
+from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
 SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout
@@ -35,13 +35,13 @@ class Connection:
 
 
 class Subscriber:
-    """One end of a socket pair; the other one is an outlet."""
+    """One end of a socket pair; the other one is a subscriber's."""
 
     def __init__(self) -> None:
         near, self.socket = socket.socketpair()
         near.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, SHORT)
         self.connection = Connection()
-        self.outlet = Outlet(self.connection, near)
+        self.link = SubscriberLink(self.connection, near)
 
     def received(self, size: int) -> bytes:
         """The next bytes."""
@@ -55,7 +55,7 @@ class Subscriber:
     def close(self) -> None:
         """Disconnect."""
         self.socket.close()
-        self.outlet.socket.close()
+        self.link.socket.close()
 
 
 @pytest.fixture(name="subscriber")
@@ -81,12 +81,12 @@ def topic_of(*subscribers: Subscriber) -> Any:
         connections=[one.connection for one in subscribers],
         remove_connection=lambda connection: connection.close(),
     )
-    return SimpleNamespace(outlets=tuple(one.outlet for one in subscribers), impl=impl)
+    return SimpleNamespace(links=tuple(one.link for one in subscribers), impl=impl)
 
 
 def spied(subscriber: Subscriber, before: Callable[[int], Any]) -> Any:
-    """Stands for its outlet's socket; `before` is called with the flags of each send."""
-    near = subscriber.outlet.socket
+    """Stands for its link's socket; `before` is called with the flags of each send."""
+    near = subscriber.link.socket
 
     def send(data: memoryview, flags: int) -> int:
         before(flags)
@@ -145,7 +145,7 @@ def _gone(reader: Subscriber) -> None:
 
 
 def _shut_down(reader: Subscriber) -> None:
-    reader.outlet.socket.shutdown(socket.SHUT_RDWR)  # as rospy does before it closes a connection
+    reader.link.socket.shutdown(socket.SHUT_RDWR)  # as rospy does before it closes a connection
 
 
 @pytest.mark.parametrize("fault", [_gone, _shut_down])
@@ -168,7 +168,7 @@ def send_until_it_stands_still(batch: Batch, reader: Subscriber) -> int:
     """How many messages are sent until a subscriber that does not read is not waited for any more."""
     for sent in range(1, MANY):
         batch.send(0)
-        if reader.outlet.stands_still:
+        if reader.link.stands_still:
             return sent
     raise AssertionError("still waited for")
 
@@ -194,12 +194,12 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
         batch.send(0)  # which it misses
 
     def read() -> None:
-        while message.data.tobytes() != received[-message.size :] or frozen.outlet.stands_still:
+        while message.data.tobytes() != received[-message.size :] or frozen.link.stands_still:
             received.extend(frozen.socket.recv(message.size))
 
     reading = threading.Thread(target=read)
     reading.start()
-    while frozen.outlet.stands_still:
+    while frozen.link.stands_still:
         batch.send(0)
     batch.send(0)
     reading.join(10.0)
@@ -218,10 +218,10 @@ def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_t
     batch = Batch([(topic_of(frozen), message)])
     send_until_it_stands_still(batch, frozen)
     while len(drain(frozen)):
-        frozen.outlet.push_rest()
+        frozen.link.push_rest()
     batch.send(0)
     assert frozen.received(message.size) == message.data.tobytes()
-    assert not frozen.outlet.stands_still
+    assert not frozen.link.stands_still
 
 
 def test_nobody_waits_for_a_subscriber_that_stands_still(
@@ -233,10 +233,10 @@ def test_nobody_waits_for_a_subscriber_that_stands_still(
     for _ in range(MANY):
         batch.send(0)
         reader.received(message.size + clock.size)
-        if frozen.outlet.stands_still:
+        if frozen.link.stands_still:
             break
     waits = []
-    frozen.outlet.socket = spied(frozen, lambda flags: waits.append(flags))
+    frozen.link.socket = spied(frozen, lambda flags: waits.append(flags))
     for _ in range(10):
         batch.send(0)
         assert reader.received(message.size + clock.size) == message.data.tobytes() + clock.data.tobytes()
@@ -249,13 +249,13 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subsc
     received: List[bytes] = []
     size = sum(message.size for message in messages)
     thread = threading.Thread(target=lambda: received.append(reader.received(size)))
-    reader.outlet.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
+    reader.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
 
     def begin(_flags: int) -> None:
         if not thread.is_alive():
             thread.start()  # there is room in the socket as soon as a part of the first message is read
 
-    reader.outlet.socket = spied(reader, begin)
+    reader.link.socket = spied(reader, begin)
     Batch([(topic_of(reader), message) for message in messages]).send(0)  # topics remapped to one
     thread.join(10.0)
     assert received == [b"".join(message.data.tobytes() for message in messages)]
@@ -263,7 +263,7 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subsc
 
 def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable[[], Subscriber]) -> None:
     slow, reader, message, clock = subscriber(), subscriber(), scan(100_000), PackedMessage(Clock())
-    slow.outlet.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
+    slow.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
     thread = threading.Thread(target=slow.received, args=(message.size,))
 
     def look(_flags: int) -> None:
@@ -273,7 +273,7 @@ def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable
         if not thread.is_alive():
             thread.start()
 
-    slow.outlet.socket = spied(slow, look)
+    slow.link.socket = spied(slow, look)
     Batch([(topic_of(slow), message)], [(topic_of(reader), clock)]).send(0)
     thread.join(10.0)
     assert reader.socket.recv(100) == clock.data.tobytes()
@@ -283,7 +283,7 @@ def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable
 def _full(reader: Subscriber) -> None:
     with pytest.raises(BlockingIOError):
         while True:
-            reader.outlet.socket.send(bytes(1000), socket.MSG_DONTWAIT)
+            reader.link.socket.send(bytes(1000), socket.MSG_DONTWAIT)
 
 
 @pytest.mark.parametrize("beams", [10, 100_000], ids=["nothing is taken", "a part is taken"])
@@ -294,9 +294,9 @@ def test_subscribers_that_stall_together_are_waited_for_only_once(
     for number, one in enumerate(stalled):
         if beams < 1000:
             _full(one)
-        one.outlet.socket = spied(one, lambda flags, number=number: waited.append(number) if not flags else None)
+        one.link.socket = spied(one, lambda flags, number=number: waited.append(number) if not flags else None)
     Batch([(topic_of(*stalled), scan(beams))]).send(0)
-    assert all(one.outlet.stands_still and not one.connection.closed for one in stalled)
+    assert all(one.link.stands_still and not one.connection.closed for one in stalled)
     assert set(waited) <= {0}
 
 
@@ -312,10 +312,10 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
             received.append(slow.received(100_000))
             reading.start()
 
-    stalled.outlet.socket = spied(stalled, read_meanwhile)
+    stalled.link.socket = spied(stalled, read_meanwhile)
     Batch([(topic_of(stalled, slow), message)]).send(0)
     reading.join(10.0)
-    assert stalled.outlet.stands_still and not slow.outlet.stands_still
+    assert stalled.link.stands_still and not slow.link.stands_still
     assert b"".join(received) == bytes(message.data)
 
 
@@ -325,9 +325,9 @@ def test_messages_that_the_kernel_keeps_arrive_with_the_next_one_or_with_a_push(
     with socket.create_server(("127.0.0.1", 0)) as server:
         near = socket.create_connection(server.getsockname())
         reader, _ = server.accept()
-    outlet = Outlet(Connection(), near)
+    link = SubscriberLink(Connection(), near)
     impl = SimpleNamespace(is_latch=False)
-    topic: Any = SimpleNamespace(outlets=(outlet,), impl=impl)
+    topic: Any = SimpleNamespace(links=(link,), impl=impl)
     monkeypatch.setattr(publishing, "_publishers", [topic])
     message = counted(10)
     batch = Batch([(topic, message)])

@@ -1,4 +1,4 @@
-"""Packed messages, filled by sender.c, have byte for byte the form in which ROS sends ordinary messages."""
+"""Packed messages, filled by batch.c, have byte for byte the form in which ROS sends ordinary messages."""
 
 import struct
 from io import BytesIO
@@ -28,7 +28,7 @@ STAMP = st.tuples(st.integers(0, 2**31), st.integers(0, 999999999))
 NAME = st.sampled_from(["odom", "robot_1/base_footprint", "ö"])
 
 
-TOPIC: Any = SimpleNamespace(outlets=(), impl=None)
+TOPIC: Any = SimpleNamespace(links=(), impl=None)
 
 
 def filled(message: packed.PackedMessage, stamp: "tuple[int, int]") -> bytes:

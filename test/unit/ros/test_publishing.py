@@ -21,7 +21,7 @@ from subscriber_links import Link
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.packed import PackedMessage
 from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher, resume
-from aro_robocop_goto_as.ros.sim.robot_topics import RobotTopics
+from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
@@ -50,7 +50,7 @@ def test_descriptors_of_gone_subscribers_are_closed(
 ) -> None:
     scans = topic()
     links = [connect(scans) for _ in range(10)]
-    duplicates = [weakref.ref(outlet.socket) for outlet in scans.outlets]
+    duplicates = [weakref.ref(link.socket) for link in scans.links]
     for connection, end in links:
         end.close()
         if connection is links[4].connection:
@@ -73,7 +73,7 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
         scans.impl.check()  # as one of rospy's threads does twice a second
         return len(rest)
 
-    second = scans.outlets[1]
+    second = scans.links[1]
     kept, second.socket = second.socket, SimpleNamespace(send=send)
     _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
     assert [connection.fileno() for connection in new] == [number]
@@ -107,8 +107,8 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
     try:
         for beams in (many, 20, 10):
             latched.impl.publish(LaserScan(ranges=[1.0] * beams))  # as a node does, after its init_node
-        (outlet,) = latched.outlets
-        assert outlet.stands_still
+        (subscriber,) = latched.links
+        assert subscriber.stands_still
         first, received = _serialized(many, 1), []
         reading = threading.Thread(target=lambda: received.append(_received(link, len(first))))
         reading.start()
@@ -117,7 +117,7 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
         resume()
         last = _serialized(10, 4)  # the third message, sent once more
         assert received == [first] and _received(link, len(last)) == last
-        assert not outlet.stands_still and latched.impl.connections == [link.connection]
+        assert not subscriber.stands_still and latched.impl.connections == [link.connection]
         resume()
         latched.impl.publish(LaserScan())
         assert _received(link, len(_serialized(0, 5))) == _serialized(0, 5)
@@ -166,7 +166,7 @@ def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
     sim, sent = simulator(scan_profile="lds02"), []
-    lds02 = RobotTopics(0, sim, lambda: None)
+    lds02 = SensorTopics(0, sim, lambda: None)
     for beams in (230, 231, 230, 229, 230):
         sim.observed.scans = sim.observed.ranges(beams)
         message = lds02.scan_message()
@@ -196,10 +196,10 @@ def test_subscriber_that_waits_for_a_processor_is_waited_for(
                 reading.start()
             return True
 
-    monkeypatch.setattr("aro_robocop_goto_as.ros.outlet.Peer", Starved)
+    monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", Starved)
     link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
     _send(scans, message)
-    assert len(asked) >= 3 and not scans.outlets[0].stands_still
+    assert len(asked) >= 3 and not scans.links[0].stands_still
     reading.join()
     assert all(asked)
 
@@ -221,9 +221,9 @@ def test_subscriber_that_has_read_and_sleeps_when_it_is_looked_at_is_waited_for(
             reading.start()
             return False
 
-    monkeypatch.setattr("aro_robocop_goto_as.ros.outlet.Peer", AsleepAgain)
+    monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", AsleepAgain)
     link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
     _send(scans, message)
-    assert not scans.outlets[0].stands_still
+    assert not scans.links[0].stands_still
     reading.join()
     assert b"".join(read) == message.data.tobytes()

@@ -12,8 +12,8 @@ from ...simulation.simulator import Simulator
 from ..names import SIMULATOR
 from ..node_main import load_params, node
 from ..publishing import resume
+from .command_topics import CommandTopics
 from .loading import load_simulator
-from .robot_inputs import RobotInputs
 from .services import Services
 from .status import StatusTopics
 from .step_topics import StepTopics
@@ -31,7 +31,7 @@ class SimNode:
         self._topics = StepTopics(simulator)
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
-        self._inputs = RobotInputs(self._simulation)
+        self._inputs = CommandTopics(self._simulation)
         self._services = Services(self._simulation)
         self._gazebo: Any = None
         self._offer_gazebo(simulator.p.topics)

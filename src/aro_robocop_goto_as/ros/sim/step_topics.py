@@ -20,7 +20,7 @@ from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
 from ..publishing import publisher, push
 from ..rospy_internals import set_latched
-from .robot_topics import RobotTopics
+from .sensor_topics import SensorTopics
 
 KEPT = 1e-3  # [s, wall] for which a step's messages may wait for those of the next steps
 
@@ -33,7 +33,7 @@ class StepTopics:
         self._simulator, self._hidden = simulator, hidden
         self._tf = publisher("/tf", TFMessage, on_change=self._on_change)
         self._tf_static = publisher("/tf_static", TFMessage, latch=True)
-        self.robots = [RobotTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
+        self.robots = [SensorTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
         self._clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
         self._clock_message = packed_clock()
         set_latched(self._clock, self._clock_message)

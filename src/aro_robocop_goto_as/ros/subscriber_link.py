@@ -18,7 +18,7 @@ PATIENCE = 2.0  # [s] processor time that a subscriber's process may use without
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
-class Outlet:
+class SubscriberLink:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
     A subscriber that takes nothing for as long as its socket's send timeout, though its process is stopped, asleep or
@@ -31,7 +31,7 @@ class Outlet:
         self.connection = connection
         self.socket = duplicate
         self.descriptor = duplicate.fileno()
-        self._stands = ctypes.c_int64(0)  # read by sender.c
+        self._stands = ctypes.c_int64(0)  # read by batch.c
         self._rest = b""
         self._missed = 0  # messages, while it stands still
         self._peer: Optional[Peer] = None  # known while it takes nothing

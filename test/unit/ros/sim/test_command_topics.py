@@ -2,7 +2,7 @@
 
 import threading
 
-from aro_robocop_goto_as.ros.sim.robot_inputs import AnsweringNodes
+from aro_robocop_goto_as.ros.sim.command_topics import AnsweringNodes
 from aro_robocop_goto_as.ros.ticker import wait_until
 
 

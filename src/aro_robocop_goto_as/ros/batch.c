@@ -1,6 +1,6 @@
 /* Fills the messages of one step with the simulation's numbers, and sends them to all their subscribers.
  *
- * The structures are mirrored in batch.py and packed.py; ARO_SENDER_VERSION changes with them. ROS's messages are
+ * The structures are mirrored in batch.py and packed.py; ARO_BATCH_VERSION changes with them. ROS's messages are
  * little-endian, as all processors are for which Debian builds ROS 1.
  */
 
@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-#define ARO_SENDER_VERSION 5
+#define ARO_BATCH_VERSION 5
 #define NANOSECONDS 1000000000
 
 /* What a field of a message is made of */
@@ -45,7 +45,7 @@ struct batch {
     struct parcel *parcels;
 };
 
-int aro_sender_version(void) { return ARO_SENDER_VERSION; }
+int aro_batch_version(void) { return ARO_BATCH_VERSION; }
 
 /* Write a field of a message, at the simulated time stamp [s, ns]. */
 static void fill(const struct field *field, const uint32_t *stamp)

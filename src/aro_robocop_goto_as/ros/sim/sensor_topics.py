@@ -1,4 +1,4 @@
-"""The topics on which one robot's measurements are published, packed ones stamped by sender.c, others by rospy."""
+"""The topics on which one robot's measurements are published, packed ones stamped by batch.c, others by rospy."""
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
@@ -20,7 +20,7 @@ from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, pac
 from ..publishing import publisher
 
 
-class RobotTopics:
+class SensorTopics:
     """Publishers in a robot's namespace; its frames carry its name as a prefix."""
 
     def __init__(self, index: int, simulator: Simulator, on_change: Callable[[], None]) -> None:

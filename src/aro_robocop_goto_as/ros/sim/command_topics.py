@@ -69,7 +69,7 @@ class AnsweringNodes:
                 return
 
 
-class RobotInputs:
+class CommandTopics:
     """Subscribers in the robots' namespaces, and what is known of the nodes that publish to them.
 
     rospy's threads post what arrives to the simulation's owner, who calls the methods; the last three in lockstep only.
