@@ -66,7 +66,7 @@ class Owner:
 
     def run(self) -> None:
         simulator, time, controllers = self.simulator, self.simulation.time_control, self.simulation.controllers
-        time.restart(simulator.steps)
+        time.pacer.restart(simulator.steps)
         self._pace()
         while not self.is_stopped():
             seen = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))

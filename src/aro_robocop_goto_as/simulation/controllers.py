@@ -154,7 +154,3 @@ class Controllers:
     def drop_command(self, robot: int) -> None:
         """Forget a pending command, because its robot was placed elsewhere, at rest."""
         self._pending.pop(robot, None)
-
-    def awaited(self) -> List[ControllerId]:
-        """The controllers that lockstep waits for; empty without lockstep."""
-        return self.lockstep.awaited()

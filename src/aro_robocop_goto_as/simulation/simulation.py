@@ -62,7 +62,7 @@ class Simulation:
         before = self.simulator.steps
         self.simulator.reset(seed, restart_time=self._reset_time)
         self.time_control.shift_span(before - self.simulator.steps)
-        self.time_control.restart(self.simulator.steps)
+        self.time_control.pacer.restart(self.simulator.steps)
         self.controllers.restart()
         self._changes |= {Change.FRAMES, Change.STATUS} | ({Change.TIME} if self._reset_time else set())
 

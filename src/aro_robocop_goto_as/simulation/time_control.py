@@ -103,10 +103,6 @@ class TimeControl:
         self._pause_after_span = True
         self._next_repetition = 0.0  # [s, wall] of the clock, while paused
 
-    def restart(self, step: int) -> None:
-        """Pace from this step on, as after a pause."""
-        self.pacer.restart(step)
-
     @property
     def standing(self) -> bool:
         """Whether simulated time stands still: it is paused, and no span runs."""
@@ -129,12 +125,12 @@ class TimeControl:
     def set_paused(self, paused: bool, step: int) -> None:
         """Pause or resume at a step; during a span, from its end on."""
         self.paused = self._pause_after_span = paused
-        self.restart(step)
+        self.pacer.restart(step)
 
     def set_real_time_factor(self, factor: float, step: int) -> None:
         """Run at this multiple of the wall clock from a step on; 0 = as fast as possible."""
         self.pacer.factor = factor
-        self.restart(step)
+        self.pacer.restart(step)
 
     # -- spans --
 
@@ -148,7 +144,7 @@ class TimeControl:
             return None
         self._pause_after_span = True
         self._span_end, self._span_ended = step + max(1, round(duration * self._rate)), Future()
-        self.restart(step)
+        self.pacer.restart(step)
         return self._span_ended
 
     def steps_left(self, step: int) -> int:

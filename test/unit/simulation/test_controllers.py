@@ -51,7 +51,7 @@ def test_tick_waits_for_each_answer_without_a_miss() -> None:
     assert stamps == [tick * 10**8 for tick in range(1, 6)]
     assert owner.clock.time == pytest.approx(101.5)
     assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
-    assert owner.simulation.controllers.awaited() == [ANSWERING]
+    assert owner.simulation.controllers.lockstep.awaited() == [ANSWERING]
     assert owner.simulator.world_from_footprint().x > 0.03
 
 

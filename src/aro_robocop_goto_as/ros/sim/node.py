@@ -31,7 +31,7 @@ class SimNode:
         self._topics = StepTopics(simulator)
         self._world = WorldTopics(simulator)
         self._status = StatusTopics(self._simulation)
-        self._inputs = CommandTopics(self._simulation)
+        self._commands = CommandTopics(self._simulation)
         self._services = Services(self._simulation)
         self._gazebo: Any = None
         self._offer_gazebo(simulator.p.topics)
@@ -55,7 +55,7 @@ class SimNode:
     def run(self) -> None:
         """Simulate until shutdown: clock ticks wait for the wall clock, lockstep control ticks for the controllers."""
         simulator, time, controllers = self._simulator, self._simulation.time_control, self._simulation.controllers
-        time.restart(simulator.steps)
+        time.pacer.restart(simulator.steps)
         self._publish(set(Change) - {Change.TIME})
         self._pace()
         subscriptions = self._topics.subscriptions()
@@ -77,29 +77,33 @@ class SimNode:
 
     def _pace(self) -> None:
         """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
-        jobs, time, simulator = self._simulation.jobs, self._simulation.time_control, self._simulator
-        if len(jobs):
-            self._topics.push()
-        jobs.run_queued()
-        self._publish_changes()
+        time, simulator = self._simulation.time_control, self._simulator
+        self._run_jobs()
         wait = time.hold(simulator.steps)
         if wait > 0.0:
             self._topics.push()
         if 0.0 < wait < SHORT:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
-            jobs.sleep(wait)
+            self._simulation.jobs.sleep(wait)
             time.pacer.waited(wait)
-            jobs.run_queued()
-            self._publish_changes()
+            self._run_jobs()
             wait = time.hold(simulator.steps)
         if wait > 0.0:
             self._hold(lambda: time.hold(simulator.steps))
 
+    def _run_jobs(self) -> None:
+        """Run the jobs that have come, once what was published before is sent, and publish what they have changed."""
+        jobs = self._simulation.jobs
+        if len(jobs):
+            self._topics.push()
+        jobs.run_queued()
+        self._publish(self._simulation.take_changes())
+
     def _await_controllers(self) -> None:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
-        controllers, inputs = self._simulation.controllers, self._inputs
-        controllers.begin_tick(inputs.answering)
-        inputs.begin_tick()
-        self._hold(lambda: controllers.hold(inputs.connected, inputs.is_kept))
+        controllers, commands = self._simulation.controllers, self._commands
+        controllers.begin_tick(commands.answering)
+        commands.begin_tick()
+        self._hold(lambda: controllers.hold(commands.connected, commands.is_kept))
         self._status.warn_of(controllers.end_tick())
 
     def _hold(self, hold: Callable[[], float]) -> None:
@@ -109,10 +113,10 @@ class SimNode:
         wait = hold()
         while wait > 0.0 and not rospy.is_shutdown():
             jobs.run_next(wait)
-            self._publish_changes()
+            self._publish(self._simulation.take_changes())
             if time.repetition_due():  # for nodes that start while simulated time stands still
                 self._topics.publish_clock(self._simulator.stamp_ns)
-                self._simulation.controllers.enroll(self._inputs.answering)
+                self._simulation.controllers.enroll(self._commands.answering)
             self._report()
             wait = hold()
         time.pacer.waited(time.pacer.now() - started)
@@ -123,15 +127,8 @@ class SimNode:
             self._topics.count()
             resume()
 
-    # -- what is published other than by a step --
-
-    def _publish_changes(self) -> None:
-        """Publish anew what has changed other than by a step."""
-        changes = self._simulation.take_changes()
-        if changes:
-            self._publish(changes)
-
     def _publish(self, changes: AbstractSet[Change]) -> None:
+        """Publish anew what has changed other than by a step."""
         if Change.TIME in changes:
             self._topics.publish_clock(self._simulator.stamp_ns)
         if Change.FRAMES in changes:

@@ -41,7 +41,7 @@ class StatusTopics:
             self.publish()
             if not self._simulation.time_control.paused:
                 self._count(report)
-        elif self._simulation.controllers.awaited() != self._awaited:
+        elif self._simulation.controllers.lockstep.awaited() != self._awaited:
             self.publish()
         return report is not None
 
@@ -85,7 +85,7 @@ class StatusTopics:
     def publish(self) -> None:
         """Publish the newest report now."""
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        self._awaited = simulation.controllers.awaited()
+        self._awaited = simulation.controllers.lockstep.awaited()
         status = SimStatus(
             stamp=convert.to_time(simulator.stamp_ns),
             world=simulator.world.name,
