@@ -59,9 +59,8 @@ class _BodySection:
             for circle, motion in zip(section.circles.tolist(), section.motions)
         )
         self._circles = np.array([entry[:3] for entry in found], dtype=float).reshape(-1, 3)
-        motions = enumerate(entry[3] for entry in found)
-        self._movers = Movers(self._circles, [(row, motion) for row, motion in motions if motion is not None])
-        self.move = self._movers.move
+        moving = [(row, entry[3]) for row, entry in enumerate(found) if entry[3] is not None]
+        self.move = Movers(self._circles, moving).move
         self.move(time)
         self.struct = _BodySectionStruct(
             address("segments", self._segments, (None, 2, 2)),

@@ -22,7 +22,7 @@ NO_SEGMENTS, NO_CIRCLES = np.zeros((0, 2, 2)), np.zeros((0, 3))
 class CrossSection:
     """Segments and circles in the horizontal plane at one height, in the world frame.
 
-    Only circles move: moving obstacles are upright cylinders or spheres. They are at time zero until they are moved.
+    Only circles move: moving obstacles are upright cylinders or spheres. They are at time zero until `move`.
     """
 
     def __init__(self, world: World, height: float) -> None:
@@ -33,11 +33,8 @@ class CrossSection:
         self.circles_at_start = self.circles.copy()
         self.motions: Sequence[Optional[Motion]] = motions  # of each circle
         self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
-        self._movers = Movers(self.circles, [(row, motion) for row, motion in enumerate(motions) if motion is not None])
-
-    def move(self, time: float) -> None:
-        """Set the moving circles to where they are at a time [s], in place."""
-        self._movers.move(time)
+        moving = [(row, motion) for row, motion in enumerate(motions) if motion is not None]
+        self.move = Movers(self.circles, moving).move  # to be called with a time [s]
 
 
 def outline(obstacle: Obstacle, height: float) -> Tuple[np.ndarray, np.ndarray]:

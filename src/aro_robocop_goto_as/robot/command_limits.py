@@ -32,15 +32,11 @@ def limits_from(params: LimitParams, figures: ModelFigures) -> Limits:
     return Limits(*(own if given is None else given for given, own in pairs))
 
 
-def clamp(value: float, limit: float) -> float:
-    """The value within [-limit, limit]."""
-    return max(-limit, min(limit, value))
-
-
 def clamped(twist: Twist2D, limits: Limits) -> Twist2D:
     """A velocity command within the velocity limits; CommandError for NaN or infinity."""
     if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
         raise CommandError(
             f"velocity command refused: linear.x {twist.v} m/s, angular.z {twist.w} rad/s; expected finite numbers"
         )
-    return Twist2D(clamp(twist.v, limits.max_v), clamp(twist.w, limits.max_w))
+    v, w = max(-limits.max_v, min(limits.max_v, twist.v)), max(-limits.max_w, min(limits.max_w, twist.w))
+    return Twist2D(v, w)
