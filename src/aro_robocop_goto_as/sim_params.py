@@ -30,7 +30,7 @@ class WorldParams:
 
 @dataclass(frozen=True)
 class RobotParams:
-    """Which robots there are and where they start; the texts are parsed by world.spawn."""
+    """Which robots there are and where they start; the texts are parsed by world.spawn_texts."""
 
     model: str = DEFAULT_MODEL
     spawn: str = ""

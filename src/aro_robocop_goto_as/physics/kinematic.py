@@ -17,7 +17,7 @@ from ..raycast.caster_library import GridStruct
 from ..raycast.cross_section import CrossSection
 from ..raycast.grid_index import Tiles
 from ..raycast.movers import Movers
-from ..raycast.surroundings import body_heights
+from ..raycast.obstacle_distance import body_heights
 from ..robot.fleet import Fleet, FleetStruct, library
 from ..robot.model import BodyState
 from ..world.model import World

@@ -12,7 +12,7 @@ from ..robot.model import RobotModel
 from ..world.model import World
 from .beams import Fan
 from .cross_section import CrossSection
-from .surroundings import Surroundings, body_heights
+from .obstacle_distance import ObstacleDistance, body_heights
 
 HEIGHT = 0.1  # [m] of the cross-section
 SPACING = 0.5  # [m] of the grid
@@ -32,13 +32,13 @@ class _Room:
     def __init__(self, world: World, model: RobotModel) -> None:
         self.least = model.figures.footprint_radius + LEAST_MARGIN
         self.world = world
-        self._surroundings = Surroundings(world, body_heights(model))
+        self._distance = ObstacleDistance(world, body_heights(model))
 
     def at(self, x: float, y: float) -> float:
         """The distance [m] from a point to the nearest obstacle; -inf where a robot may not start."""
         if self.world.occupancy is not None and not self.world.occupancy.is_known(x, y):
             return -math.inf
-        return self._surroundings.nearest(x, y).distance
+        return self._distance.nearest(x, y).distance
 
 
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:

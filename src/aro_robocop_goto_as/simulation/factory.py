@@ -9,7 +9,7 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotModel, RobotSpec
 from ..sim_params import EngineParams, RobotParams, SimParams
 from ..world.model import World
-from ..world.spawn import parse_count, parse_robots, parse_spawn
+from ..world.spawn_texts import parse_count, parse_robots, parse_spawn
 from .simulator import Simulator
 
 

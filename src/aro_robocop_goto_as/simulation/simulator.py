@@ -8,8 +8,8 @@ import numpy as np
 from ..errors import PlaceError
 from ..geometry import Pose2D, Twist2D, compose, inverse
 from ..physics.engine import Engine
+from ..raycast.obstacle_distance import ObstacleDistance, body_heights
 from ..raycast.occupancy import occupancy_of
-from ..raycast.surroundings import Surroundings, body_heights
 from ..robot.command_limits import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
@@ -200,7 +200,7 @@ class Simulator:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
         x, y, fleet = pose.x, pose.y, self.fleet
         radii = fleet.radii.tolist()
-        nearest = Surroundings(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
+        nearest = ObstacleDistance(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
         if nearest.distance < radii[robot]:
             raise PlaceError(
                 f"x {x:.3f} y {y:.3f} is {nearest.distance:.3f} m from '{nearest.name}', expected at least the robot's "

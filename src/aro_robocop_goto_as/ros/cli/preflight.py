@@ -10,7 +10,7 @@ from ...param_loading import from_dict
 from ...robot.model_names import urdf_of
 from ...sim_params import SimParams
 from ...world.load import RANDOM, find_world
-from ...world.spawn import parse_count, parse_robots, parse_spawn
+from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
 
 

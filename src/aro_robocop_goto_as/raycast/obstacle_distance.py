@@ -29,7 +29,7 @@ class Nearest(NamedTuple):
     name: str
 
 
-class Surroundings:
+class ObstacleDistance:
     """A world's obstacles at several heights [m], as they are at a time [s].
 
     Boxes, cylinders, spheres and the walls of a map are solid; a mesh or a plane is only its surface.

@@ -8,7 +8,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
-from aro_robocop_goto_as.world.spawn import parse_spawn
+from aro_robocop_goto_as.world.spawn_texts import parse_spawn
 
 
 def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:

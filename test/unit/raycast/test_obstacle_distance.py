@@ -8,7 +8,7 @@ import pytest
 from support import analytic_distances, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.surroundings import Surroundings, body_heights
+from aro_robocop_goto_as.raycast.obstacle_distance import ObstacleDistance, body_heights
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
 
@@ -19,16 +19,16 @@ SHEET = Mesh(np.array([[[-9, 0, -9], [9, 0, -9], [0, 0, 9]]], float), "")
 
 def _nearest(geometry: Geometry, pose: Pose3D, x: float, y: float) -> "tuple[float, str]":
     world = World("w", (Obstacle("m/l/c", pose, geometry),), Pose2D(), (), "")
-    return tuple(Surroundings(world, HEIGHTS).nearest(x, y))
+    return tuple(ObstacleDistance(world, HEIGHTS).nearest(x, y))
 
 
 @pytest.mark.parametrize("name", ["stage_4", "world", "maze_1"])
 def test_the_distance_is_that_of_the_nearest_of_many_rays(name: str) -> None:
     world = world_named(name)
-    surroundings = Surroundings(world, HEIGHTS)
+    distance = ObstacleDistance(world, HEIGHTS)
     around = np.linspace(0.0, 2.0 * math.pi, 3600)
     for x, y in np.random.default_rng(1).uniform(-1.5, 1.5, (40, 2)):
-        nearest = surroundings.nearest(x, y)
+        nearest = distance.nearest(x, y)
         rays = analytic_distances(world, x, y, around, 100.0).min()
         if nearest.distance > 0.0:
             assert nearest.distance == pytest.approx(rays, abs=2e-3)
@@ -71,11 +71,11 @@ def test_among_many_walls_the_distance_to_a_near_one_takes_less_time_and_is_the_
     rng = np.random.default_rng(0)
     starts = rng.uniform(-50.0, 50.0, (20000, 2))
     walls = Walls(np.stack([starts, starts + rng.uniform(-0.3, 0.3, (20000, 2))], axis=1), 0.5)
-    surroundings = Surroundings(World("w", (Obstacle("walls", Pose3D(), walls),), Pose2D(), (), "w"), (0.1,))
+    distance = ObstacleDistance(World("w", (Obstacle("walls", Pose3D(), walls),), Pose2D(), (), "w"), (0.1,))
 
     def duration(x: float, y: float) -> float:
         began = time.process_time()
-        surroundings.nearest(x, y)
+        distance.nearest(x, y)
         return time.process_time() - began
 
     points = rng.uniform(-49.0, 49.0, (50, 2)).tolist()
@@ -83,5 +83,5 @@ def test_among_many_walls_the_distance_to_a_near_one_takes_less_time_and_is_the_
     far = min(duration(200.0, 0.0) for _ in points)
     assert near < far / 2.0
     for x, y in points:
-        everywhere = surroundings._nearest(x, y, np.arange(20000))
-        assert surroundings.nearest(x, y) == everywhere
+        everywhere = distance._nearest(x, y, np.arange(20000))
+        assert distance.nearest(x, y) == everywhere
