@@ -129,6 +129,8 @@ class SimNode:
 
     def _publish(self, changes: AbstractSet[Change]) -> None:
         """Publish anew what has changed other than by a step."""
+        if not changes:  # in nearly all rounds of the loop
+            return
         if Change.TIME in changes:
             self._topics.publish_clock(self._simulator.stamp_ns)
         if Change.FRAMES in changes:
