@@ -8,6 +8,7 @@ A request and an answer are each a line of JSON.
 
 import ctypes
 import json
+import math
 import os
 import socket
 from typing import Any, Dict, Iterator, List, Set
@@ -80,19 +81,21 @@ class Channel:
 
     def _rest(self) -> bool:
         """Wait until all threads wait, and nothing is on its way to them; False if they need too much time for it."""
-        started, look = stuck.processor_time(), 0.0005
+        look, started = 0.0005, math.inf
         while True:
             idle = scheduler.wait_until_idle(look)
-            used = stuck.processor_time() - started
+            stuck.others.look()
             if (idle or stuck.all_stuck()) and not stuck.others.work:
                 with scheduler.guard:
                     if scheduler.nothing_arrives():
                         self._allowance, self._exhausted = self._patience, 0
                         return True
             if idle:
-                scheduler.sleep(look)  # what is on its way will wake a thread
+                scheduler.wait_for_work(look)  # what is on its way will wake a thread
             look = min(2.0 * look, LOOK, self._allowance / 2.0)
-            if used > self._allowance:
+            used = stuck.processor_time()  # not before: mostly there is nothing to wait for, and the kernel takes long
+            started = min(started, used)
+            if used - started > self._allowance:
                 self._exhausted += 1
                 if self._exhausted >= TIMES:
                     self._allowance, self._patience = IMPATIENCE, BRIEFLY

@@ -191,6 +191,11 @@ def wait_until_idle(timeout: float) -> bool:
         return not running and not starting
 
 
+def wait_for_work(timeout: float) -> None:
+    """After wait_until_idle() was true: wait until threads have run and all wait again, for `timeout` [s, wall] at most."""
+    _idle.acquire(True, timeout)
+
+
 def nothing_arrives() -> bool:
     """Whether nothing is readable, or on its way, that a thread waits for; called with the guard held."""
     poller = select_poll()

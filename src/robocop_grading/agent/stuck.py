@@ -85,8 +85,7 @@ def _words_of(pattern: str) -> Iterator[List[str]]:
 
 
 def processor_time() -> float:
-    """[s] that this process has used, without the thread that asks, and the others."""
-    others.look()
+    """[s] that this process has used, without the thread that asks, and the others, as of the last look at them."""
     return _process_time() - _thread_time() + others.processor_time
 
 
