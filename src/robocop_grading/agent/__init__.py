@@ -5,7 +5,7 @@
     scheduler    which threads run, and for what the others wait; simulated time
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
-    ros          calls to the grader's own ports, whose answers come without simulated time
+    ros          rospy's time; calls to the grader's own ports, whose answers come without simulated time
     channel      the grader's requests to go on until a simulated time, and the answers
 
 It imports nothing but the standard library, so that it runs in any environment that the hand-in was built in. A hand-in
@@ -18,8 +18,11 @@ from typing import Set
 SWITCH = 5e-4  # [s] after which a busy loop lets another thread run, such as the one that answers the grader
 
 
-def install(descriptor: int, ports: Set[int]) -> None:
-    """Take over the process's time before anything of the hand-in runs, and start to answer the grader."""
+def install(descriptor: int, clock_ns: int, ports: Set[int]) -> None:
+    """Take over the process's time before anything of the hand-in runs, and start to answer the grader.
+
+    `clock_ns` is what /clock shows, `ports` are those of the grader's master and node.
+    """
     from . import channel, clock, files, locks, ros, scheduler, threads
 
     sys.setswitchinterval(SWITCH)
@@ -28,5 +31,5 @@ def install(descriptor: int, ports: Set[int]) -> None:
     files.install()
     threads.register_main()
     threads.install()
-    ros.install(ports)
+    ros.install(clock_ns, ports)
     scheduler.start_new_thread(channel.Channel(descriptor, ports).serve, ())

@@ -1,4 +1,4 @@
-"""Usage: python agent CHANNEL SCRIPT [ARGUMENT...]; CHANNEL is a descriptor and the grader's ports, by commas."""
+"""Usage: python agent CHANNEL SCRIPT [ARGUMENT...]; CHANNEL, by commas: a descriptor, the time on /clock [ns], and the grader's ports."""
 
 import importlib.util
 import os
@@ -35,10 +35,10 @@ def run(script: str) -> None:
 
 def main() -> None:
     """Take over this process's time, then become the script."""
-    descriptor, *ports = map(int, sys.argv[1].split(","))
+    descriptor, clock_ns, *ports = map(int, sys.argv[1].split(","))
     os.set_inheritable(descriptor, False)
     del sys.path[0]
-    load().install(descriptor, set(ports))
+    load().install(descriptor, clock_ns, set(ports))
     sys.path.insert(0, "")
     script, sys.argv = sys.argv[2], sys.argv[2:]
     try:

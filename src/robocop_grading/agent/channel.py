@@ -2,7 +2,7 @@
 
 A request and an answer are each a line of JSON.
 
-    {"until": [ns], "sent": [[PORT OF THIS PROCESS, PORT OF THE GRADER, BYTES]...]}
+    {"until": [ns], "clock": [ns], "sent": [[PORT OF THIS PROCESS, PORT OF THE GRADER, BYTES]...]}
     {"done": [ns], "next": [ns], "busy": BOOL, "sent": [[...]...], "topics": {...}}
 """
 
@@ -31,6 +31,8 @@ class Channel:
         self._descriptor, self._ports = descriptor, ports
         self._allowance, self._patience = STARTING, PATIENCE
         self._exhausted = 0  # requests in a row at whose end the node still ran
+        self._busy = False  # the node still ran at the end of the last request
+        self._calls = -1  # to the grader, of which it knows the effects
 
     def serve(self) -> None:
         """Until the grader closes its end, which it does only after it has killed this process."""
@@ -40,16 +42,18 @@ class Channel:
             os.close(self._descriptor)  # the grader need not wait for an answer
 
     def _serve(self) -> None:
-        calls = -1
         for request in self._requests():
             scheduler.turn += 1
             scheduler.expected.update(((port, of), count) for port, of, count in request["sent"])
-            busy = not self._go_on(request["until"])
-            answer = {"done": scheduler.now_ns, "next": scheduler.next_deadline(), "busy": busy, "sent": self._sent()}
-            if scheduler.calls != calls:  # it may have told the master, or connected to a topic
-                calls, answer["topics"] = scheduler.calls, ros.topics(self._ports)
+            self._busy = not self._go_on(request["until"], request["clock"])
+            answer = {
+                **{"done": scheduler.now_ns, "next": scheduler.next_deadline()},
+                **{"busy": self._busy, "sent": self._sent()},
+            }
+            if scheduler.calls != self._calls:  # it may have told the master, or connected to a topic
+                self._calls, answer["topics"] = scheduler.calls, ros.topics(self._ports)
             self._write(json.dumps(answer).encode() + b"\n")
-            if busy and "topics" not in answer:  # the grader connects to new topics, which needs the node's threads
+            if self._busy and "topics" not in answer:  # the grader connects to new topics, which needs the node's threads
                 self._freeze()
 
     def _freeze(self) -> None:
@@ -69,8 +73,19 @@ class Channel:
             *lines, data = (data + more).split(b"\n")
             yield from map(json.loads, lines)
 
-    def _go_on(self, until_ns: int) -> bool:
-        """Let simulated time go on, and everything happen until then; False if the node has not come to an end."""
+    def _go_on(self, until_ns: int, clock_ns: int) -> bool:
+        """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
+        rested = True
+        if clock_ns != ros.clock_ns:
+            if not self._busy:  # its loops find the newest data when the clock wakes them up
+                rested = self._live(until_ns - 1)
+                if scheduler.calls != self._calls:  # the grader connects to what is new before time goes on
+                    return rested
+            ros.set_clock(clock_ns)
+        return self._live(until_ns) and rested
+
+    def _live(self, until_ns: int) -> bool:
+        """Let everything happen until then; False if the node has not come to an end."""
         rested = True
         while True:
             rested = self._rest() and rested

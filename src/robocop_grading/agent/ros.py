@@ -1,9 +1,10 @@
-"""rospy's calls to the grader (its master, its topics, its services): answered without simulated time."""
+"""rospy's time, and its calls to the grader (its master, its topics, its services): answered without simulated time."""
 
 import contextlib
 import functools
 import math
 import queue
+import sys
 import time
 import xmlrpc.client
 from typing import Any, Callable, Dict, List, Set, Tuple
@@ -15,6 +16,7 @@ LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the ne
 SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
 MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how long more take [s]: 1 ms each
 _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
+clock_ns = 0  # [ns] as on /clock
 
 
 def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
@@ -30,8 +32,10 @@ def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
     setattr(cls, name, call)
 
 
-def install(ports: Set[int]) -> None:
-    """`ports` are those of the grader's master and node."""
+def install(now_ns: int, ports: Set[int]) -> None:
+    """`now_ns`: the time on /clock; `ports` are those of the grader's master and node."""
+    global clock_ns
+    clock_ns = now_ns
 
     def is_grader(_transport: Any, host: Any, *_: Any) -> bool:
         return isinstance(host, str) and host.rpartition(":")[2] in names
@@ -39,6 +43,7 @@ def install(ports: Set[int]) -> None:
     names = set(map(str, ports))
     _calls(xmlrpc.client.Transport, "request", is_grader)
     import rospy
+    from rospy.impl import simtime
     from rospy.impl.tcpros_base import TCPROSTransport
     from rospy.impl.tcpros_service import TCPROSServiceClient
 
@@ -47,11 +52,42 @@ def install(ports: Set[int]) -> None:
 
     _calls(TCPROSTransport, "connect", lambda _transport, _host, port, *_: port in ports)
     _calls(TCPROSTransport, "receive_once", answers)
+    simtime.init_simtime = _init_simtime(simtime)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
     for module in (rospy, rospy.rostime):
         module.get_rostime = _then(rospy.rostime.get_rostime, clock.looked)
     rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
+
+
+def _init_simtime(simtime: Any) -> Callable[[], bool]:
+    """rospy's function, without a subscription to /clock: set_clock() does what its messages do, for less work."""
+    subscribe = simtime.init_simtime
+
+    def init_simtime() -> bool:
+        if not scheduler.active or not simtime._is_use_simtime():
+            return bool(subscribe())
+        _show_clock()
+        simtime.rospy.rostime.set_rostime_initialized(True)
+        return True
+
+    return init_simtime
+
+
+def set_clock(now_ns: int) -> None:
+    """Let rospy's time go on to `now_ns`, if it is simulated time, and wake what waits for that."""
+    global clock_ns
+    clock_ns = now_ns
+    rostime = sys.modules["rospy.rostime"]
+    if not rostime.is_wallclock():
+        with scheduler.work():
+            _show_clock()
+
+
+def _show_clock() -> None:
+    import rospy
+
+    rospy.rostime._set_rostime(rospy.Time(0, clock_ns))
 
 
 def _then(function: Any, afterwards: Callable[[], None]) -> Any:

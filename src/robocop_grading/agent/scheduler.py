@@ -227,6 +227,18 @@ def wake_next() -> None:
         wake(heapq.heappop(_deadlines)[2])
 
 
+@contextmanager
+def work() -> Iterator[None]:
+    """While this lasts the calling thread, which nothing else knows of, is one of those that run."""
+    with guard:
+        running.add(_thread.get_ident())
+    try:
+        yield
+    finally:
+        with guard:
+            leave()
+
+
 def advance(until_ns: int) -> None:
     """Let simulated time go on; no thread waits for a time in between."""
     global now_ns

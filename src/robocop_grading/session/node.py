@@ -54,10 +54,11 @@ class Node:
         run_jobs: Callable[[], Any],
         master_port: int,
         now_ns: int,
+        clock_ns: int,
     ) -> None:
         mine, theirs = socket.socketpair()
         ports = [master_port, *ros_internals.ports()]
-        channel = ",".join(map(str, [theirs.fileno(), *ports]))
+        channel = ",".join(map(str, [theirs.fileno(), clock_ns, *ports]))
         self._process = child.start(
             [channel if word == CHANNEL else word for word in command],
             environment=environment,
@@ -101,11 +102,14 @@ class Node:
 
     # -- time --
 
-    def go_on(self, until_ns: int) -> None:
-        """Let the node live until a simulated time [ns]; when this returns, all that it did until then has arrived."""
+    def go_on(self, until_ns: int, clock_ns: int) -> None:
+        """Let the node live until a simulated time [ns]; when this returns, all that it did until then has arrived.
+
+        `clock_ns`: the time on /clock, which its loops see when they have handled all messages.
+        """
         again = True
         while again and not self._lost:
-            self._request(until_ns)
+            self._request(until_ns, clock_ns)
             answer = self._answer()
             if answer is None:
                 self._lose()
@@ -114,13 +118,14 @@ class Node:
             self.is_busy = answer["busy"]
             self._topics = answer.get("topics", self._topics)
             self._await([((port, of), count) for port, of, count in answer["sent"]])
-            again = self._connect()
+            again = self._connect() or answer["done"] + self._started_ns < until_ns
 
-    def _request(self, until_ns: int) -> None:
+    def _request(self, until_ns: int, clock_ns: int) -> None:
         now = dict(ros_internals.sent())  # of two connections with the same ports, the newer one
         sent = [(link, count) for link, count in now.items() if self._sent.get(link) != count]
         self._sent = now
-        request = {"until": until_ns - self._started_ns, "sent": [[*link, count] for link, count in sent]}
+        until_ns -= self._started_ns
+        request = {"until": until_ns, "clock": clock_ns, "sent": [[*link, count] for link, count in sent]}
         with contextlib.suppress(OSError):  # the answer will tell
             self._channel.sendall(json.dumps(request).encode() + b"\n")
 
@@ -147,6 +152,7 @@ class Node:
         try:
             answer = json.loads(line.decode())
             return {
+                "done": int(answer["done"]),
                 "next": int(answer["next"]),
                 "busy": bool(answer["busy"]),
                 "sent": [tuple(map(int, entry)) for entry in answer["sent"] if len(entry) == 3],

@@ -101,6 +101,7 @@ class Run:
             self.stage.run_jobs,
             int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0),
             self.stage.sim.stamp_ns,
+            self.stage.clock_ns,
         )
 
     def is_dead(self) -> bool:

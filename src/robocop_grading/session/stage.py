@@ -65,6 +65,7 @@ class Stage:
         self.robot = self._topics.robots[0]
         self.odd_scan = False
         self.bag = ScenarioBag(self.sim, self.robot, PARAMS.frames)
+        self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
         self._arrived: Deque[Callable[[], object]] = deque()
@@ -144,7 +145,7 @@ class Stage:
             if observed is not None:
                 self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
-                self.node.go_on(self.sim.stamp_ns)
+                self.node.go_on(self.sim.stamp_ns, self.clock_ns)
         if self.node is None:
             self.run_jobs()
         return self.sample()
@@ -152,7 +153,7 @@ class Stage:
     def digest(self) -> None:
         """Let the node do what it does at once, in no simulated time."""
         if self.node is not None:
-            self.node.go_on(self.sim.stamp_ns)
+            self.node.go_on(self.sim.stamp_ns, self.clock_ns)
 
     def run_jobs(self) -> None:
         """Handle what has arrived."""
@@ -167,14 +168,15 @@ class Stage:
 
     def publish_clock(self) -> None:
         """For nodes that have just come up."""
-        self._topics.publish_clock(self.sim.stamp_ns)
+        self.clock_ns = self.sim.stamp_ns
+        self._topics.publish_clock(self.clock_ns)
         self._topics.count()
 
     def _publish(self, observed: Observations) -> None:
         """One step's observations to the viewer, the submission and the bag; the clock last."""
         stamp, node = convert.to_time(observed.stamp_ns), self.node
         if node is not None and node.next_ns < observed.stamp_ns and not node.is_busy:
-            node.go_on(observed.stamp_ns - 1)
+            node.go_on(observed.stamp_ns - 1, self.clock_ns)
         if self.watch is not None:
             self.watch.observe(observed, self._real_time)
         if self.odd_scan and observed.of(SCAN):
@@ -186,11 +188,11 @@ class Stage:
         self.bag.write_step(observed, stamp)
         if observed.due.clock:
             self.bag.write("/clock", Clock(stamp), stamp)
-            if node is not None and not node.is_busy:  # its loops find the newest data when the clock wakes them up
-                node.go_on(observed.stamp_ns - 1)
+            if node is not None and not node.is_busy and self._topics.clock.get_num_connections():
+                node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who listens to the clock has the newest data before it
             self.publish_clock()
         if node is not None:
-            node.go_on(observed.stamp_ns)
+            node.go_on(observed.stamp_ns, self.clock_ns)
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""

@@ -34,9 +34,9 @@ class StepTopics:
         self._tf = publisher("/tf", TFMessage, on_change=self._on_change)
         self._tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.robots = [SensorTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
-        self._clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
+        self.clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
         self._clock_message = packed_clock()
-        set_latched(self._clock, self._clock_message)
+        set_latched(self.clock, self._clock_message)
         self._changed = True
         self._subscriptions: Subscriptions = {}
         self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
@@ -54,7 +54,7 @@ class StepTopics:
             self._changed = False  # before the look at the connections: a change during it causes another look
             self.count()
             self._batches = {}
-            self._clock_alone = Batch([(self._clock, self._clock_message)])
+            self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
             for index, robot in enumerate(self.robots):
                 for sensor, topic in {**robot.topics, TF: self._tf}.items():
@@ -139,4 +139,4 @@ class StepTopics:
                 else:
                     messages.append((robot.topics[sensor], message))
         with_clock = due.clock and CLOCK not in self._hidden
-        return unpacked, Batch(messages, [(self._clock, self._clock_message)] if with_clock else [])
+        return unpacked, Batch(messages, [(self.clock, self._clock_message)] if with_clock else [])

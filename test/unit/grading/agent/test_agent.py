@@ -26,7 +26,7 @@ class Program:
         script.write_text("import time\nstart = time.monotonic()\n" + text)
         mine, theirs = socket.socketpair()
         self.process = subprocess.Popen(
-            [sys.executable, AGENT, f"{theirs.fileno()},1", str(script), "argument"],
+            [sys.executable, AGENT, f"{theirs.fileno()},0,1", str(script), "argument"],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -48,7 +48,7 @@ class Program:
     def go_on(self, until):
         """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended."""
         try:
-            self._channel.sendall(json.dumps({"until": until, "sent": []}).encode() + b"\n")
+            self._channel.sendall(json.dumps({"until": until, "clock": 0, "sent": []}).encode() + b"\n")
             line = self._lines.readline()
         except OSError:
             return None
