@@ -64,7 +64,7 @@ class Run:
         self.parts = defaultdict(list)
         self._before.clear()
         self.marks = {}
-        self.stage.bag.open(str(self.job.out / f"{self.job.part}-{name}.bag"))
+        self.stage.bag.open(self.job.out / f"{self.job.part}-{name}.bag")
         self.stage.command(STANDSTILL)
         self.stage.begin(index, odd_scan)
 

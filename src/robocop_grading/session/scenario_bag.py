@@ -1,5 +1,7 @@
 """A scenario's bag: what the submission was sent and answered, and what else a replay shows."""
 
+import io
+from pathlib import Path
 from typing import Any, Dict, Optional
 
 import rosbag
@@ -28,6 +30,21 @@ class _NoIndex(Dict[int, Any]):
         pass
 
 
+class _File(io.BytesIO):
+    """A bag in memory until it is closed: rosbag moves about in the file several times for each message."""
+
+    mode = "w+b"  # rosbag asks for it
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path = path
+
+    def close(self) -> None:
+        if not self.closed:
+            self._path.write_bytes(self.getvalue())
+        super().close()
+
+
 class ScenarioBag:
     """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
 
@@ -37,10 +54,11 @@ class ScenarioBag:
         self._frames = frames
         self._bag: Optional[rosbag.Bag] = None
 
-    def open(self, path: str) -> None:
+    def open(self, path: Path) -> None:
         """Begin a bag."""
         self.close()
-        self._bag = rosbag.Bag(path, "w")
+        self._file = _File(path)
+        self._bag = rosbag.Bag(self._file, "w")
         setattr(self._bag, "_connection_indexes", _NoIndex())  # noqa: B010  mypy does not know it
 
     def close(self) -> None:
@@ -51,7 +69,7 @@ class ScenarioBag:
 
     def write(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
         """Write a message, unless the bag has become too large."""
-        if self._bag is not None and self._bag.size < MOST_BAG:
+        if self._bag is not None and self._file.tell() < MOST_BAG:
             self._bag.write(topic, message, stamp or max(convert.to_time(self._sim.stamp_ns), rospy.Time(0, 1)))
 
     def write_static_frames(self, site: Pose2D) -> None:
