@@ -93,12 +93,12 @@ def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:
     """Whether processes use more than `limit` bytes of memory together.
 
     Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
-    once, are only read when the resident sizes exceed the limit.
+    once, are only read when the resident sizes exceed the limit. The same holds for the memory of sockets.
     """
-    unmapped = kernel_memory.total(processes)
-    if sum(_memory(process, proportional=False) for process in processes) + unmapped <= limit:
-        return False
-    return sum(_memory(process, proportional=True) for process in processes) + unmapped > limit
+    return all(
+        sum(_memory(process, exact) for process in processes) + kernel_memory.total(processes, exact) > limit
+        for exact in (False, True)
+    )
 
 
 def _memory(process: "psutil.Process", proportional: bool) -> int:
