@@ -3,15 +3,13 @@
 import contextlib
 import os
 import sys
-import time
 from pathlib import Path
 from urllib.parse import urlparse
 
-import rosgraph
 import rospy
 
 from aro_robocop_goto_as.errors import GraderLostError, NoTimeError, WatchError
-from aro_robocop_goto_as.process import child
+from aro_robocop_goto_as.ros.own_master import start_master
 from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from ..record import read
@@ -23,7 +21,6 @@ from .server import ServerRun
 from .stage import PARAMS, Stage
 from .watch import Watch
 
-MASTER_TIMEOUT = 600.0  # [s, wall]
 REFUSAL = "the judge decides where the robot and the models of the world are"  # to calls of Gazebo's that change them
 
 
@@ -35,23 +32,13 @@ def _serve_gazebo(stage: Stage) -> None:
         GazeboServices(stage.simulation, None, REFUSAL)
 
 
-def _start_master() -> None:
-    """Start a master at ROS_MASTER_URI, in this process's session, which the grader ends as a whole."""
-    port = urlparse(os.environ["ROS_MASTER_URI"]).port
-    child.start(["rosmaster", "--core", "-p", str(port)], start_new_session=False)
-    deadline = time.monotonic() + MASTER_TIMEOUT
-    while not rosgraph.is_master_online():
-        if time.monotonic() > deadline:
-            print(f"busy no ROS master within {MASTER_TIMEOUT:g} s", flush=True)
-            sys.exit(1)
-        time.sleep(0.02)
-
-
 def main() -> None:
     """Usage: main JOB, with a free port in ROS_MASTER_URI."""
     job = read(Job, Path(sys.argv[1]))
     ros_internals.install()
-    _start_master()
+    if start_master(int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0)) is None:
+        print("busy another program has taken the ROS master's port", flush=True)
+        sys.exit(1)
     rospy.set_param("/use_sim_time", True)
     # rospy asks the master for it with every line it logs, unless it is set.
     rospy.set_param("/rosout_disable_topics_generation", True)

@@ -3,7 +3,6 @@
 import functools
 import os
 import subprocess
-import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Callable, Optional
@@ -14,24 +13,23 @@ from rosgraph.xmlrpc import XmlRpcNode
 from roslaunch import loader, nodeprocess, pmon
 from roslaunch.parent import ROSLaunchParent
 from roslaunch.pmon import ProcessListener
-from rosmaster.master_api import NUM_WORKERS, ROSMasterHandler
 
 from ...bootstrap import master
 from ...errors import MasterError, ParameterError
 from ...process.orphans import end_with_parent
 from ...reading import reading
 from ..names import PACKAGE
+from ..own_master import start_master
 from .preflight import require_parameters
 
 PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
-POLL = 0.001  # [s, wall]
 
 
 class Launcher(ROSLaunchParent, ProcessListener):
     """roslaunch's parent of all nodes, with a ROS master in its own process where none answers.
 
-    roslaunch would start one as a process of its own, which takes as long to start as a node, and outlives a launcher
-    that is killed. It has imported rosmaster in any case, and uses a master that answers.
+    roslaunch would start one as a process of its own. It has imported rosmaster in any case, and uses a master that
+    answers.
     """
 
     failed = False  # whether a required node of PACKAGES did; RViz crashing when it closes is no failure
@@ -82,12 +80,8 @@ class Launcher(ROSLaunchParent, ProcessListener):
                 return False
         except MasterError:  # something else answers there
             return False
-        failed = threading.Event()
-        self._master = XmlRpcNode(port, ROSMasterHandler(NUM_WORKERS), on_run_error=lambda _: failed.set())
-        self._master.start()
-        while self._master.uri is None and not failed.wait(POLL):
-            pass
-        return not failed.is_set()
+        self._master = start_master(port)
+        return self._master is not None
 
     def _stop_infrastructure(self) -> None:
         super()._stop_infrastructure()
