@@ -1,4 +1,7 @@
-"""Usage: python agent CHANNEL SCRIPT [ARGUMENT...]; CHANNEL, by commas: a descriptor, the time on /clock [ns], and the grader's ports."""
+"""Usage: python agent CHANNEL SCRIPT [ARGUMENT...].
+
+CHANNEL, by commas: a descriptor, the time on /clock [ns], and the grader's ports.
+"""
 
 import importlib.util
 import os

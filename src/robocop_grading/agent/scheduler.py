@@ -192,7 +192,7 @@ def wait_until_idle(timeout: float) -> bool:
 
 
 def wait_for_work(timeout: float) -> None:
-    """After wait_until_idle() was true: wait until threads have run and all wait again, for `timeout` [s, wall] at most."""
+    """When every thread waits: wait until some have run and all wait again, for `timeout` [s, wall] at most."""
     _idle.acquire(True, timeout)
 
 

@@ -7,6 +7,7 @@ counts as waiting. Other processes hold simulated time as long as they work, and
 import contextlib
 import glob
 import os
+import re
 import sys
 import time
 from typing import Dict, Iterator, List
@@ -16,6 +17,7 @@ from .threads import native_ids
 
 STARTS = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")  # audit events
 TICK = os.sysconf("SC_CLK_TCK")
+ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
 _process_time, _thread_time = time.process_time, time.thread_time
 _asleep: Dict[int, str] = {}  # threads at the previous look, with how often they have run
 
@@ -37,10 +39,10 @@ def _sleep_of(native_id: int) -> str:
     """How often a thread has run, if it sleeps now."""
     try:
         with open(f"/proc/self/task/{native_id}/status") as file:
-            fields = dict(line.split(":", 1) for line in file)
+            asleep = ASLEEP.search(file.read())
     except OSError:  # it has ended
         return "ended"
-    return fields["voluntary_ctxt_switches"] if fields["State"].split()[0] in "ST" else ""
+    return asleep.group(1) if asleep else ""
 
 
 class Others:

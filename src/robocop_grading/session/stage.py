@@ -189,7 +189,7 @@ class Stage:
         if observed.due.clock:
             self.bag.write("/clock", Clock(stamp), stamp)
             if node is not None and not node.is_busy and self._topics.clock.get_num_connections():
-                node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who listens to the clock has the newest data before it
+                node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who subscribes to it has the newest data before
             self.publish_clock()
         if node is not None:
             node.go_on(observed.stamp_ns, self.clock_ns)
