@@ -52,6 +52,8 @@ def install(now_ns: int, ports: Set[int]) -> None:
 
     _calls(TCPROSTransport, "connect", lambda _transport, _host, port, *_: port in ports)
     _calls(TCPROSTransport, "receive_once", answers)
+    # A topic with a queue would have a thread for each subscriber, and drop messages if that is not scheduled in time.
+    rospy.topics.QueuedConnection = lambda connection, _size: connection
     simtime.init_simtime = _init_simtime(simtime)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
