@@ -1,9 +1,10 @@
 """The grader's requests to go on until a simulated time, and the answers when everything is done.
 
-A request and an answer are each a line of JSON.
+A request and an answer are each a line of numbers. After an answer's, there are a tab and ros.topics() as JSON if they
+may have changed. Of each connection: PORT OF THIS PROCESS, PORT OF THE GRADER, BYTES SENT so far.
 
-    {"until": [ns], "clock": [ns], "sent": [[PORT OF THIS PROCESS, PORT OF THE GRADER, BYTES]...]}
-    {"done": [ns], "next": [ns], "busy": BOOL, "sent": [[...]...], "topics": {...}}
+    UNTIL [ns] CLOCK [ns] CONNECTION...
+    DONE [ns] NEXT [ns] BUSY [0 or 1] CONNECTION...
 """
 
 import ctypes
@@ -11,7 +12,7 @@ import json
 import math
 import os
 import socket
-from typing import Any, Dict, Iterator, List, Set
+from typing import Iterator, List, Set
 
 from . import ros, scheduler, stuck
 
@@ -44,16 +45,15 @@ class Channel:
     def _serve(self) -> None:
         for request in self._requests():
             scheduler.turn += 1
-            scheduler.expected.update(((port, of), count) for port, of, count in request["sent"])
-            self._busy = not self._go_on(request["until"], request["clock"])
-            answer = {
-                **{"done": scheduler.now_ns, "next": scheduler.next_deadline()},
-                **{"busy": self._busy, "sent": self._sent()},
-            }
-            if scheduler.calls != self._calls:  # it may have told the master, or connected to a topic
-                self._calls, answer["topics"] = scheduler.calls, ros.topics(self._ports)
-            self._write(json.dumps(answer).encode() + b"\n")
-            if self._busy and "topics" not in answer:  # the grader connects to new topics, which needs its threads
+            until_ns, clock_ns, *sent = map(int, request.split())
+            scheduler.expected.update(((port, of), count) for port, of, count in zip(*[iter(sent)] * 3))
+            self._busy = not self._go_on(until_ns, clock_ns)
+            answer = [scheduler.now_ns, scheduler.next_deadline(), int(self._busy), *self._sent()]
+            has_called = scheduler.calls != self._calls  # it may have told the master, or connected to a topic
+            self._calls = scheduler.calls
+            topics = "\t" + json.dumps(ros.topics(self._ports)) if has_called else ""
+            self._write(f"{' '.join(map(str, answer))}{topics}\n".encode())
+            if self._busy and not has_called:  # the grader connects to new topics, which needs its threads
                 self._freeze()
 
     def _freeze(self) -> None:
@@ -64,14 +64,14 @@ class Channel:
         while data:
             data = data[os.write(self._descriptor, data) :]
 
-    def _requests(self) -> Iterator[Dict[str, Any]]:
+    def _requests(self) -> Iterator[bytes]:
         data = b""
         while True:
             more = os.read(self._descriptor, 65536)
             if not more:
                 return
             *lines, data = (data + more).split(b"\n")
-            yield from map(json.loads, lines)
+            yield from lines
 
     def _go_on(self, until_ns: int, clock_ns: int) -> bool:
         """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
@@ -116,11 +116,11 @@ class Channel:
                     self._allowance, self._patience = IMPATIENCE, BRIEFLY
                 return False
 
-    def _sent(self) -> List[List[int]]:
-        """What has been sent since the last time, by connection."""
-        found = []
+    def _sent(self) -> List[int]:
+        """The connections on which something has been sent since the last time."""
+        found: List[int] = []
         for traffic in list(scheduler.received.values()):
             if traffic.link is not None and traffic.sent != traffic.reported:
                 traffic.reported = traffic.sent
-                found.append([*traffic.link, traffic.sent])
+                found += [*traffic.link, traffic.sent]
         return found

@@ -12,7 +12,7 @@ import time
 from functools import partial
 from pathlib import Path
 from subprocess import PIPE, STDOUT
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import rospy
 
@@ -40,6 +40,16 @@ def _own_limit() -> float:
     """The limit of this process's processor time [s], which the sandbox has set, and which is also the node's."""
     soft, _ = resource.getrlimit(resource.RLIMIT_CPU)
     return math.inf if soft == resource.RLIM_INFINITY else float(soft)
+
+
+class _Answer(NamedTuple):
+    """What the agent says when the node has done all that it does until a time; see agent/channel.py."""
+
+    done_ns: int  # since the node was started
+    next_ns: int  # likewise
+    is_busy: bool
+    sent: List[Tuple[ros_internals.Link, int]]  # bytes
+    topics: Dict[str, Any]
 
 
 class Node:
@@ -114,20 +124,19 @@ class Node:
             if answer is None:
                 self._lose()
                 return
-            self.next_ns = min(NEVER, answer["next"] + self._started_ns)
-            self.is_busy = answer["busy"]
-            self._topics = answer.get("topics", self._topics)
-            self._await([((port, of), count) for port, of, count in answer["sent"]])
-            again = self._connect() or answer["done"] + self._started_ns < until_ns
+            self.next_ns = min(NEVER, answer.next_ns + self._started_ns)
+            self.is_busy = answer.is_busy
+            self._topics = answer.topics or self._topics
+            self._await(answer.sent)
+            again = self._connect() or answer.done_ns + self._started_ns < until_ns
 
     def _request(self, until_ns: int, clock_ns: int) -> None:
         now = dict(ros_internals.sent())  # of two connections with the same ports, the newer one
-        sent = [(link, count) for link, count in now.items() if self._sent.get(link) != count]
+        sent = [f"{port} {of} {count}" for (port, of), count in now.items() if self._sent.get((port, of)) != count]
         self._sent = now
-        until_ns -= self._started_ns
-        request = {"until": until_ns, "clock": clock_ns, "sent": [[*link, count] for link, count in sent]}
+        request = " ".join([f"{until_ns - self._started_ns} {clock_ns}", *sent])
         with contextlib.suppress(OSError):  # the answer will tell
-            self._channel.sendall(json.dumps(request).encode() + b"\n")
+            self._channel.sendall(f"{request}\n".encode())
 
     def _wait(self, done: Callable[[], bool], pause: float = POLL, most_switches: float = math.inf) -> bool:
         """Wait until `done` is true; False if that can't be expected any more, as the node does nothing at all.
@@ -144,21 +153,17 @@ class Node:
             time.sleep(pause)
         return True
 
-    def _answer(self) -> Optional[Dict[str, Any]]:
+    def _answer(self) -> Optional[_Answer]:
         """The agent's answer; None if there is none, or nothing that an agent would say."""
         if not self._wait(self._has_answer, pause=0.0) or b"\n" not in self._buffer:
             return None
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
-            answer = json.loads(line.decode())
-            return {
-                "done": int(answer["done"]),
-                "next": int(answer["next"]),
-                "busy": bool(answer["busy"]),
-                "sent": [tuple(map(int, entry)) for entry in answer["sent"] if len(entry) == 3],
-                **({"topics": answer["topics"]} if "topics" in answer else {}),
-            }
-        except (ValueError, KeyError, TypeError):
+            numbers, _, topics = line.decode().partition("\t")
+            done_ns, next_ns, is_busy, *sent = map(int, numbers.split())
+            links = [((port, of), count) for port, of, count in zip(*[iter(sent)] * 3)]
+            return _Answer(done_ns, next_ns, bool(is_busy), links, json.loads(topics) if topics else {})
+        except ValueError:
             return None
 
     def _has_answer(self) -> bool:
@@ -184,7 +189,7 @@ class Node:
 
     # -- messages and connections --
 
-    def _await(self, sent: List[Any]) -> None:
+    def _await(self, sent: List[Tuple[ros_internals.Link, int]]) -> None:
         """Wait until what the node has sent has arrived, and has been made use of."""
 
         def arrived() -> bool:
