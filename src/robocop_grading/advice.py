@@ -12,6 +12,10 @@ WALL_SLEEP = (
     "time.sleep follows the wall clock, not the simulator's, so the loop's rate depends on how fast simulated time "
     "passes: use rospy.Rate or rospy.sleep"
 )
+WALL_ALARM = (
+    "signal.alarm and signal.setitimer follow the wall clock, also in the grader, where simulated time passes at another "
+    "rate: use rospy.Timer"
+)
 
 
 TODO = re.compile(r"#[ \t]*(TODO (\d+))\b")
@@ -50,3 +54,5 @@ def _about(call: ast.Call) -> Iterator[str]:
             yield AUTO_START  # also without the argument: True is its default
     elif (of, name) == ("time", "sleep"):
         yield WALL_SLEEP
+    elif (of, name) in (("signal", "alarm"), ("signal", "setitimer"), ("", "setitimer")):
+        yield WALL_ALARM

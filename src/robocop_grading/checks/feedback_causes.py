@@ -104,17 +104,19 @@ OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 def likely_cause(index: int, wrong: Sequence[Pair], pairs: Sequence[Pair]) -> str:
     """The hypothesis that fits all values best, of those that fit most of the wrong ones and most of all.
 
-    A few wrong values fit many hypotheses, which the right ones then contradict.
+    A few wrong values fit many hypotheses, which the right ones then contradict. `wrong` are among `pairs`.
     """
     values = [pair.feedback.errors[index] for pair in wrong]
     if not all(map(math.isfinite, values)):
         return text("Some values of {} are not finite", ERRORS[index])
     knows_position = median(_misses(POSITION, pairs, lambda pair: pair.truth[POSITION])) < FITS
+    are_wrong = set(map(id, wrong))
     best, least = text(OTHERWISE[index]), math.inf
     for cause, predict in CAUSES[index]:
         impossible = knows_position if cause == FROM_ORIGIN else cause in NEVER_FILLED and any(values)
         misses = _misses(index, pairs, predict)
-        if impossible or median(misses) >= FITS or median(_misses(index, wrong, predict)) >= FITS:
+        of_wrong = [miss for pair, miss in zip(pairs, misses) if id(pair) in are_wrong]
+        if impossible or median(misses) >= FITS or median(of_wrong) >= FITS:
             continue
         miss = _mean(misses)
         if miss < least - EXACT:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.advice import AUTO_START, WALL_SLEEP, advice
+from robocop_grading.advice import AUTO_START, WALL_ALARM, WALL_SLEEP, advice
 
 
 @pytest.mark.parametrize(
@@ -21,6 +21,11 @@ def test_server_that_starts_inside_its_constructor_is_named(code: str) -> None:
 
 def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line() -> None:
     assert advice("import time\nwhile True:\n    time.sleep(0.1)\n    time.sleep(1)") == [f"line 3: {WALL_SLEEP}"]
+
+
+@pytest.mark.parametrize("code", ["signal.alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"])
+def test_signals_by_the_wall_clock_are_named(code: str) -> None:
+    assert advice(code) == [f"line 1: {WALL_ALARM}"]
 
 
 @pytest.mark.parametrize(
