@@ -13,8 +13,8 @@ WALL_SLEEP = (
     "passes: use rospy.Rate or rospy.sleep"
 )
 WALL_ALARM = (
-    "signal.alarm and signal.setitimer follow the wall clock, also in the grader, where simulated time passes at another "
-    "rate: use rospy.Timer"
+    "signal.alarm and signal.setitimer follow the wall clock, also in the grader, where simulated time passes at "
+    "another rate: use rospy.Timer"
 )
 
 
