@@ -112,14 +112,16 @@ class Node:
 
     # -- time --
 
-    def go_on(self, until_ns: int, clock_ns: int) -> None:
+    def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object] = lambda: None) -> None:
         """Let the node live until a simulated time [ns]; when this returns, all that it did until then has arrived.
 
-        `clock_ns`: the time on /clock, which its loops see when they have handled all messages.
+        `clock_ns`: the time on /clock, which its loops see when they have handled all messages. `meanwhile` is called
+        once, while the node works.
         """
-        again = True
-        while again and not self._lost:
-            self._request(until_ns, clock_ns)
+        again = not self._lost
+        self._request(until_ns, clock_ns)
+        meanwhile()
+        while again:
             answer = self._answer()
             if answer is None:
                 self._lose()
@@ -129,6 +131,8 @@ class Node:
             self._topics = answer.topics or self._topics
             self._await(answer.sent)
             again = self._connect() or answer.done_ns + self._started_ns < until_ns
+            if again:
+                self._request(until_ns, clock_ns)
 
     def _request(self, until_ns: int, clock_ns: int) -> None:
         now = dict(ros_internals.sent())  # of two connections with the same ports, the newer one

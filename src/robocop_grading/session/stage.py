@@ -185,14 +185,20 @@ class Stage:
         self._topics.count()  # the agent is told how much was sent
         if self.watch is not None and observed.of(TF):
             self.watch.tf.publish(self.robot.transform_messages(stamp))
-        self.bag.write_step(observed, stamp)
         if observed.due.clock:
-            self.bag.write("/clock", Clock(stamp), stamp)
             if node is not None and not node.is_busy and self._topics.clock.get_num_connections():
                 node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who subscribes to it has the newest data before
             self.publish_clock()
-        if node is not None:
-            node.go_on(observed.stamp_ns, self.clock_ns)
+        keep = partial(self._keep_step, observed, stamp)
+        if node is None:
+            keep()
+        else:
+            node.go_on(observed.stamp_ns, self.clock_ns, meanwhile=keep)
+
+    def _keep_step(self, observed: Observations, stamp: rospy.Time) -> None:
+        self.bag.write_step(observed, stamp)
+        if observed.due.clock:
+            self.bag.write("/clock", Clock(stamp), stamp)
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
