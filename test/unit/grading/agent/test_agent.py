@@ -53,10 +53,13 @@ class Program:
         self.process.stdout.close()
         self._channel.close()
 
-    def go_on(self, until):
-        """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended."""
+    def go_on(self, until, clock=0):
+        """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended.
+
+        `clock`: what /clock shows then [ns].
+        """
         try:
-            self._channel.sendall(f"{until} 0\n".encode())
+            self._channel.sendall(f"{until} {clock}\n".encode())
             line = self._lines.readline()
         except OSError:
             return None
@@ -213,6 +216,48 @@ def test_message_that_arrives_wakes_its_reader_before_time_goes_on(tmp_path):
             client.sendall(b"hello")
             program.go_on(2 * STEP)
             assert program.process.stdout.readline() == "b'hello' 0.01\n"
+
+
+# Its main thread sleeps by rospy's clock, and a thread of its own handles what is sent to the port that it prints.
+SLEEPS_BY_THE_CLOCK = """
+import socket, sys, threading, rospy
+rospy.rostime._set_rostime(rospy.Time(0, 1))
+rospy.rostime.set_rostime_initialized(True)
+server, data = socket.create_server(('127.0.0.1', 0)), None
+def read():
+    global data
+    connection, _ = server.accept()
+    received = connection.recv(5)
+    for _ in range(10**6): pass
+    {}
+    data = received
+threading.Thread(target=read, daemon=True).start()
+print(server.getsockname()[1], flush=True)
+rospy.sleep(0.5)
+print(data, round(rospy.get_time(), 3), flush=True)
+time.sleep(60)
+"""
+
+
+def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
+    with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("")) as program:
+        assert program.go_on(STEP, clock=0).done == STEP
+        port = int(program.process.stdout.readline())
+        program.go_on(2 * STEP, clock=4 * 10**8)
+        with socket.create_connection(("127.0.0.1", port)) as client:
+            client.sendall(b"hello")
+            assert program.go_on(3 * STEP, clock=6 * 10**8).done == 3 * STEP
+            assert program.process.stdout.readline() == "b'hello' 0.6\n"
+
+
+def test_grader_learns_of_new_topics_before_the_clock_goes_on(tmp_path):
+    with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("sys.modules['robocop_agent.scheduler'].calls += 1")) as program:
+        program.go_on(STEP)
+        with socket.create_connection(("127.0.0.1", int(program.process.stdout.readline()))) as client:
+            client.sendall(b"hello")
+            assert program.go_on(2 * STEP, clock=6 * 10**8).done < 2 * STEP
+            assert program.go_on(2 * STEP, clock=6 * 10**8).done == 2 * STEP
+            assert program.process.stdout.readline() == "b'hello' 0.6\n"
 
 
 def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):

@@ -5,10 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import psutil
 import pytest
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.process.child import kill_tree
+from robocop_grading.sandbox import kernel_memory
 from robocop_grading.sandbox.bubblewrap import open_sandbox
 from robocop_grading.sandbox.guard import Guard
 
@@ -114,6 +116,12 @@ def test_process_that_ends_by_itself_is_reported_without_a_reason(code):
 @pytest.mark.parametrize("number, alive, reason", [(110, 600.0, True), (5, 0.5, False)])
 def test_what_sockets_can_hold_counts_as_memory(kind, place, number, alive, reason, tmp_path):
     assert bool(in_sandbox(PARKED.replace("{alive}", str(alive)), place, tmp_path, kind, number)) == reason
+
+
+def test_tables_of_connections_are_read_only_for_the_exact_number(monkeypatch):
+    monkeypatch.setenv(kernel_memory.OUTER_NETWORK, "1")  # another one than this process's
+    monkeypatch.setattr(kernel_memory, "_queued", lambda _table: 10**15)
+    assert [kernel_memory.total([psutil.Process()], exact) > 10**15 for exact in (False, True)] == [False, True]
 
 
 @pytest.mark.parametrize("place", ["node", "build"])
