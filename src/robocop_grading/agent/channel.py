@@ -44,7 +44,6 @@ class Channel:
 
     def _serve(self) -> None:
         for request in self._requests():
-            scheduler.turn += 1
             until_ns, clock_ns, *sent = map(int, request.split())
             scheduler.expected.update(((port, of), count) for port, of, count in zip(*[iter(sent)] * 3))
             self._busy = not self._go_on(until_ns, clock_ns)
@@ -52,6 +51,7 @@ class Channel:
             has_called = scheduler.calls != self._calls  # it may have told the master, or connected to a topic
             self._calls = scheduler.calls
             topics = "\t" + json.dumps(ros.topics(self._ports)) if has_called else ""
+            scheduler.turn += 1  # what the grader sends from now on belongs to the next one
             self._write(f"{' '.join(map(str, answer))}{topics}\n".encode())
             if self._busy and not has_called:  # the grader connects to new topics, which needs its threads
                 self._freeze()
