@@ -21,6 +21,7 @@ import roslib.packages
 import rospy
 import waiting
 
+from aro_robocop_goto_as.process.orphans import end_with_parent
 from aro_robocop_goto_as.process.ports import free_port
 
 PACKAGE = "aro_robocop_goto_as"
@@ -81,7 +82,12 @@ class System:
         self.log_offsets.setdefault(log, 0)
         with open(output or log, "ab") as file:
             self.processes[name] = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=file, stderr=file, start_new_session=True
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=file,
+                stderr=file,
+                start_new_session=True,
+                preexec_fn=end_with_parent(),
             )
 
     def start(self, node, *arguments, output=None):
