@@ -87,7 +87,7 @@ class System:
                 stdout=file,
                 stderr=file,
                 start_new_session=True,
-                preexec_fn=end_with_parent(),
+                preexec_fn=end_with_parent(signal.SIGKILL),  # it may be stopped
             )
 
     def start(self, node, *arguments, output=None):

@@ -12,8 +12,8 @@ LIBC = ctypes.CDLL(None, use_errno=True)  # loaded here: between fork and exec l
 POLL = 0.02  # [s, wall]
 
 
-def end_with_parent() -> Callable[[], None]:
-    """A preexec_fn for subprocess.Popen: Linux sends the child SIGTERM when this process ends, however that ends.
+def end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
+    """A preexec_fn for subprocess.Popen: Linux sends the child a signal when this process ends, however that ends.
 
     Linux sends it already when the thread ends that starts the child, so that must live as long as this process. What
     the child starts itself is not affected; that is the child's business.
@@ -21,9 +21,9 @@ def end_with_parent() -> Callable[[], None]:
     parent = os.getpid()
 
     def between_fork_and_exec() -> None:
-        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
+        LIBC.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
         if os.getppid() != parent:  # it has ended already
-            os.kill(os.getpid(), signal.SIGTERM)
+            os.kill(os.getpid(), number)
 
     return between_fork_and_exec
 
