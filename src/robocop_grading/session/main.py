@@ -14,7 +14,7 @@ from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from ..record import read
 from ..runner import Job
-from . import ros_internals
+from . import progress, ros_internals
 from .bridge import BridgeRun
 from .run import NODE_LOST, Run
 from .server import ServerRun
@@ -34,10 +34,11 @@ def _serve_gazebo(stage: Stage) -> None:
 
 def main() -> None:
     """Usage: main JOB, with a free port in ROS_MASTER_URI."""
+    progress.start()
     job = read(Job, Path(sys.argv[1]))
     ros_internals.install()
     if start_master(int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0)) is None:
-        print("busy another program has taken the ROS master's port", flush=True)
+        progress.tell("busy another program has taken the ROS master's port")
         sys.exit(1)
     rospy.set_param("/use_sim_time", True)
     # rospy asks the master for it with every line it logs, unless it is set.
@@ -66,12 +67,13 @@ def main() -> None:
         print(NODE_LOST, file=sys.stderr)
         status = 1
     except NoTimeError as error:
-        print(f"busy {error}")
+        progress.tell(f"busy {error}")
     except WatchError as error:
-        print(f"error {error}")
+        progress.tell(f"error {error}")
         status = 1
     finally:
         run.close()
+        stage.bag.close()  # of a scenario that was cut short
         if stage.watch is not None:
             stage.watch.close()
     sys.stdout.flush()

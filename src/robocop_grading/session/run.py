@@ -23,6 +23,7 @@ from ..record import Record
 from ..runner import Job
 from ..sandbox import memory_group
 from ..sandbox.guard import exceeded_memory
+from . import progress
 from .display import is_shown
 from .node import Node
 from .stage import Stage
@@ -55,7 +56,7 @@ class Run:
 
     def announce(self, name: str, about: str) -> None:
         """Tell the grader, and the viewer if the run is watched, which scenario is the next one."""
-        print(f"begin {name}", flush=True)
+        progress.tell(f"begin {name}")
         if self.stage.watch is not None:
             self.stage.watch.begin(f"{self.job.part}: {name}", about)
 
