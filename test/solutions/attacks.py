@@ -88,7 +88,8 @@ def strike():
     for uri in (os.environ['ROS_MASTER_URI'],
                 rospy.get_master().lookupNode('/robocop_sim')[2]):
         try:
-            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', 'attack' + chr(10) + 'busy no time' + chr(10) + 'error attack')
+            words = chr(10).join(('attack', 'busy no time', 'error attack'))
+            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', words)
         except Exception as error:
             print(error, flush=True)
 threading.Thread(target=strike, daemon=True).start()

@@ -55,7 +55,7 @@ def test_server_with_an_endless_loop_counts_as_not_started(tmp_path):
 def test_killing_the_ros_master_ends_the_run_with_a_reason(tmp_path):
     run, _ = attacked(attacks.KILL_MASTER, tmp_path / "mine")
     assert "was ended while the submission ran" in run.problem or "was shut down while" in run.problem
-    assert list((tmp_path / "mine").rglob("server-left.bag"))  # of the scenario that was cut short
+    assert list((tmp_path / "mine").rglob("server-already_there.bag"))  # of the scenario that was cut short
 
 
 @pytest.mark.parametrize(
