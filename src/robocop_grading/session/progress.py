@@ -11,7 +11,7 @@ _descriptor = -1
 
 def start() -> None:
     """From now on, what is printed goes to standard error, and tell() to what standard output was."""
-    global _descriptor  # noqa: PLW0603  one for the process, as standard output is
+    global _descriptor
     sys.stdout.flush()
     _descriptor = os.dup(1)
     os.dup2(2, 1)

@@ -231,7 +231,7 @@ def refuse_unknown(command: str) -> NoReturn:
     sys.exit(UNKNOWN_COMMAND)
 
 
-def no_arguments(arguments: List[str]) -> None:
+def clean(arguments: List[str]) -> None:
     """End with an error: the shell script itself removes what was built, if there are none."""
     refuse(f"clean: expected no arguments, got {' '.join(arguments)}")
 
@@ -270,7 +270,7 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "version": lambda _: print(program.version()),
     "--version": lambda _: print(program.version()),
     "completion": lambda _: print(completion.completion(), end=""),
-    "clean": no_arguments,
+    "clean": clean,
     "help": show_help,
 }
 OWN_HELP = ("goto", "teleop", "new", "grade", "grade-class", "bench", "test", "shell")  # they read --help themselves
