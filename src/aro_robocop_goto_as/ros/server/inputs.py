@@ -22,7 +22,8 @@ from .tuning import Tuning
 # started takes up to a second on a busy machine; at full speed data_timeout passes meanwhile.
 FIRST_MESSAGE = 3.0
 LATE_DATA = 0.2  # [s, wall] that a message may arrive after the clock tick it was published before
-LOCKSTEP_PATIENCE = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
+# [s, wall and processor] for messages that a simulator in lockstep has already published
+LOCKSTEP_PATIENCE = 1.0
 
 
 @dataclass(frozen=True)
@@ -44,11 +45,17 @@ class Inputs:
     """Callbacks store the newest messages; the control loop reads what they mean."""
 
     def __init__(
-        self, tuning: Tuning, ros_time: Callable[[], float] = _ros_time, wall: Callable[[], float] = time.monotonic
+        self,
+        tuning: Tuning,
+        ros_time: Callable[[], float] = _ros_time,
+        wall: Callable[[], float] = time.monotonic,
+        processor_time: Callable[[], float] = time.process_time,
+        callbacks_want_to_run: Callable[[], bool] = others_want_to_run,
     ) -> None:
-        """`ros_time` and `wall` are the clocks [s]."""
+        """The first three are clocks [s]; the last tells whether a callback may wait for a processor."""
         self._tuning = tuning
-        self._ros_time, self._wall = ros_time, wall
+        self._ros_time, self._wall, self._processor_time = ros_time, wall, processor_time
+        self._callbacks_want_to_run = callbacks_want_to_run
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
@@ -83,19 +90,21 @@ class Inputs:
             newest = [topic for topic in (self.odom, self.scan) if topic is not None]
             return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
 
-        self._await(complete, LOCKSTEP_PATIENCE)
+        if self.odom is None or self.scan is None:  # nothing tells when the first one is due, but it may have been sent
+            self._await(lambda: self.odom is not None and self.scan is not None, 0.0, LOCKSTEP_PATIENCE)
+        self._await(complete, LOCKSTEP_PATIENCE, LOCKSTEP_PATIENCE)
 
-    def _await(self, complete: Callable[[], bool], patience: float) -> bool:
-        """Wait for messages until `complete`, for `patience` [s, wall], and as long as callbacks wait for a processor.
+    def _await(self, complete: Callable[[], bool], wall: float, processor: float) -> bool:
+        """Wait for messages until `complete`, for `wall` [s], and as long as callbacks wait for a processor.
 
-        These may take as much processor time, too. Returns whether it is complete.
+        These may take `processor` [s] of its time. Returns whether it is complete.
         """
-        limit = time.process_time() + patience
+        limit = self._processor_time() + processor
         while True:
             with self._arrived:
-                if self._arrived.wait_for(complete, patience):
+                if self._arrived.wait_for(complete, wall):
                     return True
-            if time.process_time() >= limit or not others_want_to_run():
+            if self._processor_time() >= limit or not self._callbacks_want_to_run():
                 with self._arrived:  # a callback may have got a processor, and ended, just before that look
                     return complete()
 
@@ -117,7 +126,7 @@ class Inputs:
             connecting = newest is None or newest.wall < accepted
             if connecting and self._wall() - accepted < FIRST_MESSAGE:
                 continue
-            if overdue and not self._await(self._has_data, LATE_DATA):
+            if overdue and not self._await(self._has_data, LATE_DATA, LATE_DATA):
                 return outcome, self._absence(name, valid, now)
         return None
 

@@ -167,9 +167,14 @@ class GotoNode:
     # -- lockstep --
 
     def _simulator_in_lockstep(self) -> bool:
-        """Whether the node that publishes odometry receives the answers; others, such as rosbag, may subscribe too."""
+        """Whether the node that publishes odometry receives the answers; others, such as rosbag, may subscribe too.
+
+        Before the first odometry that node is unknown: it may be any.
+        """
         odom = self.inputs.odom
-        return odom is not None and is_connected_to(self.answers, sender(odom.message))
+        if odom is None:
+            return bool(self.answers.get_num_connections())
+        return is_connected_to(self.answers, sender(odom.message))
 
     def _answer_tick(self, tick_ns: int) -> None:
         """Tell a simulator in lockstep that this control period is complete, with the command since the last one."""

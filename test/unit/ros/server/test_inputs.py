@@ -19,7 +19,24 @@ class Server:
 
     def __init__(self):
         self.ros_time, self.wall, self.params = 1.5, 100.0, GotoParams()
-        self.inputs = Inputs(self, lambda: self.ros_time, lambda: self.wall)
+        self.inputs = Inputs(self, lambda: self.ros_time, lambda: self.wall, lambda: 0.0, self.callbacks_want_to_run)
+        self.looks = 0
+        self.at_looks = []  # what happens at each look at the callbacks; they want to run while this lasts
+        self.at_last_look = lambda: None
+
+    def callbacks_want_to_run(self):
+        self.looks += 1
+        if not self.at_looks:
+            self.at_last_look()
+            return False
+        self.at_looks.pop(0)()
+        return True
+
+    def receive_odom(self, stamp):
+        """Odometry of a time [s]."""
+        odom = Odometry()
+        odom.header.stamp = rospy.Time(stamp)
+        self.inputs.on_odom(odom)
 
     def receive(self, ahead, orientation_w=1.0):
         """Odometry, and a scan with one beam [m]."""
@@ -112,34 +129,27 @@ def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
 
 
 def test_messages_of_a_tick_are_waited_for_while_their_callbacks_get_no_processor(server, monkeypatch):
-    looks = []
-
-    def others_want_to_run():
-        looks.append(server.inputs.odom)
-        if len(looks) == 3:
-            odom = Odometry()
-            odom.header.stamp = rospy.Time(2.0)
-            server.inputs.on_odom(odom)
-        return True
-
     monkeypatch.setattr(f"{Inputs.__module__}.LOCKSTEP_PATIENCE", 0.01)
-    monkeypatch.setattr(f"{Inputs.__module__}.others_want_to_run", others_want_to_run)
-    monkeypatch.setattr("time.process_time", lambda: 0.0)  # what the test itself uses does not count
-    for stamp in (1.0, 1.5):
-        odom = Odometry()
-        odom.header.stamp = rospy.Time(stamp)
-        server.inputs.on_odom(odom)
+    server.receive_odom(1.0)
+    server.receive_odom(1.5)
+    server.at_looks = [lambda: None, lambda: None, lambda: server.receive_odom(2.0)]
     server.inputs.await_tick(2 * 10**9)
-    assert len(looks) == 3
+    assert server.at_looks == []
 
 
-def test_data_that_arrives_in_the_moment_of_the_last_look_is_not_missing(server, monkeypatch):
+def test_first_messages_are_waited_for_while_their_callbacks_get_no_processor(server):
+    server.at_looks = [lambda: None, lambda: server.receive_odom(1.0), lambda: None, lambda: server.receive(2.0)]
+    server.inputs.await_tick(10**9)
+    assert server.at_looks == []
+
+
+def test_first_message_that_was_not_sent_is_not_waited_for(server):
+    server.inputs.await_tick(10**9)
+    assert server.looks == 1
+
+
+def test_data_that_arrives_in_the_moment_of_the_last_look_is_not_missing(server):
     server.receive(2.0)
     server.ros_time = 50.0
-
-    def others_want_to_run():
-        server.receive(2.0)
-        return False
-
-    monkeypatch.setattr(f"{Inputs.__module__}.others_want_to_run", others_want_to_run)
+    server.at_last_look = lambda: server.receive(2.0)
     assert server.inputs.missing(now=50.0, started=0.0, accepted=100.0) is None
