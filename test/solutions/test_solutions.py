@@ -67,6 +67,26 @@ def test_loop_that_waits_by_looking_at_a_clock_gets_full_marks(clock, tmp_path):
     assert grade.failed() == []
 
 
+# Adds to a server: the node ends when rospy's time is another one than that of a message on /clock.
+COMPARES_CLOCKS = """
+from rosgraph_msgs.msg import Clock
+def compare_clocks(message):
+    if rospy.Time.now() != message.clock:
+        rospy.logfatal('rospy has %s, /clock has %s', rospy.Time.now(), message.clock)
+        rospy.signal_shutdown('clocks differ')
+"""
+
+
+@pytest.mark.slow
+def test_time_of_rospy_is_that_of_the_clock_message_whose_callback_runs(tmp_path):
+    text = RIGHT["base_server"].read_text().replace("\ndef wrap", f"{COMPARES_CLOCKS}\ndef wrap", 1)
+    begin = "        self.count = 0\n"
+    text = text.replace(begin, f"{begin}        rospy.Subscriber('/clock', Clock, compare_clocks)\n", 1)
+    assert text.count("compare_clocks") == 2
+    grade = graded("compares_clocks", text, tmp_path)
+    assert grade.points == 5.0, grade.failed()
+
+
 @pytest.mark.slow
 def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
     text = RIGHT["base_server"].read_text().replace("'/odom'", "'/ground_truth_odom'")

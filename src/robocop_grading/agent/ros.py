@@ -55,6 +55,7 @@ def install(now_ns: int, ports: Set[int]) -> None:
     # A topic with a queue would have a thread for each subscriber, and drop messages if that is not scheduled in time.
     rospy.topics.QueuedConnection = lambda connection, _size: connection
     simtime.init_simtime = _init_simtime(simtime)
+    rospy.Subscriber.__init__ = _clock_first(rospy.Subscriber.__init__)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
     for module in (rospy, rospy.rostime):
@@ -74,6 +75,28 @@ def _init_simtime(simtime: Any) -> Callable[[], bool]:
         return True
 
     return init_simtime
+
+
+def _clock_first(subscribe: Any) -> Any:
+    """Of a node that subscribes to /clock itself: rospy's time is set before its callback runs, as rospy does it."""
+
+    @functools.wraps(subscribe)
+    def call(self: Any, name: str, *arguments: Any, **options: Any) -> None:
+        import rospy
+        from rosgraph_msgs.msg import Clock
+
+        clock = "/clock"
+        if (
+            scheduler.active
+            and rospy.resolve_name(name) == clock
+            and clock not in rospy.topics.get_topic_manager().subs
+        ):
+            subscribe(
+                object.__new__(rospy.Subscriber), clock, Clock, lambda message: set_clock(message.clock.to_nsec())
+            )
+        subscribe(self, name, *arguments, **options)
+
+    return call
 
 
 def set_clock(now_ns: int) -> None:
