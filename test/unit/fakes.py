@@ -68,6 +68,7 @@ class Owner:
         simulator, time, controllers = self.simulator, self.simulation.time_control, self.simulation.controllers
         time.pacer.restart(simulator.steps)
         self._pace()
+        controllers.enroll(self._answering)
         while not self.is_stopped():
             seen = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
             if seen is not None:
@@ -75,9 +76,9 @@ class Owner:
                 if seen.due.control:
                     self.on_tick(seen.stamp_ns)
                 if seen.due.control and controllers.in_lockstep:
-                    controllers.begin_tick(self._answering)
+                    controllers.begin_tick()
                     self._hold(lambda: controllers.hold(self._connected, self.is_kept))
-                    report = controllers.end_tick()
+                    report = controllers.end_tick(self._answering)
                     self.events += [("late", report.late)] if report.late else []
                     self.events += [("gone", controller) for controller in report.gone]
             if time.end_span(simulator.steps) or (seen is not None and seen.due.clock):

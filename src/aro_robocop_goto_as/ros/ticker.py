@@ -39,6 +39,10 @@ class Ticker:
     def _first_after(self, now_ns: int) -> int:
         return (now_ns // self._period_ns + 1) * self._period_ns
 
+    def _first_of_new_time(self, now_ns: int) -> int:
+        """The clock was set back, and may already show a tick, as it went on before it was looked at; 0 is none."""
+        return max(self._period_ns, self._first_after(now_ns - 1))
+
     def wait(self) -> bool:
         """Wait for the next tick; False when `interrupted` returned true before it."""
         clock = clock_condition()
@@ -46,12 +50,12 @@ class Ticker:
         with condition:
             while not self._interrupted():
                 now = self._now_ns()
+                if self._next_ns - now > self._period_ns:
+                    self._next_ns = self._first_of_new_time(now)
                 if now >= self._next_ns:
                     self.tick_ns = self._next_ns + (now - self._next_ns) // self._period_ns * self._period_ns
                     self._next_ns = self.tick_ns + self._period_ns
                     return True
-                if self._next_ns - now > self._period_ns:  # the clock was set back
-                    self._next_ns = self._first_after(now)
                 remaining = (self._next_ns - now) / NANOSECONDS
                 condition.wait(POLL if clock else min(POLL, remaining))
         return False

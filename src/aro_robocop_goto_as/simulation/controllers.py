@@ -76,15 +76,14 @@ class Controllers:
         return -(-self._simulator.steps * self._rate // self._simulator.rate)
 
     def enroll(self, answering: NodesOf) -> None:
-        """Wait from now on for the controllers that are connected to answer ticks."""
+        """Wait from the next tick on for the controllers that are connected to answer ticks."""
         if self.in_lockstep:
             for robot in range(len(self._simulator.robots)):
                 for node in answering(robot):
                     self.lockstep.enroll(ControllerId(robot, node))
 
-    def begin_tick(self, answering: NodesOf) -> None:
+    def begin_tick(self) -> None:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
-        self.enroll(answering)
         self.lockstep.tick = self.tick
         self._report, self._is_reset, self._silent_since = TickReport(), False, math.inf
         self._held_since = self._clock.now()
@@ -126,8 +125,9 @@ class Controllers:
                 if pending is None or pending[0] == controller:
                     self._pending[controller.robot] = controller, STANDSTILL
 
-    def end_tick(self) -> TickReport:
-        """Apply the commands of the tick."""
+    def end_tick(self, answering: NodesOf) -> TickReport:
+        """Apply the commands of the tick, and enroll who has connected meanwhile."""
+        self.enroll(answering)
         pending, self._pending = self._pending, {}
         for robot, (_, twist) in pending.items():
             self._apply(robot, twist)

@@ -89,11 +89,10 @@ class Lockstep:
             self._controllers[name] = _AnswerRecord(self.tick, gaps=gaps, mistaken=known.mistaken)
 
     def answered(self, name: ControllerId, tick: int) -> None:
-        """Note an answer, which names its tick; one for an earlier tick only shows that its sender is alive."""
+        """Note an enrolled controller's answer; one for an earlier tick only shows that its sender is alive."""
         known = self._controllers.get(name)
         if known is None or not known.stamped:
-            self._controllers[name] = _AnswerRecord(tick, stamped=True, stamps=1)
-            return
+            return  # not enrolled yet
         known.awaited, known.passed = True, -1
         if tick > known.last:
             period = math.gcd(known.period, tick - known.last) if known.stamps else 0
@@ -102,9 +101,12 @@ class Lockstep:
                 self._slower.append((name, period))
 
     def enroll(self, name: ControllerId) -> None:
-        """Wait from now on for a controller that stamps its answers and has connected."""
+        """Wait from the next tick on for a controller that stamps its answers and has connected.
+
+        It may have answered this tick before it was connected, or have connected too late to be told of it.
+        """
         if not self.is_stamped(name):
-            self._controllers[name] = _AnswerRecord(self.tick - 1, stamped=True)
+            self._controllers[name] = _AnswerRecord(self.tick, stamped=True)
 
     def is_stamped(self, name: ControllerId) -> bool:
         """Whether this controller stamps its answers, so that its plain commands have to be ignored."""

@@ -37,6 +37,11 @@ def test_after_a_clock_was_set_back_the_ticks_are_those_of_the_new_time():
     assert ticks(930, 1000, 20, 60, 110) == [1000, 100]
 
 
+def test_clock_that_was_set_back_and_went_on_to_a_tick_before_it_was_looked_at_shows_that_tick():
+    assert ticks(930, 1000, 100, 200) == [1000, 100, 200]
+    assert ticks(930, 1000, 0, 100) == [1000, 100]
+
+
 def test_a_request_ends_the_wait_without_a_tick():
     assert ticks(30, 40, 100, interrupted=lambda: True) == []
 

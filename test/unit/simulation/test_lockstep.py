@@ -100,7 +100,9 @@ def test_loop_faster_than_the_ticks_is_awaited_once_per_tick() -> None:
 
 
 def test_stamped_answer_counts_only_for_its_own_tick() -> None:
-    lockstep = Lockstep(7)
+    lockstep = Lockstep(6)
+    lockstep.enroll("/a")
+    lockstep.tick = 7
     lockstep.answered("/a", 6)
     assert lockstep.missing() == ["/a"]
     lockstep.answered("/a", 7)
@@ -109,9 +111,19 @@ def test_stamped_answer_counts_only_for_its_own_tick() -> None:
     assert lockstep.missing() == []
 
 
+def test_answers_of_a_controller_that_is_not_enrolled_do_not_count_and_it_is_awaited_from_the_next_tick_on() -> None:
+    lockstep = Lockstep(7)
+    lockstep.answered("/a", 7)
+    assert lockstep.awaited() == []
+    lockstep.enroll("/a")
+    assert lockstep.awaited() == ["/a"] and lockstep.missing() == []
+    lockstep.tick = 8
+    assert lockstep.missing() == ["/a"]
+
+
 def test_plain_command_of_a_stamping_controller_is_not_an_answer() -> None:
     lockstep = Lockstep()
-    lockstep.answered("/a", 0)
+    lockstep.enroll("/a")
     lockstep.tick += 1
     lockstep.commanded("/a")
     assert lockstep.is_stamped("/a") and lockstep.missing() == ["/a"]
@@ -119,7 +131,7 @@ def test_plain_command_of_a_stamping_controller_is_not_an_answer() -> None:
 
 def test_disconnected_controller_is_forgotten() -> None:
     lockstep = Lockstep()
-    lockstep.answered("/a", 0)
+    lockstep.enroll("/a")
     lockstep.tick += 1
     lockstep.gone("/a")
     assert lockstep.missing() == [] and lockstep.awaited() == []
@@ -134,6 +146,7 @@ def test_giving_up_leaves_no_controller_missing(events: "list[str]") -> None:
             assert lockstep.missing() == []
             lockstep.tick += 1
         elif event == "stamp a":
+            lockstep.enroll("a")
             lockstep.answered("a", lockstep.tick)
         else:
             lockstep.commanded(event)

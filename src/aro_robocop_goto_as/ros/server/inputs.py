@@ -14,7 +14,7 @@ from ... import goto
 from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
 from ...goto import Outcome
-from ...process.peer import others_want_to_run
+from ...process.peer import await_others, others_want_to_run
 from .. import convert
 from .tuning import Tuning
 
@@ -84,29 +84,43 @@ class Inputs:
         return Received(message, self._ros_time(), self._wall(), stamp_ns, period_ns)
 
     def await_tick(self, tick_ns: int) -> None:
-        """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick."""
+        """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick.
 
-        def complete() -> bool:  # by the topics' periods no newer message is due
+        A topic's period tells whether one is due; before that is known, whether callbacks want to run.
+        """
+
+        def complete() -> bool:
             newest = [topic for topic in (self.odom, self.scan) if topic is not None]
             return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
 
-        if self.odom is None or self.scan is None:  # nothing tells when the first one is due, but it may have been sent
-            self._await(lambda: self.odom is not None and self.scan is not None, 0.0, LOCKSTEP_PATIENCE)
-        self._await(complete, LOCKSTEP_PATIENCE, LOCKSTEP_PATIENCE)
+        self._forget_later_time()
+        if not self._knows_periods():
+            self._await(self._knows_periods, 0.0, LOCKSTEP_PATIENCE)
+            self._forget_later_time()
+        if self.odom is not None:  # otherwise the other node may be no simulator
+            self._await(complete, LOCKSTEP_PATIENCE, LOCKSTEP_PATIENCE)
+
+    def _knows_periods(self) -> bool:
+        return all(topic is not None and math.isfinite(topic.period_ns) for topic in (self.odom, self.scan))
+
+    def _forget_later_time(self) -> None:
+        """Forget messages from before the clock was set back. Those of the next tick may come before its clock does."""
+        latest_ns = (self._ros_time() + 1.0 / self._tuning.params.control_rate) * 1e9
+
+        def kept(topic: Optional[Received]) -> Optional[Received]:
+            return None if topic is None or topic.stamp_ns > latest_ns else topic
+
+        with self._arrived:
+            self.odom, self.scan, self.valid_scan = kept(self.odom), kept(self.scan), kept(self.valid_scan)
 
     def _await(self, complete: Callable[[], bool], wall: float, processor: float) -> bool:
-        """Wait for messages until `complete`, for `wall` [s], and as long as callbacks wait for a processor.
+        """Wait for messages until `complete`, by await_others(); returns whether it is."""
 
-        These may take `processor` [s] of its time. Returns whether it is complete.
-        """
-        limit = self._processor_time() + processor
-        while True:
+        def wait(timeout: float) -> bool:
             with self._arrived:
-                if self._arrived.wait_for(complete, wall):
-                    return True
-            if self._processor_time() >= limit or not self._callbacks_want_to_run():
-                with self._arrived:  # a callback may have got a processor, and ended, just before that look
-                    return complete()
+                return self._arrived.wait_for(complete, timeout)
+
+        return await_others(wait, wall, processor, self._processor_time, self._callbacks_want_to_run)
 
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.

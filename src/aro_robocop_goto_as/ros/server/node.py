@@ -17,6 +17,7 @@ from ...errors import RobocopError
 from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...goto_params import GotoParams
+from ...process.peer import await_others
 from ...trail import Trail
 from .. import convert
 from ..names import SERVER
@@ -31,8 +32,8 @@ from .server_markers import server_markers
 from .tuning import Tuning
 
 MARKER_PERIOD = 0.1  # [s]
-SHUTDOWN_PATIENCE = 1.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
-SEND_TIME = 0.1  # [s, wall] for rospy's sender threads to write what was just published
+SHUTDOWN_PATIENCE = 1.0  # [s, wall and processor] for a running goal to stop the robot and report SHUTDOWN
+SEND_TIME = 0.1  # [s, wall and processor] for rospy's sender threads to write what was just published
 
 
 class GotoNode:
@@ -50,14 +51,16 @@ class GotoNode:
         self.command: Optional[Twist2D] = None  # published since the last answer to a lockstep simulator
         self.state, self.trail = "idle", Trail()  # for RViz
         self.stopping = threading.Event()
+        self.ticker = Ticker(1.0 / p.control_rate, self._has_request)
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.markers = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
         self.goals = GoalServer()
         # No queue size: with one, rospy drops all but the newest of a burst, which hides the topic's period.
         # Without TCP_NODELAY the kernel may hold a small message back for 40 ms: several control periods at high speed.
         rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
         rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
+        # The last of these: a simulator in lockstep waits for who answers, once all that the master knows is connected.
+        self.answers = publisher("tick_answer", TickAnswer)  # without a thread that hands the answers on
         self.loop = threading.Thread(target=self._control_loop, name="control loop", daemon=True)
         self.loop.start()
         rospy.on_shutdown(self._shut_down)
@@ -67,27 +70,28 @@ class GotoNode:
     # -- the control loop --
 
     def _control_loop(self) -> None:
-        ticker = Ticker(1.0 / self.tuning.params.control_rate, self._has_request)
         while not self._is_finished():
             try:
-                self._run_once(ticker)
+                self._run_once()
             except Exception:  # the thread's outermost level: without the loop no goal would be executed again
                 if not rospy.is_shutdown():
                     rospy.logerr("the control loop failed and continues:\n%s", traceback.format_exc())
+        if self.command is not None:  # another server of this name may answer the next tick, without a command
+            self._answer_tick(self.ticker.tick_ns)
 
-    def _run_once(self, ticker: Ticker) -> None:
+    def _run_once(self) -> None:
         """Serve a request or run one control period, whichever is due first."""
-        ticked = ticker.wait()
+        ticked = self.ticker.wait()
         try:
             if ticked:
-                self._advance(ticker.tick_ns)
+                self._advance(self.ticker.tick_ns)
             else:
                 self._serve_request()
         except Exception as error:  # the goal's outermost level: it fails, the server does not
             self._fail(error)
         finally:
             if ticked:
-                self._answer_tick(ticker.tick_ns)
+                self._answer_tick(self.ticker.tick_ns)
 
     def _has_request(self) -> bool:
         return self.stopping.is_set() or self.goals.has_request()
@@ -189,10 +193,14 @@ class GotoNode:
         """Before rospy closes its topics: let the control loop stop the robot and end every goal."""
         busy = self.execution is not None or self.goals.has_request()
         self.stopping.set()
-        self.loop.join(SHUTDOWN_PATIENCE)
+        await_others(self._has_ended, SHUTDOWN_PATIENCE, SHUTDOWN_PATIENCE)
         if busy:
             self.cmd_vel.publish(convert.to_twist_msg(STANDSTILL))
-            time.sleep(SEND_TIME)
+        await_others(time.sleep, SEND_TIME, SEND_TIME)  # also for a goal that has just ended
+
+    def _has_ended(self, timeout: float) -> bool:
+        self.loop.join(timeout)
+        return not self.loop.is_alive()
 
     def _publish_markers(self) -> None:
         odom = self.inputs.odom

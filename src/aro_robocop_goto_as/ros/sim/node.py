@@ -101,10 +101,10 @@ class SimNode:
     def _await_controllers(self) -> None:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
         controllers, commands = self._simulation.controllers, self._commands
-        controllers.begin_tick(commands.answering)
+        controllers.begin_tick()
         commands.begin_tick()
         self._hold(lambda: controllers.hold(commands.connected, commands.is_kept))
-        self._status.warn_of(controllers.end_tick())
+        self._status.warn_of(controllers.end_tick(commands.answering))
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""

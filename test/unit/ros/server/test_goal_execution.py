@@ -75,3 +75,14 @@ def test_a_turn_at_a_lower_speed_gets_its_own_time_and_there_are_two_of_them() -
     ended, outcome = end_of_goal(range(0, 60_000, PERIOD), TurningRobot())
     assert outcome is Outcome.STUCK
     assert ended == pytest.approx(8_000 + 5_000, abs=3 * PERIOD)
+
+
+def test_goal_begins_anew_at_rest_each_time_that_the_clock_is_set_back() -> None:
+    tuning = cast(Tuning, SimpleNamespace(params=GotoParams()))
+    goal = GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), tuning, cast(Inputs, BlockedRobot()))
+    commands = []
+    for tick in 3 * [*range(PERIOD, 10 * PERIOD, PERIOD)]:
+        goal.step(tick * 1_000_000)
+        commands.append(goal.twist)
+    assert commands[:9] == commands[9:18] == commands[18:]
+    assert 0.0 < commands[0].v < commands[8].v

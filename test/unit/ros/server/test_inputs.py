@@ -32,11 +32,21 @@ class Server:
         self.at_looks.pop(0)()
         return True
 
+    def run_until(self, seconds):
+        """The clock's next time [s]."""
+        self.ros_time = seconds
+
     def receive_odom(self, stamp):
         """Odometry of a time [s]."""
         odom = Odometry()
-        odom.header.stamp = rospy.Time(stamp)
+        odom.header.stamp, odom.pose.pose.orientation.w = rospy.Time(stamp), 1.0
         self.inputs.on_odom(odom)
+
+    def receive_scan(self, stamp):
+        """A scan of a time [s]."""
+        scan = LaserScan(angle_increment=0.1, range_max=5.0, ranges=[2.0])
+        scan.header.stamp = rospy.Time(stamp)
+        self.inputs.on_scan(scan)
 
     def receive(self, ahead, orientation_w=1.0):
         """Odometry, and a scan with one beam [m]."""
@@ -130,22 +140,54 @@ def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
 
 def test_messages_of_a_tick_are_waited_for_while_their_callbacks_get_no_processor(server, monkeypatch):
     monkeypatch.setattr(f"{Inputs.__module__}.LOCKSTEP_PATIENCE", 0.01)
-    server.receive_odom(1.0)
-    server.receive_odom(1.5)
-    server.at_looks = [lambda: None, lambda: None, lambda: server.receive_odom(2.0)]
+    server.run_until(2.0)
+    for stamp in (1.0, 1.5):
+        server.receive_odom(stamp)
+        server.receive_scan(stamp)
+    server.at_looks = [lambda: None, lambda: server.receive_odom(2.0), lambda: server.receive_scan(2.0)]
     server.inputs.await_tick(2 * 10**9)
     assert server.at_looks == []
 
 
-def test_first_messages_are_waited_for_while_their_callbacks_get_no_processor(server):
-    server.at_looks = [lambda: None, lambda: server.receive_odom(1.0), lambda: None, lambda: server.receive(2.0)]
+@pytest.mark.parametrize("number", [0, 1])  # of messages that came before: one does not tell the period yet
+def test_messages_of_an_unknown_period_are_waited_for_while_callbacks_want_to_run(server, number):
+    for _ in range(number):
+        server.receive_odom(0.9)
+        server.receive_scan(0.9)
+    server.at_looks = [lambda: None, lambda: server.receive_odom(1.0), lambda: server.receive_scan(1.0)]
+    server.run_until(1.0)
     server.inputs.await_tick(10**9)
-    assert server.at_looks == []
+    assert server.at_looks == [] and (server.inputs.odom.stamp_ns, server.inputs.scan.stamp_ns) == (10**9, 10**9)
 
 
-def test_first_message_that_was_not_sent_is_not_waited_for(server):
+def test_message_that_was_not_sent_is_not_waited_for(server):
     server.inputs.await_tick(10**9)
-    assert server.looks == 1
+    server.receive_odom(1.4)
+    server.inputs.await_tick(10**9)
+    assert server.looks == 2
+
+
+def test_messages_from_before_the_clock_was_set_back_are_forgotten_and_the_first_ones_after_it_are_waited_for(server):
+    server.run_until(5.0)
+    for stamp in (4.9, 5.0):
+        server.receive_odom(stamp)
+        server.receive_scan(stamp)
+    server.run_until(0.1)
+    server.at_looks = [
+        lambda: server.receive_odom(5.0),
+        lambda: server.receive_odom(0.1),
+    ]  # in this order, by one thread
+    server.inputs.await_tick(10**8)
+    assert server.at_looks == [] and server.inputs.odom.stamp_ns == 10**8
+    assert server.inputs.scan is None and server.inputs.read() is None
+
+
+def test_odometry_from_before_the_clock_was_set_back_that_came_late_is_not_used(server):
+    server.run_until(0.1)
+    server.receive_scan(0.1)
+    server.at_looks = [lambda: server.receive_odom(5.0)]
+    server.inputs.await_tick(10**8)
+    assert server.inputs.read() is None
 
 
 def test_data_that_arrives_in_the_moment_of_the_last_look_is_not_missing(server):
