@@ -20,7 +20,8 @@ def sender(message: Any) -> str:
 
 def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
     """Names of the nodes a subscriber is connected to; rospy's public API only counts connections."""
-    return {link.callerid_pub for link in subscriber.impl.connections}
+    topic = subscriber.impl  # None: unregistered
+    return set() if topic is None else {link.callerid_pub for link in topic.connections}
 
 
 def socket_from(subscriber: rospy.Subscriber, node: str) -> Optional[socket.socket]:

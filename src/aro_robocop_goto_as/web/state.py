@@ -23,8 +23,8 @@ class PageState:
     simulated: bool = False  # a simulator has reported
     factor: float = 1.0  # simulated seconds per second, as the simulator reached it
     factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
-    answering: bool = False  # the selected robot's server publishes its status
-    executing: bool = False  # the selected robot's server executes a goal
+    answering: bool = False  # there is a server of the selected robot, which publishes its status
+    executing: Optional[bool] = None  # the selected robot's server executes a goal; None until it is known
     root: str = ""  # the frame that the scene is drawn in
     pose: Optional[Pose3D] = None  # of the selected robot, in that frame
 

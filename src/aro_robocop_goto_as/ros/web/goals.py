@@ -1,11 +1,11 @@
 """Goals: sent by a click, cancelled, with their feedback and their results. A click can also place the robot."""
 
-import time
 from collections import deque
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Deque, Dict, List, Optional, Set, Tuple
 
+import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from visualization_msgs.msg import MarkerArray
@@ -20,16 +20,15 @@ from .. import convert, markers, names
 from ..client.sent_goal import STATES, UNFINISHED
 from ..covariances import diagonal
 from ..names import ACTION, absolute
+from ..rospy_internals import publishers_of
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
 from .requests import Requests
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
 POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.5 m and 15 degrees, squared
-FEEDBACK_AGE = 1.0  # [s, wall] after which a goal without feedback counts as ended
 REMEMBERED = 8  # goals in the history
 TOLERANCE = 0.1  # [m] at which the handout counts a goal as reached
-STATUS_AGE = 3.0  # [s, wall] without a server's status, sent five times a second, after which it counts as gone
 
 
 def cancel(requests: Requests) -> None:
@@ -85,9 +84,11 @@ class Goals(Part):
         cancel_button = gui.add_button("Cancel goal", icon="x", visible=live)
         cancel_button.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
-        self._answered: Optional[float] = None  # [s, wall] when the server's status was received
+        self._status: Optional[rospy.Subscriber] = None  # of the selected robot's server
+        # None: not known yet. In the simulator's time, which may stand still, the status is sent five times a second.
+        self._executing: Optional[bool] = None
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
-        self._feedback: Optional[Tuple[float, Any]] = None  # when it was received [s, wall], and the message
+        self._feedback: Any = None  # the message
         self._history = GoalHistory()
         self._watched: Set[str] = set()
         context.server.scene.on_click()(self._on_click)
@@ -120,8 +121,8 @@ class Goals(Part):
             requests.publish(f"pose {where}", "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._feedback = self._answered = self._newest = None
-        inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
+        self._feedback = self._executing = self._newest = None
+        self._status = inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
@@ -131,11 +132,11 @@ class Goals(Part):
             inbox.subscribe(f"{name}/goal", GoToPositionActionGoal, self._on_goal, None)
             inbox.subscribe(f"{name}/result", GoToPositionActionResult, partial(self._on_result, robot), None)
 
-    def _on_feedback(self, at: float, message: GoToPositionActionFeedback) -> None:
-        self._feedback = (at, message.feedback)
+    def _on_feedback(self, _: float, message: GoToPositionActionFeedback) -> None:
+        self._feedback = message.feedback
 
-    def _on_status(self, at: float, message: GoalStatusArray) -> None:
-        self._answered = at
+    def _on_status(self, _: float, message: GoalStatusArray) -> None:
+        self._executing = any(STATES.get(entry.status) in UNFINISHED for entry in message.status_list)
         self._newest = max(message.status_list, key=lambda entry: entry.goal_id.stamp, default=self._newest)
 
     def _on_goal(self, _: float, message: GoToPositionActionGoal) -> None:
@@ -146,15 +147,17 @@ class Goals(Part):
         self._history.ended(robot, goal_id, state, message.result.message)
 
     def show(self, state: PageState) -> None:
-        if self._feedback is not None and time.monotonic() - self._feedback[0] >= FEEDBACK_AGE:
+        connected = self._status is not None and bool(publishers_of(self._status))
+        if not connected and not state.recorded:  # its server is gone
+            self._executing = self._newest = self._feedback = None
+        if self._executing is False:
             self._feedback = None
-        if self._answered is not None and time.monotonic() - self._answered >= STATUS_AGE and not state.recorded:
-            self._answered = self._newest = None
-        self.context.state.change(executing=self._feedback is not None, answering=self._answered is not None)
+        answering = connected if not state.recorded else self._executing is not None
+        self.context.state.change(executing=self._executing, answering=answering)
         self._draw_goal(state.selected)
         rows = self._goal_rows(state.selected)
         if self._feedback is not None:
-            feedback = self._feedback[1]
+            feedback = self._feedback
             errors = f"{feedback.position_error:.2f} m", f"{feedback.angle_error:.2f} rad"
             rows += [("position error", errors[0]), ("angle error", errors[1]), ("feedback", feedback.message)]
         self._feedback_html.content = text.table(rows) if rows else ""
@@ -186,4 +189,4 @@ class Goals(Part):
         return ended.state == "SUCCEEDED", f"{robot}{goal}: {ended.message or ended.state}"
 
     def forget(self) -> None:
-        self._history, self._feedback, self._answered, self._newest = GoalHistory(), None, None, None
+        self._history, self._feedback, self._executing, self._newest = GoalHistory(), None, None, None

@@ -53,13 +53,14 @@ class Inbox:
     def __init__(self) -> None:
         self._subscriptions: List[Tuple[rospy.Subscriber, Deque[Tuple[float, Any]], Handler]] = []
 
-    def subscribe(self, topic: str, kind: Any, handler: Handler, keep: Optional[int] = 1) -> None:
+    def subscribe(self, topic: str, kind: Any, handler: Handler, keep: Optional[int] = 1) -> rospy.Subscriber:
         """Subscribe, and let the last `keep` messages wait, or all."""
         waiting: Deque[Tuple[float, Any]] = deque(maxlen=keep)
         subscriber = rospy.Subscriber(
             topic, kind, lambda message: waiting.append((time.monotonic(), message)), queue_size=keep
         )
         self._subscriptions.append((subscriber, waiting, handler))
+        return subscriber
 
     def deliver(self) -> None:
         """Handle all messages that wait; those of one topic in the order of their arrival."""

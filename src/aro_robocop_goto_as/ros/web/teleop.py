@@ -90,7 +90,7 @@ class Teleop(Part):
             begins = self._dead_man.request(page, state.selected, twist, time.monotonic())
             if begins:
                 self._wake.notify()
-        if begins and state.executing:
+        if begins and state.answering and state.executing is not False:
             cancel(self.context.requests)
 
     def stop(self) -> None:

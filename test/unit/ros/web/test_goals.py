@@ -19,7 +19,10 @@ CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
 def made(**state):
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", pose=lifted(Pose2D(0.0, 0.0, 3.0)), **state))
     context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
-    return goals.Goals(context), context
+    part, inbox = goals.Goals(context), MagicMock()
+    inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
+    part.subscribe_to_robot(inbox, "red")
+    return part, context
 
 
 def test_a_click_sends_a_2d_nav_goal():
@@ -52,14 +55,26 @@ def test_a_click_into_the_sky_requests_nothing():
     assert not context.requests.method_calls
 
 
-def test_a_goal_is_executed_while_there_is_feedback(monkeypatch):
+def shown(part, context):
+    """Whether the server is there, whether it executes a goal, and whether feedback is shown."""
+    part.show(context.state.now)
+    state = context.state.now
+    return state.answering, state.executing, "angle error" in part._feedback_html.content
+
+
+def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_long_both_take():
     part, context = made()
-    part._on_feedback(goals.time.monotonic(), GoToPositionActionFeedback())
-    part.show(context.state.now)
-    assert context.state.now.executing
-    part._on_feedback(goals.time.monotonic() - goals.FEEDBACK_AGE, GoToPositionActionFeedback())
-    part.show(context.state.now)
-    assert not context.state.now.executing
+    assert shown(part, context) == (True, None, False)
+    earlier, goal = GoalStatus(status=GoalStatus.ABORTED), GoalStatus(status=GoalStatus.ACTIVE)
+    part._on_feedback(0.0, GoToPositionActionFeedback())  # long ago by the wall clock, as in a pause
+    part._on_status(0.0, GoalStatusArray(status_list=[earlier, goal]))
+    assert shown(part, context) == (True, True, True)
+    for ended in ([earlier, GoalStatus(status=GoalStatus.SUCCEEDED)], []):
+        part._on_status(0.0, GoalStatusArray(status_list=ended))
+        assert shown(part, context) == (True, False, False)
+    part._on_status(0.0, GoalStatusArray(status_list=[goal]))
+    part._status.impl.connections = []
+    assert shown(part, context) == (False, None, False)
 
 
 def test_the_history_names_the_robot_whose_server_sent_the_result_until_another_moment_is_shown():
@@ -82,15 +97,10 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal_id.id = status.goal_id.id = "goal"
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
-    part._on_status(goals.time.monotonic(), GoalStatusArray(status_list=[status]))
+    part._on_status(0.0, GoalStatusArray(status_list=[status]))
     assert part._goal_rows("red") == [("goal", "ACTIVE x 1.00 y 0.00 in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
     assert part._goal_rows("red") == [("goal", "ACTIVE x 0.30 y 0.20 in map")]
-    part.show(context.state.now)
-    assert context.state.now.answering
-    part._on_status(goals.time.monotonic() - goals.STATUS_AGE, GoalStatusArray())
-    part.show(context.state.now)
-    assert not context.state.now.answering
 
 
 def drawn(part, context):
@@ -115,8 +125,8 @@ def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status
     goal = GoToPositionActionGoal()
     goal.goal_id.id, goal.goal.position.x = "goal", 1.0
     part._on_goal(0.0, goal)
-    part._on_status(goals.time.monotonic(), GoalStatusArray(status_list=[GoalStatus(goal.goal_id, status, "")]))
-    part._on_status(goals.time.monotonic(), GoalStatusArray())
+    part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(goal.goal_id, status, "")]))
+    part._on_status(0.0, GoalStatusArray())
     rgb = tuple(round(255 * value) for value in (color.r, color.g, color.b))
     assert drawn(part, context) == {"goal_circle": (rgb, (1.0, 0.0, 0.0)), "goal_pin": (rgb, (1.0, 0.0, 0.2))}
     context.scene.draws.return_value = True  # the server's markers

@@ -52,12 +52,15 @@ def test_the_selected_robot_is_driven_and_stopped_once_also_after_an_unexpected_
     assert set(publishers.sent) == {("/red/cmd_vel", 1.0), ("/red/cmd_vel", 0.0)}
 
 
-@pytest.mark.parametrize("executing", [True, False])
-def test_a_goal_that_is_executed_is_cancelled_once_when_driving_begins(monkeypatch, executing):
-    pad, context = driven(monkeypatch, Publishers(), executing=executing)
+@pytest.mark.parametrize(
+    "answering, executing, cancels",
+    [(True, True, 1), (True, False, 0), (True, None, 1), (False, None, 0)],  # None: not known, as in a pause
+)
+def test_a_goal_that_may_be_executed_is_cancelled_once_when_driving_begins(monkeypatch, answering, executing, cancels):
+    pad, context = driven(monkeypatch, Publishers(), answering=answering, executing=executing)
     pad.drive(1, LEFT)
     pad.drive(1, LEFT)
-    assert context.requests.publish.call_count == int(executing)
+    assert context.requests.publish.call_count == cancels
     pad.stop()
 
 
