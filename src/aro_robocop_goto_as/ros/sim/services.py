@@ -59,7 +59,8 @@ class Services:
         serve("~set_pose", SetPose, self._on_set_pose, begin="pose refused: ")
         for robot, name in enumerate(self._names if p.topics.has_initialpose else []):
             self._subscribe(robot, name)
-        rospy.set_param("~real_time_factor", simulation.time_control.pacer.factor)  # its server begins here
+        self._factor: float = simulation.time_control.pacer.factor  # asked for last; the owner's thread may lag behind
+        rospy.set_param("~real_time_factor", self._factor)  # its server begins here
         self._reconfigure = Server(SimConfig, self._on_reconfigure)
 
     # -- time --
@@ -97,12 +98,13 @@ class Services:
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:
         time = self._simulation.time_control
-        factor, current = config.real_time_factor, time.pacer.factor
+        factor, current = config.real_time_factor, self._factor
         if not 0.0 <= factor < math.inf:
             rospy.logerr("real_time_factor: expected a number, 0 or more, got %g; keeping %g", factor, current)
             config.real_time_factor = current
         elif factor != current:
             rospy.loginfo("real-time factor %g, was %g", factor, current)
+            self._factor = factor
             self._simulation.jobs.post(lambda: time.set_real_time_factor(factor, self._simulator.steps))
         return config
 
