@@ -58,7 +58,7 @@ ORDER = {
     "simulation world",
     "ros.sim": "errors geometry sim_params process robot ros ros.names sensors sensors.camera simulation world",
     "ros.server": "errors geometry goto goto_params sim_params process ros ros.names simulation trail",
-    "ros.client": "bridge_params errors geometry ros ros.names suggestions",
+    "ros.client": "bridge_params errors geometry process ros ros.names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
     "ros.cli": "bootstrap errors farthest geometry param_loading sim_params process reading robot.model_names ros "
     "ros.client ros.names suggestions web web_params world",

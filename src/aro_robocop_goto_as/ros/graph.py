@@ -3,7 +3,7 @@
 import contextlib
 import socket
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from typing import Collection, Dict, List, Tuple
 from urllib.parse import urlparse
 
 import rosgraph
@@ -37,12 +37,15 @@ def published_topics() -> List[Topic]:
     )
 
 
-def has_living_publisher(topic: str) -> bool:
-    """Whether a publisher of a topic that the master knows accepts connections; a node that was killed does not."""
+def has_living_publisher(topic: str, but: Collection[str] = ()) -> bool:
+    """Whether a publisher of a topic that the master knows, `but` these nodes, accepts connections.
+
+    A node that was killed does not.
+    """
     with contextlib.suppress(OSError, rosgraph.MasterException):
         master = rosgraph.Master(rospy.get_name())
         publishers, _, _ = master.getSystemState()
-        for node in dict(publishers).get(topic, []):
+        for node in {*dict(publishers).get(topic, [])} - {*but}:
             with contextlib.suppress(OSError, rosgraph.MasterException):
                 address = urlparse(master.lookupNode(node))
                 socket.create_connection((address.hostname, address.port), CONNECTION_TIMEOUT).close()

@@ -51,6 +51,7 @@ def test_node_that_was_killed_is_known_to_the_master_and_does_not_live(master):
     with socket.create_server(("localhost", 0)) as server:
         master.lookupNode = lambda _: f"http://localhost:{server.getsockname()[1]}/"
         assert graph.has_living_publisher("/odom")
+        assert not graph.has_living_publisher("/odom", but={"/sim"})
 
 
 def test_nobody_lives_when_the_master_does_not_answer(master):

@@ -1,5 +1,6 @@
 """A stamped pose in any frame -> the goal's position in the server's frame, or FrameError; never raw numbers."""
 
+import time
 from typing import Callable, Optional
 
 import ros_numpy
@@ -12,19 +13,27 @@ from nav_msgs.msg import Odometry
 
 from ...errors import FrameError
 from ...geometry import Pose2D, compose
+from ...process.peer import others_want_to_run
 from ...suggestions import did_you_mean
-from .. import convert
+from .. import convert, graph
+from ..rospy_internals import publishers_of
 from ..ticker import wait_until
 from .tf_buffer import TfBuffer, is_possible
 
-POLL = 0.01  # [s, wall]
+POLL, LOOK = 0.01, 0.1  # [s, wall] between two looks for a transform, and for what it may be waiting for
 
 
 class GoalTransformer:
     """Transforms goals into `goal_frame`; its timeouts are in wall time, so a paused simulator can't block it."""
 
     def __init__(
-        self, goal_frame: str, default_frame: str, timeout: float, latest_odom: Callable[[], Optional[Odometry]]
+        self,
+        goal_frame: str,
+        default_frame: str,
+        timeout: float,
+        latest_odom: Callable[[], Optional[Odometry]],
+        processor_time: Callable[[], float] = time.process_time,
+        callbacks_want_to_run: Callable[[], bool] = others_want_to_run,
     ) -> None:
         self.goal_frame = goal_frame
         self.default_frame = default_frame
@@ -32,6 +41,7 @@ class GoalTransformer:
         self.latest_odom = latest_odom
         self.buffer = TfBuffer()
         self.listener = tf2_ros.TransformListener(self.buffer)
+        self._processor_time, self._callbacks_want_to_run = processor_time, callbacks_want_to_run
 
     def frame_of(self, pose: PoseStamped) -> str:
         """The frame in which a pose is given; the default where it names none."""
@@ -40,10 +50,10 @@ class GoalTransformer:
     def resolve(self, pose: PoseStamped) -> Point:
         """The pose's position in goal_frame at the pose's stamp.
 
-        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, then uses the latest one: TF's, or that
-        of the odometry if it connects the frames and is newer. Where TF does not connect them but the odometry does,
-        uses that without waiting. FrameError if the frames are not connected, and for a position that is not finite or
-        beyond FARTHEST, before or after the transform.
+        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, longer while a busy machine keeps it from
+        arriving, then uses the latest one: TF's, or that of the odometry if it connects the frames and is newer. Where
+        TF does not connect them but the odometry does, uses that without waiting. FrameError if the frames are not
+        connected, and for a position that is not finite or beyond FARTHEST, before or after the transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)
@@ -65,7 +75,7 @@ class GoalTransformer:
             return None if odom is None or self._connects(frame, rospy.Time(0)) else _by_odometry(point, odom)
 
         try:
-            position = wait_until(at_stamp, self.timeout, POLL)
+            position = self._await(at_stamp)
             if position is not None:
                 return position
             position = self._by_latest(point, frame)
@@ -78,6 +88,21 @@ class GoalTransformer:
             f"{self.timeout:g} s; using the latest one"
         )
         return position
+
+    def _await(self, at_stamp: Callable[[], Optional[Point]]) -> Optional[Point]:
+        """Wait for `timeout` [s, wall], and, while it may be underway, until that is this process's processor time."""
+        limit = self._processor_time() + self.timeout
+        position = wait_until(at_stamp, self.timeout, POLL)
+        while position is None and self._processor_time() < limit and self._is_underway() and not rospy.is_shutdown():
+            position = wait_until(at_stamp, LOOK, POLL)
+        return position or at_stamp()  # it may have come just before the last look
+
+    def _is_underway(self) -> bool:
+        """Whether a callback waits for a processor, or a publisher that lives is not connected yet."""
+        topics = self.listener.tf_sub, self.listener.tf_static_sub
+        return self._callbacks_want_to_run() or any(
+            graph.has_living_publisher(topic.resolved_name, publishers_of(topic)) for topic in topics
+        )
 
     def _by_tf(self, point: Point, frame: str, stamp: rospy.Time) -> Point:
         transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp)
