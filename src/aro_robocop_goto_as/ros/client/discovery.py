@@ -7,10 +7,11 @@ import actionlib
 import rosgraph
 import rospy
 
+from ...process.peer import Peer, others_want_to_run
 from ...suggestions import did_you_mean
 from .. import graph
 from ..names import ACTION_TYPE
-from ..rospy_internals import is_connected_to, publishers_of, sender
+from ..rospy_internals import connections_of, is_connected_to, publishers_of, sender
 from ..ticker import wait_until
 
 PATIENCE = 20  # times the timeout
@@ -27,6 +28,21 @@ def is_up(client: actionlib.ActionClient) -> bool:
     return all(server in publishers_of(topic) for topic in (client.result_sub, client.feedback_sub)) and all(
         is_connected_to(topic, server) for topic in (client.pub_goal, client.pub_cancel)
     )
+
+
+def kept_from_answering(client: actionlib.ActionClient, patience: float) -> Callable[[], bool]:
+    """Tells whether the server, or a callback of this process, would go on but waits for a processor.
+
+    Each may use `patience` [s] of processor time from now on.
+    """
+    servers = [Peer(end, patience) for _, end in connections_of(client.pub_goal)]
+    limit = time.process_time() + patience
+
+    def kept() -> bool:
+        callbacks = time.process_time() < limit and others_want_to_run()
+        return callbacks or any(server.wants_to_run() for server in servers)
+
+    return kept
 
 
 def absence(action: str) -> str:

@@ -4,6 +4,7 @@ Uses ActionClient because SimpleActionClient has two races: it reports an error 
 arrives before that goal's handle is stored, and it mistakes the older goal's last transitions for the newer goal's.
 """
 
+import math
 import threading
 from typing import Callable, Optional
 
@@ -15,11 +16,14 @@ from geometry_msgs.msg import Point
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
 
 from ..ticker import wait_until
+from .discovery import kept_from_answering
 
 # Not GoalStatus.to_string: for PENDING, which is 0, it returns the first name whose value equals False.
 STATES = {value: name for name, value in vars(GoalStatus).items() if name.isupper() and type(value) is int}
 UNFINISHED = ("PENDING", "ACTIVE", "PREEMPTING", "RECALLING")
-ACKNOWLEDGE_PATIENCE = 1.0  # [s, wall] for the server to acknowledge a goal before it is cancelled
+# [s, wall, and then processor] for the server to acknowledge a goal before it is cancelled
+ACKNOWLEDGE_PATIENCE = 1.0
+LOOK = 0.1  # [s, wall] between two looks whether the server, or a callback, waits for a processor
 
 
 class SentGoal:
@@ -34,7 +38,7 @@ class SentGoal:
         on_feedback: Callable[[GoToPositionFeedback], None] = lambda feedback: None,
     ) -> None:
         """Send a goal at a position in the server's frame; `where`: its place as the user gave it, for reports."""
-        self._where = where
+        self._client, self._where = client, where
         self.done = threading.Event()
         self.ending = ""  # state and message, once it is done
         self.feedback: Optional[GoToPositionFeedback] = None
@@ -47,8 +51,14 @@ class SentGoal:
         )
 
     def cancel(self) -> None:
-        """Request the goal's end once the server knows the goal: before that, actionlib may report it as LOST."""
-        wait_until(self._acknowledged.is_set, ACKNOWLEDGE_PATIENCE)
+        """Request the goal's end once the server knows the goal: before that, actionlib may report it as LOST.
+
+        One that does nothing, as it is stopped or broken, is not waited for: a program may have to end meanwhile.
+        """
+        acknowledged = self._acknowledged.is_set
+        if not wait_until(acknowledged, ACKNOWLEDGE_PATIENCE):
+            kept = kept_from_answering(self._client, ACKNOWLEDGE_PATIENCE)
+            wait_until(lambda: acknowledged() or not kept(), math.inf, LOOK)
         self._handle.cancel()
 
     def _handle_transition(self, handle: ClientGoalHandle) -> None:
