@@ -85,8 +85,7 @@ class Goals(Part):
         cancel_button.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
         self._status: Optional[rospy.Subscriber] = None  # of the selected robot's server
-        # None: not known yet. In the simulator's time, which may stand still, the status is sent five times a second.
-        self._executing: Optional[bool] = None
+        self._executing: Optional[bool] = None  # as its newest status says; None before the first one
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Any = None  # the message
         self._history = GoalHistory()

@@ -54,7 +54,7 @@ def test_the_selected_robot_is_driven_and_stopped_once_also_after_an_unexpected_
 
 @pytest.mark.parametrize(
     "answering, executing, cancels",
-    [(True, True, 1), (True, False, 0), (True, None, 1), (False, None, 0)],  # None: not known, as in a pause
+    [(True, True, 1), (True, False, 0), (True, None, 1), (False, None, 0)],  # None: not known yet
 )
 def test_a_goal_that_may_be_executed_is_cancelled_once_when_driving_begins(monkeypatch, answering, executing, cancels):
     pad, context = driven(monkeypatch, Publishers(), answering=answering, executing=executing)
