@@ -17,7 +17,9 @@ from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
 from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
-SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout
+SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, of a subscriber that is to stand still
+LONG = struct.pack("ll", 60, 0)  # of one that reads, whenever it gets a processor
+PATIENCE = 60.0  # [s, wall] for a thread that reads
 
 
 class Connection:
@@ -37,11 +39,15 @@ class Connection:
 class Subscriber:
     """One end of a socket pair; the other one is a subscriber's."""
 
-    def __init__(self) -> None:
+    def __init__(self, timeout: bytes) -> None:
         near, self.socket = socket.socketpair()
-        near.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, SHORT)
         self.connection = Connection()
         self.link = SubscriberLink(self.connection, near)
+        self.set_timeout(timeout)
+
+    def set_timeout(self, timeout: bytes) -> None:
+        """Set how long one send may wait for it."""
+        self.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
 
     def received(self, size: int) -> bytes:
         """The next bytes."""
@@ -59,11 +65,11 @@ class Subscriber:
 
 
 @pytest.fixture(name="subscriber")
-def _subscriber() -> Iterator[Callable[[], Subscriber]]:
+def _subscriber() -> Iterator[Callable[..., Subscriber]]:
     made: List[Subscriber] = []
 
-    def make() -> Subscriber:
-        made.append(Subscriber())
+    def make(timeout: bytes = LONG) -> Subscriber:
+        made.append(Subscriber(timeout))
         return made[-1]
 
     yield make
@@ -105,7 +111,7 @@ def scan(beams: int) -> PackedMessage:
     return PackedMessage(LaserScan(ranges=[1.0] * beams))
 
 
-def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Callable[[], Subscriber]) -> None:
+def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Callable[..., Subscriber]) -> None:
     first, second = subscriber(), subscriber()
     both, one = topic_of(first, second), topic_of(second)
     messages = [scan(10), PackedMessage(Clock()), scan(20)]
@@ -115,7 +121,7 @@ def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Ca
     assert second.received(sum(sizes)) == b"".join(data)
 
 
-def test_messages_are_counted_as_rospy_does(subscriber: Callable[[], Subscriber]) -> None:
+def test_messages_are_counted_as_rospy_does(subscriber: Callable[..., Subscriber]) -> None:
     reader, message = subscriber(), scan(3)
     topic = topic_of(reader)
     batch = Batch([(topic, message)])
@@ -129,13 +135,13 @@ def test_messages_are_counted_as_rospy_does(subscriber: Callable[[], Subscriber]
     assert (reader.connection.stat_num_msg, reader.connection.stat_bytes) == (6, 6 * message.size)
 
 
-def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callable[[], Subscriber]) -> None:
+def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callable[..., Subscriber]) -> None:
     reader, message = subscriber(), scan(1_000_000)
     received: List[bytes] = []
     thread = threading.Thread(target=lambda: received.append(reader.received(message.size)))
     thread.start()
     Batch([(topic_of(reader), message)]).send(0)
-    thread.join(10.0)
+    thread.join(PATIENCE)
     assert received == [bytes(message.data)]
     assert not reader.connection.closed
 
@@ -150,7 +156,7 @@ def _shut_down(reader: Subscriber) -> None:
 
 @pytest.mark.parametrize("fault", [_gone, _shut_down])
 def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
-    subscriber: Callable[[], Subscriber], fault: Callable[[Subscriber], None]
+    subscriber: Callable[..., Subscriber], fault: Callable[[Subscriber], None]
 ) -> None:
     lost, reader, message = subscriber(), subscriber(), scan(100)
     batch = Batch([(topic_of(lost), message), (topic_of(reader), message)])
@@ -185,26 +191,32 @@ def drain(reader: Subscriber) -> bytes:
 
 @pytest.mark.parametrize("beams", [3, 100, 1_000_000])
 def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_when_it_reads_again(
-    subscriber: Callable[[], Subscriber], beams: int
+    subscriber: Callable[..., Subscriber], beams: int
 ) -> None:
-    frozen, message = subscriber(), counted(beams)
+    frozen, message = subscriber(SHORT), counted(beams)
     batch, received = Batch([(topic_of(frozen), message)]), bytearray()
     send_until_it_stands_still(batch, frozen)
     for _ in range(10):
         batch.send(0)  # which it misses
+    frozen.set_timeout(LONG)  # it reads from here on
 
     def read() -> None:
-        while message.data.tobytes() != received[-message.size :] or frozen.link.stands_still:
-            received.extend(frozen.socket.recv(message.size))
+        while True:
+            part = frozen.socket.recv(1_000_000)
+            if not part:
+                return
+            received.extend(part)
 
     reading = threading.Thread(target=read)
     reading.start()
     while frozen.link.stands_still:
         batch.send(0)
     batch.send(0)
-    reading.join(10.0)
+    assert not frozen.link.stands_still and not frozen.connection.closed
+    frozen.link.socket.shutdown(socket.SHUT_WR)
+    reading.join(PATIENCE)
     assert not reading.is_alive()
-    assert not frozen.connection.closed
+    assert received[-message.size :] == message.data.tobytes()
     numbers = [struct.unpack_from("<I", received, start + 4)[0] for start in range(0, len(received) - 8, message.size)]
     whole = len(received) // message.size
     assert len(received) == whole * message.size
@@ -212,9 +224,9 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
 
 
 def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_there_was(
-    subscriber: Callable[[], Subscriber],
+    subscriber: Callable[..., Subscriber],
 ) -> None:
-    frozen, message = subscriber(), counted(100)
+    frozen, message = subscriber(SHORT), counted(100)
     batch = Batch([(topic_of(frozen), message)])
     send_until_it_stands_still(batch, frozen)
     while len(drain(frozen)):
@@ -225,9 +237,9 @@ def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_t
 
 
 def test_nobody_waits_for_a_subscriber_that_stands_still(
-    subscriber: Callable[[], Subscriber], monkeypatch: pytest.MonkeyPatch
+    subscriber: Callable[..., Subscriber], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    frozen, reader, message, clock = subscriber(), subscriber(), scan(100), PackedMessage(Clock())
+    frozen, reader, message, clock = subscriber(SHORT), subscriber(), scan(100), PackedMessage(Clock())
     both = topic_of(frozen, reader)
     batch = Batch([(both, message)], [(topic_of(reader), clock)])
     for _ in range(MANY):
@@ -244,12 +256,11 @@ def test_nobody_waits_for_a_subscriber_that_stands_still(
     assert not frozen.connection.closed
 
 
-def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subscriber]) -> None:
+def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[..., Subscriber]) -> None:
     reader, messages = subscriber(), [scan(1_000_000), scan(10)]
     received: List[bytes] = []
     size = sum(message.size for message in messages)
     thread = threading.Thread(target=lambda: received.append(reader.received(size)))
-    reader.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
 
     def begin(_flags: int) -> None:
         if not thread.is_alive():
@@ -257,13 +268,12 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[[], Subsc
 
     reader.link.socket = spied(reader, begin)
     Batch([(topic_of(reader), message) for message in messages]).send(0)  # topics remapped to one
-    thread.join(10.0)
+    thread.join(PATIENCE)
     assert received == [b"".join(message.data.tobytes() for message in messages)]
 
 
-def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable[[], Subscriber]) -> None:
+def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable[..., Subscriber]) -> None:
     slow, reader, message, clock = subscriber(), subscriber(), scan(100_000), PackedMessage(Clock())
-    slow.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 10, 0))
     thread = threading.Thread(target=slow.received, args=(message.size,))
 
     def look(_flags: int) -> None:
@@ -275,7 +285,7 @@ def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable
 
     slow.link.socket = spied(slow, look)
     Batch([(topic_of(slow), message)], [(topic_of(reader), clock)]).send(0)
-    thread.join(10.0)
+    thread.join(PATIENCE)
     assert reader.socket.recv(100) == clock.data.tobytes()
     assert not slow.connection.closed
 
@@ -288,9 +298,9 @@ def _full(reader: Subscriber) -> None:
 
 @pytest.mark.parametrize("beams", [10, 100_000], ids=["nothing is taken", "a part is taken"])
 def test_subscribers_that_stall_together_are_waited_for_only_once(
-    subscriber: Callable[[], Subscriber], beams: int
+    subscriber: Callable[..., Subscriber], beams: int
 ) -> None:
-    stalled, waited = [subscriber() for _ in range(5)], []
+    stalled, waited = [subscriber(SHORT) for _ in range(5)], []
     for number, one in enumerate(stalled):
         if beams < 1000:
             _full(one)
@@ -301,9 +311,9 @@ def test_subscribers_that_stall_together_are_waited_for_only_once(
 
 
 def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
-    subscriber: Callable[[], Subscriber],
+    subscriber: Callable[..., Subscriber],
 ) -> None:
-    stalled, slow, message = subscriber(), subscriber(), scan(100_000)
+    stalled, slow, message = subscriber(SHORT), subscriber(), scan(100_000)
     received: List[bytes] = []
     reading = threading.Thread(target=lambda: received.append(slow.received(message.size - 100_000)))
 
@@ -314,7 +324,7 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
 
     stalled.link.socket = spied(stalled, read_meanwhile)
     Batch([(topic_of(stalled, slow), message)]).send(0)
-    reading.join(10.0)
+    reading.join(PATIENCE)
     assert stalled.link.stands_still and not slow.link.stands_still
     assert b"".join(received) == bytes(message.data)
 

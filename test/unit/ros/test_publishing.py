@@ -24,6 +24,8 @@ from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher, resum
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
+SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, for a stall
+LONG = struct.pack("ll", 60, 0)  # for a subscriber that reads, whenever it gets a processor
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
 NAMES = (f"/topic_{i}" for i in itertools.count())
 
@@ -81,9 +83,13 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
     kept.close()
 
 
+def _set_timeout(link: Link, timeout: bytes) -> None:
+    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
+
+
 def _received(link: Link, size: int) -> bytes:
     """The next bytes that a subscriber gets."""
-    link.socket.settimeout(10.0)
+    link.socket.settimeout(60.0)
     data = b""
     while len(data) < size:
         part = link.socket.recv(size - len(data))
@@ -103,24 +109,26 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
 ) -> None:
     latched, many = publisher(next(NAMES), LaserScan, latch=True), 3_000_000  # beams: more than a socket takes at once
     link = connect(latched)
-    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    _set_timeout(link, SHORT)
     try:
         for beams in (many, 20, 10):
             latched.impl.publish(LaserScan(ranges=[1.0] * beams))  # as a node does, after its init_node
         (subscriber,) = latched.links
         assert subscriber.stands_still
+        _set_timeout(link, LONG)
         first, received = _serialized(many, 1), []
         reading = threading.Thread(target=lambda: received.append(_received(link, len(first))))
         reading.start()
-        while reading.is_alive():
+        while subscriber.stands_still:
             resume()
-        resume()
-        last = _serialized(10, 4)  # the third message, sent once more
-        assert received == [first] and _received(link, len(last)) == last
-        assert not subscriber.stands_still and latched.impl.connections == [link.connection]
+        reading.join()
+        sent = latched.impl.seq
+        last = _serialized(10, sent)  # the third message, sent once more, for which there was room at last
+        assert sent > 3 and received == [first] and _received(link, len(last)) == last
+        assert latched.impl.connections == [link.connection]
         resume()
         latched.impl.publish(LaserScan())
-        assert _received(link, len(_serialized(0, 5))) == _serialized(0, 5)
+        assert _received(link, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
     finally:
         latched.unregister()
 
@@ -146,7 +154,7 @@ def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
 
     scans.impl.add_connection = add_without_descriptors
     lost = connect(scans)
-    lost.socket.settimeout(10.0)
+    lost.socket.settimeout(60.0)
     assert lost.socket.recv(1) == b""
     scans.impl.check()
     assert scans.impl.connections == [kept.connection]
@@ -197,7 +205,7 @@ def test_subscriber_that_waits_for_a_processor_is_waited_for(
             return True
 
     monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", Starved)
-    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    _set_timeout(link, SHORT)
     _send(scans, message)
     assert len(asked) >= 3 and not scans.links[0].stands_still
     reading.join()
@@ -217,12 +225,13 @@ def test_subscriber_that_has_read_and_sleeps_when_it_is_looked_at_is_waited_for(
         def __init__(self, *_: object) -> None: ...
 
         def wants_to_run(self) -> bool:
+            _set_timeout(link, LONG)
             read[0] = link.socket.recv(1_000_000, socket.MSG_WAITALL)
             reading.start()
             return False
 
     monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", AsleepAgain)
-    link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", 0, 100_000))
+    _set_timeout(link, SHORT)
     _send(scans, message)
     assert not scans.links[0].stands_still
     reading.join()
