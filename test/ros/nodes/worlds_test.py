@@ -42,9 +42,10 @@ class Worlds(unittest.TestCase):
         rospy.wait_for_service(service, DEADLINE)
         return rospy.ServiceProxy(service, kind)(*arguments)
 
-    def ahead(self):
-        """The range straight ahead [m] in the second scan from now, as the next one may be from before."""
-        return self.scan.next(2)[1].ranges[0]
+    def wait_for_range(self, expected, degrees=0):
+        """The next scan with this range [m] at an angle; those on their way may be from before a change."""
+        what = f"{expected} m at {degrees} degrees"
+        return self.scan.wait_for(lambda m: abs(m.ranges[degrees] - expected) < 0.06, what, len(self.scan))
 
     def test_map_is_latched_with_the_cells_origin_and_resolution_of_its_file(self):
         grid = Recorder("/map", OccupancyGrid).newest()
@@ -100,19 +101,19 @@ class Worlds(unittest.TestCase):
             self.assertIn("seed 7", file.read())
 
     def test_scan_measures_the_wall_of_the_map(self):
-        self.assertAlmostEqual(self.ahead(), 3.9 + 0.032, delta=0.06)
+        self.wait_for_range(3.9 + 0.032)
 
     def test_scans_and_markers_follow_a_model_that_is_spawned_moved_and_deleted(self):
         spawned = self.call("spawn_model", SpawnModel, "", CRATE.format('<plugin name="p"/>'), "", at(1.0))
         self.assertTrue(spawned.success, spawned.message)
         self.assertIn("model 'crate' with 1 collisions; ignored: plugin 'p'", spawned.message)
-        self.assertAlmostEqual(self.ahead(), 0.832, delta=0.06)
+        self.wait_for_range(0.832)
         self.markers.wait_for(lambda m: [x.type for x in m.markers[1:]] == [Marker.CUBE], "the crate in RViz")
         self.assertTrue(self.call("move_model", MoveModel, "crate", at(2.0)).success)
-        self.assertAlmostEqual(self.ahead(), 1.832, delta=0.06)
+        self.wait_for_range(1.832)
         start = len(self.markers)
         self.assertTrue(self.call("delete_model", DeleteModel, "crate").success)
-        self.assertAlmostEqual(self.ahead(), 3.932, delta=0.06)
+        self.wait_for_range(3.932)
         self.markers.wait_for(lambda m: [x.action for x in m.markers] == [Marker.DELETEALL], "nothing in RViz", start)
 
     def test_late_subscriber_gets_the_whole_world_while_an_obstacle_moves(self):
@@ -141,7 +142,7 @@ class Worlds(unittest.TestCase):
     def test_model_of_the_documentation_is_spawned(self):
         answer = self.call("spawn_model", SpawnModel, "", "", "model://crate", at(1.0))
         self.assertTrue(answer.success, answer.message)
-        self.assertAlmostEqual(self.ahead(), 0.832, delta=0.06)
+        self.wait_for_range(0.832)
         self.assertTrue(self.call("delete_model", DeleteModel, "crate").success)
 
     def test_an_invalid_request_is_refused_with_the_reason_and_changes_nothing(self):
@@ -163,7 +164,9 @@ class Worlds(unittest.TestCase):
             answer = self.call(name, kind, *arguments)
             self.assertFalse(answer.success, answer.message)
             self.assertIn(words, answer.message)
-        self.assertAlmostEqual(self.ahead(), 3.932, delta=0.06)
+        self.assertTrue(self.call("spawn_model", SpawnModel, "behind", CRATE.format(""), "", at(-1.0)).success)
+        self.assertAlmostEqual(self.wait_for_range(0.768, 180).ranges[0], 3.932, delta=0.06)
+        self.assertTrue(self.call("delete_model", DeleteModel, "behind").success)
 
 
 if __name__ == "__main__":
