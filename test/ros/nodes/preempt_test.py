@@ -6,6 +6,7 @@ from actionlib_msgs.msg import GoalStatus
 from harness import SystemTest, distance, run
 
 from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.ros.convert import from_pose_msg
 
 
 class Preempt(SystemTest):
@@ -17,12 +18,12 @@ class Preempt(SystemTest):
 
     def test_cancel_stops_the_robot_and_the_goal_is_preempted(self):
         goal = self.driving_goal()
-        there = self.robot.pose()
         goal.cancel()
         result = goal.result("PREEMPTED")
         self.assertIn("it was cancelled", result.result.message)
         self.assertEqual(result.status.status, GoalStatus.PREEMPTED)
-        self.assertLess(distance(there, self.robot.wait_until_it_stands()), 0.15)
+        ended = self.robot.truth.wait_for(lambda m: m.header.stamp >= result.header.stamp, "the pose at its end")
+        self.assertLess(distance(from_pose_msg(ended.pose.pose), self.robot.wait_until_it_stands()), 0.05)
 
     def test_cancel_of_all_goals_is_served(self):
         goal = self.driving_goal()
