@@ -3,21 +3,19 @@
 import contextlib
 import socket
 import threading
-import time
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
 
 from aro_robocop_goto_as.bootstrap import master
 from aro_robocop_goto_as.errors import MasterError
-from aro_robocop_goto_as.process.ports import free_port
 
-SHORT = 0.3  # [s, wall] timeout of a request
+SHORT, LONG = 0.3, 60.0  # [s, wall] timeouts of a request that is never answered, and of any other one
 
 
 @pytest.fixture(autouse=True)
-def short_timeout(monkeypatch):
-    monkeypatch.setattr(master, "TIMEOUT", SHORT)
+def long_timeout(monkeypatch):
+    monkeypatch.setattr(master, "TIMEOUT", LONG)
 
 
 @contextlib.contextmanager
@@ -35,11 +33,13 @@ def served(**methods):
             thread.join()
 
 
-@contextlib.contextmanager
+def uri_of(server):
+    return f"http://127.0.0.1:{server.getsockname()[1]}"
+
+
 def silent():
-    """The URI of a port that accepts connections and never answers."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        yield f"http://127.0.0.1:{server.getsockname()[1]}"
+    """A port that accepts connections and never answers."""
+    return socket.create_server(("127.0.0.1", 0))
 
 
 def node():
@@ -47,20 +47,28 @@ def node():
     return served(getPid=lambda caller: [1, "", 4711])
 
 
-def ros_master(simulator=None):
-    """A ROS master's API; `simulator` is the URI under which it knows the simulator."""
-    answer = [1, "", simulator] if simulator else [-1, "unknown node", ""]
-    return served(getPid=lambda caller: [1, "", 4711], lookupNode=lambda caller, name: answer)
+def ros_master(simulator=None, asked=lambda: None):
+    """A ROS master's API; `simulator` is the URI under which it knows the simulator, for which it is asked."""
+
+    def look_up(caller, name):
+        asked()
+        return [1, "", simulator] if simulator else [-1, "unknown node", ""]
+
+    return served(getPid=lambda caller: [1, "", 4711], lookupNode=look_up)
 
 
+@contextlib.contextmanager
 def nobody():
-    return f"http://127.0.0.1:{free_port()}"
+    """The URI of a port that refuses connections; no other program can get it meanwhile."""
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        yield uri_of(bound)
 
 
 def test_closed_port_has_no_master_and_no_simulator():
-    uri = nobody()
-    assert not master.master_answers(uri)
-    assert master.running_simulator(uri) is None
+    with nobody() as uri:
+        assert not master.master_answers(uri)
+        assert master.running_simulator(uri) is None
 
 
 def test_master_without_simulator():
@@ -75,7 +83,7 @@ def test_simulator_that_answers_is_running():
 
 
 def test_simulator_that_has_ended_but_is_still_registered_is_not_running():
-    with ros_master(nobody()) as uri:
+    with nobody() as simulator, ros_master(simulator) as uri:
         assert master.running_simulator(uri) is None
 
 
@@ -84,18 +92,25 @@ def test_another_program_on_the_port_of_an_ended_simulator_is_no_simulator():
         assert master.running_simulator(uri) is None
 
 
-def test_simulator_that_hangs_is_reported_with_its_address():
-    with silent() as simulator, ros_master(simulator) as uri:
-        assert simulator in master.running_simulator(uri)
+def test_simulator_that_hangs_is_reported_with_its_address(monkeypatch):
+    def shorten():  # for the next request, which is that to the simulator
+        monkeypatch.setattr(master, "TIMEOUT", SHORT)
+
+    with silent() as server, ros_master(uri_of(server), shorten) as uri:
+        assert uri_of(server) in master.running_simulator(uri)
 
 
 @pytest.mark.parametrize("ask", [master.master_answers, master.running_simulator])
-def test_port_that_never_answers_is_an_error_after_the_timeout(ask):
-    with silent() as uri:
-        start = time.monotonic()
+def test_port_that_never_answers_is_an_error_after_the_timeout(ask, monkeypatch):
+    monkeypatch.setattr(master, "TIMEOUT", SHORT)
+    with silent() as server:
+        uri = uri_of(server)
         with pytest.raises(MasterError, match=rf"{uri} did not answer within {SHORT:g} s: .*ROS_MASTER_URI"):
             ask(uri)
-        assert time.monotonic() - start < 20 * SHORT
+        server.accept()[0].close()
+        server.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            server.accept()  # it was asked only once
 
 
 @pytest.mark.parametrize("ask", [master.master_answers, master.running_simulator])
@@ -121,7 +136,7 @@ def test_server_of_another_protocol_is_an_error(ask, answer):
         thread = threading.Thread(target=reply)
         thread.start()
         try:
-            uri = f"http://127.0.0.1:{server.getsockname()[1]}"
+            uri = uri_of(server)
             with pytest.raises(MasterError, match="does not answer as a ROS master does"):
                 ask(uri)
         finally:
