@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
-"""The simulated robot follows the newest valid command, and brakes after the command timeout."""
+"""The simulated robot follows the newest command, and brakes after the command timeout."""
 
-import math
 import socket
 import unittest
 
 from commands import Commands
-from harness import SIMULATOR, Recorder, Robot, moves, run
-from rosgraph_msgs.msg import Log
+from harness import Robot, run
 
 
 class CmdVel(unittest.TestCase):
@@ -15,12 +13,10 @@ class CmdVel(unittest.TestCase):
     def setUpClass(cls):
         cls.robot = Robot()
         cls.commands = Commands()
-        cls.log = Recorder("/rosout", Log, wait=False)
 
     def setUp(self):
         self.robot.reset()
         self.robot.wait_for_standstill()
-        self.log.clear()
 
     def test_single_command_times_out_after_half_a_second(self):
         self.robot.truth.clear()
@@ -54,31 +50,6 @@ class CmdVel(unittest.TestCase):
             fast = self.robot.truth.next(15)
         self.assertLess(max(m.twist.twist.linear.x for m in fast), 0.23)
         self.robot.wait_for_standstill()
-
-    def test_a_command_of_nan_or_infinity_is_refused_and_the_one_before_stays_in_force(self):
-        bad = ((math.nan, 0.0), (0.0, math.nan), (math.inf, 0.0), (0.0, -math.inf))
-        with self.commands.repeated(0.1):
-            self.robot.wait_until_it_drives(0.09)
-            for v, w in bad * 5:
-                self.commands.once(v, w)
-                for m in self.robot.truth.next(2):
-                    self.assertAlmostEqual(m.twist.twist.linear.x, 0.1, delta=0.02)
-                    self.assertAlmostEqual(m.twist.twist.angular.z, 0.0, delta=0.05)
-        self.robot.wait_for_standstill()
-        for v, w in bad:
-            self.commands.once(v, w)
-            self.assertFalse([m for m in self.robot.truth.next(3) if moves(m)])
-        self.log.wait_for(
-            lambda m: (
-                m.name == SIMULATOR
-                and m.level == Log.WARN
-                and "nan m/s" in m.msg
-                and "expected finite numbers" in m.msg
-            ),
-            "a warning",
-        )
-        refusals = [m for m in self.log.messages if "velocity command refused" in m.msg]
-        self.assertLess(len(refusals), 10)  # of 24: the warning is throttled
 
 
 if __name__ == "__main__":

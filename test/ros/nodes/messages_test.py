@@ -68,15 +68,22 @@ class Messages(unittest.TestCase):
             recorder.clear()
 
     def drive_an_arc(self):
-        """Record only a motion at constant speed: 0.15 m/s forward, 0.5 rad/s to the left."""
-        with self.commands.repeated(0.15, 0.5):
-            start = len(self.robot.truth)
-            self.robot.truth.wait_for(
-                lambda m: m.twist.twist.linear.x > 0.149 and m.twist.twist.angular.z > 0.49, "the full speed", start
-            )
-            self.imu.next(20)  # messages from before the full speed have arrived by then
-            self.clear()
-            self.scan.next(8)
+        """Record only a motion at constant speed: 0.15 m/s forward, 0.5 rad/s to the left; it goes on after that."""
+        self.addCleanup(self.stop)
+        self.commands.once(0.15, 0.5)
+        full = self.robot.truth.wait_for(
+            lambda m: m.twist.twist.linear.x > 0.149 and m.twist.twist.angular.z > 0.49, "the full speed"
+        )
+        begin = stamp_of(full) + 100_000_000
+        end = begin + 1_000_000_000
+        for recorder in (self.imu, self.joints, self.robot.truth, self.robot.odom, self.scan):
+            recorder.wait_for(lambda m: stamp_of(m) > end, "a second of messages")
+            del recorder.messages[: sum(stamp_of(m) <= begin for m in recorder.messages)]
+
+    def stop(self):
+        """End the motion."""
+        self.commands.once(0.0)
+        self.robot.wait_for_standstill()
 
     def test_scan_has_360_ranges_over_one_turn_in_base_scan(self):
         for scan in self.scan.next(3):
@@ -106,9 +113,9 @@ class Messages(unittest.TestCase):
         pose.pose.pose.position.x = 2.5 + 0.11  # outside of the room, with its back to the east wall
         pose.pose.pose.orientation.w = 1.0
         self.initialpose.publish(pose)
-        wait_for(lambda: self.robot.pose().x > 2.0, "the robot outside the walls")
-        self.scan.next(2)
-        ranges = np.array(self.scan.newest().ranges)
+        outside = self.robot.truth.wait_for(lambda m: m.pose.pose.position.x > 2.0, "the robot outside the walls")
+        scan = self.scan.wait_for(lambda m: m.header.stamp > outside.header.stamp, "a scan from there")
+        ranges = np.array(scan.ranges)
         self.assertEqual(ranges[180], -math.inf)
         self.assertEqual(ranges[0], math.inf)
         measured = ranges[np.isfinite(ranges)]
