@@ -3,7 +3,8 @@
 
 import signal
 
-from harness import Process, SystemTest, run, script
+from dynamic_reconfigure.client import Client
+from harness import SIMULATOR, Process, SystemTest, run, script
 from processes import busy_processes
 
 COMMAND = script("robocop_goto.py")
@@ -27,6 +28,9 @@ class GotoFails(SystemTest):
         self.assertEqual(self.goals.sent.messages, [])
 
     def test_interrupted_command_cancels_its_goal(self):
+        client = Client(SIMULATOR[1:], timeout=60)
+        client.update_configuration({"real_time_factor": 0.25})  # so that the robot still drives when it is interrupted
+        self.addCleanup(client.update_configuration, {"real_time_factor": 4.0})  # of the launch file
         with Process(COMMAND, 2.0, 0.0) as command:
             self.robot.wait_until_it_drives()
             with busy_processes():
