@@ -233,11 +233,12 @@ def test_a_rosbag_of_a_run_plays_back_every_message(ros, reference):
     counts = ros.folder / "counts.json"
     counter = ros.script("count_messages.py", counts, *run["counts"])
     ros.wait((ros.folder / "counts.json.ready").exists, "the counter listens", (counter,))
-    player = ros.start(
-        "rosrun", "rosbag", "play", "--quiet", "--rate=20", "--queue=100000", "--wait-for-subscribers", str(bag)
-    )
-    ros.wait(lambda: player.poll() is not None, "the end of the bag", (player, counter))
-    ros.wait(lambda: json.loads(counts.read_text()) == run["counts"], f"all of {run['counts']}", (counter,))
+    # At the end of the bag, rosbag would end without what its connections have not sent yet.
+    options = ("--quiet", "--rate=20", "--queue=100000", "--wait-for-subscribers", "--keep-alive")
+    player = ros.start("rosrun", "rosbag", "play", *options, str(bag))
+    ros.wait(counts.exists, "the first message", (player, counter))
+    ros.wait(lambda: json.loads(counts.read_text()) == run["counts"], f"all of {run['counts']}", (player, counter))
+    ros.stop(player)
 
 
 def start_recorder(ros, simulator, remote):
