@@ -4,6 +4,7 @@ import os
 import signal
 
 import processes
+import pytest
 import waiting
 from hypothesis import settings
 
@@ -29,6 +30,7 @@ def pytest_addoption(parser):
     )
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest-timeout reads its option
 def pytest_configure(config):
     count = config.getoption("--busy")
     if count and not hasattr(config, "workerinput"):  # the workers of pytest-xdist inherit the environment
@@ -36,6 +38,8 @@ def pytest_configure(config):
         load = processes.busy_processes(count)
         load.__enter__()
         config.add_cleanup(lambda: load.__exit__(None, None, None))
+    if config.option.timeout is None:
+        config.option.timeout = float(config.getini("timeout")) * waiting.patience()
     settings.load_profile("all" if config.getoption("--all") else "selection")
 
 
@@ -50,3 +54,7 @@ def pytest_collection_modifyitems(config, items):
     chosen = {item: not any(item.get_closest_marker(name) for name in left_out) for item in items}
     config.hook.pytest_deselected(items=[item for item in items if not chosen[item]])
     items[:] = [item for item in items if chosen[item]]
+    for item in items:
+        limit = item.get_closest_marker("timeout")
+        if limit:
+            item.add_marker(pytest.mark.timeout(limit.args[0] * waiting.patience()), append=False)

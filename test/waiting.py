@@ -8,12 +8,17 @@ DEADLINE = 120.0  # [s, wall] for any one condition, long enough for a busy mach
 POLL = 0.05  # [s, wall]
 
 
+def patience():
+    """The factor on all deadlines."""
+    return float(os.environ.get(PATIENCE, "1"))
+
+
 def wait_for(condition, what, deadline=DEADLINE, poll=POLL, error=AssertionError, given_up=lambda: False):
     """The first true value of `condition`, which is looked at every `poll` [s].
 
     After `deadline` [s], or once `given_up` is true, `error` with `what`, which may be callable.
     """
-    deadline *= float(os.environ.get(PATIENCE, "1"))
+    deadline *= patience()
     until = time.monotonic() + deadline
     while True:
         value = condition()

@@ -19,7 +19,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from waiting import PATIENCE
+from waiting import patience
 
 CAMPAIGN = Path(__file__).with_name("campaign.py")
 QUICK = ("messages", "lockstep-kinematic-one")
@@ -42,7 +42,7 @@ def run(request, tmp_path, capsys, configuration, goals, *options):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        timeout=(COSTLY + SECONDS_PER_GOAL * goals) * float(os.environ.get(PATIENCE, "1")),
+        timeout=(COSTLY + SECONDS_PER_GOAL * goals) * patience(),
     )
     with capsys.disabled():
         print(f"\n{configuration}\n{done.stdout}")
@@ -63,6 +63,7 @@ def only_episode(request):
     return request.config.getoption("--episode")
 
 
+@pytest.mark.timeout(0)  # run() has one, which depends on the number of goals
 @pytest.mark.parametrize("configuration", [pytest.param(QUICK[0], marks=pytest.mark.slow), *QUICK[1:]])
 def test_every_goal_ends_once_and_the_robot_stops_whatever_goes_wrong(
     request, tmp_path, capsys, only_episode, configuration
@@ -108,7 +109,9 @@ def test_hours_of_goals_need_no_more_memory_threads_or_files(request, tmp_path, 
 )
 def test_campaign_finds_a_server_with_a_mistake(tmp_path, mistake, found):
     command = [sys.executable, CAMPAIGN, "--goals", 40, "--folder", tmp_path, "--mistake", mistake]
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, text=True, timeout=240.0)
+    done = subprocess.run(
+        [str(word) for word in command], stdout=subprocess.PIPE, text=True, timeout=240.0 * patience()
+    )
     assert done.returncode == 1
     (violation,) = json.loads((tmp_path / "report.json").read_text())["violations"]
     assert found in violation

@@ -15,12 +15,12 @@ from pathlib import Path
 import pytest
 import rosgraph
 from processes import busy_processes
+from waiting import DEADLINE, patience
 
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 NODES = ROOT / "test" / "ros" / "nodes"
-DEADLINE = 120.0  # [s, wall] for any one condition; only a failure takes this long
 SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
 pytestmark = pytest.mark.xdist_group("lockstep")  # for the master and the reference run that the tests share
 
@@ -87,14 +87,15 @@ class Ros:
 
     def wait(self, condition, what, processes=()):
         """The first true value of a condition; these processes may not fail meanwhile."""
-        end = time.monotonic() + DEADLINE
+        deadline = DEADLINE * patience()
+        end = time.monotonic() + deadline
         while True:
             value = condition()
             if value:
                 return value
             for process in processes:
                 assert process.poll() in (None, 0), f"{process.args} ended: {process.log.read_text()[-3000:]}"
-            assert time.monotonic() < end, f"not within {DEADLINE:g} s: {what}"
+            assert time.monotonic() < end, f"not within {deadline:g} s: {what}"
             time.sleep(0.02)
 
     def stop(self, *processes):
