@@ -15,7 +15,7 @@ from robocop_grading.sandbox.bubblewrap import open_sandbox
 from robocop_grading.sandbox.guard import Guard
 
 MB = 1024**2
-PATIENCE = 30.0  # [s, wall]
+PATIENCE = 120.0  # [s, wall]
 # Children that allocate memory of their own, besides what they share with their parent, and then sleep.
 FAMILY = """
 import os, time
