@@ -74,9 +74,9 @@ def test_among_many_walls_the_distance_to_a_near_one_takes_less_time_and_is_the_
     distance = ObstacleDistance(World("w", (Obstacle("walls", Pose3D(), walls),), Pose2D(), (), "w"), (0.1,))
 
     def duration(x: float, y: float) -> float:
-        began = time.process_time()
+        began = time.thread_time()
         distance.nearest(x, y)
-        return time.process_time() - began
+        return time.thread_time() - began
 
     points = rng.uniform(-49.0, 49.0, (50, 2)).tolist()
     near = min(duration(x, y) for x, y in points)
