@@ -12,6 +12,7 @@ from aro_robocop_goto_as.process.ports import free_port
 
 # A file system of 512 KiB that nobody else sees, so that no privilege is needed.
 MOUNT = 'mount -t tmpfs -o size=512k tmpfs "$0" && exec "$@" >"$0/output" 2>&1'
+LOST = "log lines were lost: [Errno 28] No space left on device"
 LAUNCH = ("robocop_launch.py", "--screen", "aro_robocop_goto_as", "robocop_goto_as.launch", "rviz:=false")
 
 
@@ -30,6 +31,9 @@ def test_goals_are_reached_while_the_disk_is_full_and_lost_lines_are_counted_aft
     def output():
         with open(f"{inside}/output", encoding="utf-8", errors="replace") as file:
             return file.read()
+
+    def lines_with(words):
+        return subprocess.run(["grep", "-rh", words, inside], stdout=subprocess.PIPE, text=True).stdout
 
     def reach(x, name):
         (tmp_path / name).mkdir()
@@ -54,12 +58,11 @@ def test_goals_are_reached_while_the_disk_is_full_and_lost_lines_are_counted_aft
         reach("0.6", "still_full")
         os.remove(f"{inside}/filler")
         reach("0.9", "room")
-        system.send_signal(signal.SIGINT)
-        # Its mounts end with it: read them while its end is not waited for.
-        log = subprocess.run(["grep", "-rh", "lines were lost", inside], stdout=subprocess.PIPE, text=True).stdout
-        assert "log lines were lost: [Errno 28] No space left on device" in log
-        assert "Traceback" not in output()
-        assert system.wait(waiting.DEADLINE) == 0
+        waiting.wait_for(lambda: LOST in lines_with("lines were lost"), "a line about the lost ones")
+        with open(f"{inside}/output", encoding="utf-8", errors="replace") as file:  # before its mounts end with it
+            system.send_signal(signal.SIGINT)
+            assert system.wait(waiting.DEADLINE) == 0
+            assert "Traceback" not in file.read()
     finally:
         system.kill()
         system.wait()
