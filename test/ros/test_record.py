@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import xmlrpc.client
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from waiting import wait_for
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
+SERVER = "/aro_robocop_goto_as_node"
 LISTENER = """
 import rospy
 from aro_robocop_goto_as.msg import GoToPositionActionResult
@@ -47,6 +49,12 @@ class Commands:
         """Whether a node subscribes to a topic."""
         return node in dict(self.master.getSystemState()[1]).get(topic, [])
 
+    def sends(self, topic, node, receiver):
+        """Whether a node in Python sends a topic to one whose name begins so."""
+        publisher = xmlrpc.client.ServerProxy(self.master.lookupNode(node))
+        links = publisher.getBusInfo("/record_test")[2]
+        return any(link[1].startswith(receiver) and link[2] == "o" and link[4] == topic for link in links)
+
     def publishes(self, topic, node):
         """Whether a node publishes a topic."""
         if not self.master.is_online():
@@ -72,9 +80,10 @@ def robocop(tmp_path):
 @pytest.mark.slow
 def test_a_recorded_goal_is_played_again(robocop):
     system = robocop.start("run", "rviz:=false", "real_time_factor:=5")
-    wait_for(lambda: robocop.publishes("/robocop_goto_as/result", "/aro_robocop_goto_as_node"), "the server")
+    wait_for(lambda: robocop.publishes("/robocop_goto_as/result", SERVER), "the server")
     recorder = robocop.start("record", "run.bag")
     wait_for((robocop.folder / "run.bag.active").exists, "the bag")
+    wait_for(lambda: robocop.sends("/robocop_goto_as/result", SERVER, "/record_"), "the recorder gets results")
     assert robocop.start("goto", "-0.5", "0").wait(60.0) == 0
     robocop.end(recorder)
     robocop.end(system)
