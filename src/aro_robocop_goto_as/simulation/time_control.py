@@ -23,11 +23,12 @@ class FactorReport:
     asked: float
     step_time: float  # [s, wall] of work per step, without waiting
     lag: float  # [s, wall] behind the requested factor
+    dropped: float = 0.0  # [s, wall] of lag over the last period that will not be made up for
 
     @property
     def behind(self) -> bool:
-        """Whether the machine is too slow for the requested factor."""
-        return self.asked > 0.0 and self.reached < TOLERANCE * self.asked
+        """Whether the machine is too slow for the requested factor; a lag that will be made up for does not count."""
+        return self.dropped > 0.0 and self.reached < TOLERANCE * self.asked
 
 
 class Pacer:
@@ -50,7 +51,7 @@ class Pacer:
         self._anchor_wall, self._anchor_step = self.now(), step
         self._report_wall, self._report_step = self._anchor_wall, step
         self._rested = self._anchor_wall
-        self._waited = self._lag = 0.0
+        self._waited = self._lag = self._dropped = 0.0
 
     def ahead(self, step: int) -> float:
         """How long to wait [s, wall] before going on from a step: until it is due, or for a rest."""
@@ -69,6 +70,7 @@ class Pacer:
         self._lag = max(0.0, wall - due)
         if wall - due > MOST_BEHIND:
             self._anchor_wall, self._anchor_step = wall, step
+            self._dropped += self._lag
         return max(0.0, due - wall)
 
     def waited(self, seconds: float) -> None:
@@ -85,8 +87,9 @@ class Pacer:
             return None
         done = step - self._report_step
         step_time = max(0.0, elapsed - self._waited) / done if done > 0 else 0.0
+        dropped, self._dropped = self._dropped, 0.0
         self._report_wall, self._report_step, self._waited = wall, step, 0.0
-        return FactorReport(done / self._rate / elapsed, self.factor, step_time, self._lag)
+        return FactorReport(done / self._rate / elapsed, self.factor, step_time, self._lag, dropped)
 
 
 class TimeControl:

@@ -6,6 +6,7 @@ from fakes import FakeClock
 from aro_robocop_goto_as.sim_params import TimeParams
 from aro_robocop_goto_as.simulation.time_control import (
     LONGEST_HOLD,
+    MOST_BEHIND,
     PAUSED_PERIOD,
     REST,
     REST_PERIOD,
@@ -104,5 +105,25 @@ def test_report_contains_the_achieved_factor() -> None:
     wall.time += 0.5
     assert timing.report(240) is None
     wall.time += 0.5
+    timing.ahead(480)
     report = timing.report(480)
     assert (report.reached, report.asked, report.behind) == (pytest.approx(2.0), 4.0, True)
+
+
+@pytest.mark.parametrize("late, behind", [(MOST_BEHIND - 0.01, False), (MOST_BEHIND + 0.01, True)])
+def test_a_lag_that_will_be_made_up_for_does_not_count_as_behind(late: float, behind: bool) -> None:
+    wall = FakeClock()
+    timing = Pacer(1.0, RATE, wall.now)
+    wall.time += 1.0 + late
+    timing.ahead(RATE)
+    report = timing.report(RATE)
+    assert report is not None and report.behind == behind
+
+
+def test_a_clock_slower_than_the_reports_is_not_behind() -> None:
+    wall = FakeClock()
+    timing = Pacer(0.01, RATE, wall.now)
+    wall.time += 1.0
+    assert timing.ahead(4) > 0.0
+    report = timing.report(0)
+    assert report is not None and (report.reached, report.behind) == (0.0, False)

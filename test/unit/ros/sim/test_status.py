@@ -26,6 +26,7 @@ def warnings_at(monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[flo
     for factor in reached:
         clock.time += 1.0
         simulation.simulator.steps += round(factor * RATE)
+        simulation.time_control.pacer.ahead(simulation.simulator.steps)
         assert topics.report()
     return warnings
 
