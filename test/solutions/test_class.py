@@ -10,6 +10,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 
 import distributed
 import pytest
@@ -292,3 +293,9 @@ def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run
         )
         assert done.returncode != 0 and refusal in done.stderr, done.stdout + done.stderr
         assert client.submit(sum, [1, 2]).result(timeout=PATIENCE) == 3
+
+
+def test_local_workers_are_not_profiled_which_can_hang_python():
+    with connected(Place(workers=1)) as client:
+        (names,) = client.run(lambda: [thread.name for thread in threading.enumerate()]).values()
+    assert "Nanny stop queue watch" in names and "Profile" not in names

@@ -25,7 +25,11 @@ RETRIES = 1  # of a task that raised an error; tasks of workers that died are al
 # Hand-ins that are with the scheduler at a time: enough for the workers of a large cluster, few enough for its memory.
 MOST_AHEAD = 100
 MOST_BYTES_AHEAD = 256 * 1024**2
+# Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,
+# if a garbage collection, to which dask has added a callback, comes in the middle of it (CPython issue 106883).
+PROFILER = "distributed.worker.profile.enabled"
 SETTINGS = {
+    PROFILER: False,
     # The scheduler remembers by default the last 100,000 transitions and events; nobody looks at those of a class.
     "distributed.scheduler.transition-log-length": 100,
     "distributed.scheduler.events-log-length": 100,

@@ -13,6 +13,7 @@ from typing import Dict, Iterable, List, Optional, Union
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import GradingSetupError, NoTimeError, RobocopError
+from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
@@ -154,6 +155,7 @@ def grade(group: Class, tasks: Iterable[Task], place: Place, adapts: bool = True
             with connected(place) as client:
                 for name, outcome in grade_all(client, tasks, pace):
                     reraise_if_interrupted()
+                    orphans.reap_adopted("bwrap")  # two of each hand-in
                     try:
                         line = group.add(name, outcome)
                     except Exception as error:  # a report that nobody expected: its own row, and nobody else's

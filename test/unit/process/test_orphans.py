@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-DEADLINE = 30.0  # [s, wall]
+DEADLINE = 120.0  # [s, wall]
 # Every descendant holds the pipe open, so it reads as ended once none is left.
 ENDED = """
 import os, subprocess
@@ -36,4 +36,20 @@ def test_no_descendant_survives(family):
 
 def test_process_without_children_does_not_wait():
     code = "from aro_robocop_goto_as.process import orphans; orphans.adopt_orphans(); orphans.kill_descendants()"
+    assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0
+
+
+def test_adopted_child_that_has_ended_is_let_go_of():
+    code = """
+import psutil, subprocess, time
+from aro_robocop_goto_as.process import orphans
+orphans.adopt_orphans()
+own = subprocess.Popen(["true"])
+subprocess.run(["sh", "-c", "sleep 0 & exit"])
+this = psutil.Process()
+while [child.status() for child in this.children()] != 2 * [psutil.STATUS_ZOMBIE]:
+    time.sleep(0.01)
+orphans.reap_adopted("sleep")
+assert [child.pid for child in this.children()] == [own.pid]
+"""
     assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0

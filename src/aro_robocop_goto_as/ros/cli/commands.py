@@ -154,6 +154,7 @@ def grade_worker(arguments: List[str]) -> None:
     """A dask worker for grade-class."""
     program.need("hosting", "grade", "class")
     options = "--nthreads 1 --memory-limit 0 --no-dashboard --local-directory".split()
+    os.environ["DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED"] = "False"  # see PROFILER in classroom/dask_cluster.py
     folder = str(program.state() / "dask")
     program.start(*program.module("distributed.cli.dask_worker", *options, folder, *arguments))
 
