@@ -67,7 +67,7 @@ class Controllers:
         if tick > self.tick:
             return  # sent before a reset set simulated time back
         self.lockstep.answered(controller, tick)
-        if twist is not None:
+        if twist is not None and self.lockstep.is_stamped(controller):  # not enrolled yet: it is also on cmd_vel
             self._pending[controller.robot] = controller, twist
 
     @property
@@ -78,6 +78,7 @@ class Controllers:
     def enroll(self, answering: NodesOf) -> None:
         """Wait from the next tick on for the controllers that are connected to answer ticks."""
         if self.in_lockstep:
+            self.lockstep.tick = self._simulator.steps * self._rate // self._simulator.rate  # the last one reached
             for robot in range(len(self._simulator.robots)):
                 for node in answering(robot):
                     self.lockstep.enroll(ControllerId(robot, node))

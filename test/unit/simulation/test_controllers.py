@@ -139,3 +139,26 @@ def test_controllers_that_connect_while_time_stands_still_are_waited_for_from_th
     owner.on_tick = lambda stamp: owner.post(0.3, lambda: controllers.answer(ANSWERING, stamp, None))
     owner.run()
     assert owner.clock.time == pytest.approx(101.3) and controllers.lockstep.misses == 0
+
+
+@pytest.mark.parametrize("ticks", [1.0, 1.5])
+def test_controller_that_connects_while_time_stands_is_awaited_at_the_next_tick(ticks: float) -> None:
+    owner = lockstep(0.1 * ticks)
+    controllers = owner.simulation.controllers
+    owner.run()
+    controllers.command(NODE, AHEAD)  # notes the tick towards which time runs
+    controllers.enroll(lambda robot: {ANSWERING.node})
+    controllers.begin_tick()
+    controllers.lockstep.gone(NODE)
+    controllers.lockstep.tick = 2
+    assert controllers.lockstep.missing() == [ANSWERING]
+
+
+def test_command_of_an_answer_counts_once_its_sender_is_enrolled() -> None:
+    owner = lockstep(0.05)
+    controllers = owner.simulation.controllers
+    for enrolled in (False, True):
+        if enrolled:
+            controllers.enroll(lambda robot: {ANSWERING.node})
+        controllers.answer(ANSWERING, 0, AHEAD)
+        assert bool(controllers._pending) == enrolled

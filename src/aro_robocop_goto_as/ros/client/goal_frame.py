@@ -18,6 +18,7 @@ from ...suggestions import did_you_mean
 from .. import convert, graph
 from ..rospy_internals import publishers_of
 from ..ticker import wait_until
+from .discovery import PATIENCE
 from .tf_buffer import TfBuffer, is_possible
 
 POLL, LOOK = 0.01, 0.1  # [s, wall] between two looks for a transform, and for what it may be waiting for
@@ -90,10 +91,15 @@ class GoalTransformer:
         return position
 
     def _await(self, at_stamp: Callable[[], Optional[Point]]) -> Optional[Point]:
-        """Wait for `timeout` [s, wall], and, while it may be underway, until that is this process's processor time."""
-        limit = self._processor_time() + self.timeout
+        """Wait for `timeout` [s, wall], and, while it may be underway, until that is this process's processor time.
+
+        In all it may take PATIENCE times as long: a publisher of transforms that hangs is underway for ever.
+        """
+        limit, end = self._processor_time() + self.timeout, time.monotonic() + PATIENCE * self.timeout
         position = wait_until(at_stamp, self.timeout, POLL)
         while position is None and self._processor_time() < limit and self._is_underway() and not rospy.is_shutdown():
+            if time.monotonic() >= end:
+                break
             position = wait_until(at_stamp, LOOK, POLL)
         return position or at_stamp()  # it may have come just before the last look
 

@@ -66,7 +66,7 @@ class GoalExecution:
         Returns feedback, None without recent odometry and scan, and the goal's ending, None to go on.
         """
         p, now = self._tuning.params, tick_ns / NANOSECONDS
-        if self._started is None or self._last is None or now < self._last:  # first period, or the clock was set back
+        if self._started is None or self._last is None or now <= self._last:  # first period, or the clock was set back
             self._started, self._progress, self._last, self._turning = now, None, None, Turning()
             self.twist = STANDSTILL
         gap = 0.0 if self._last is None else now - self._last

@@ -59,6 +59,7 @@ class Inputs:
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
+        self._tick_ns = 0  # the newest one that was awaited
         self._arrived = threading.Condition()
 
     def on_odom(self, message: Odometry) -> None:
@@ -93,25 +94,33 @@ class Inputs:
             newest = [topic for topic in (self.odom, self.scan) if topic is not None]
             return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
 
-        self._forget_later_time()
+        is_set_back, self._tick_ns = tick_ns <= self._tick_ns, tick_ns
+        self._forget_earlier_run(is_set_back)
         if not self._knows_periods():
             self._await(self._knows_periods, 0.0, LOCKSTEP_PATIENCE)
-            self._forget_later_time()
+            self._forget_earlier_run(is_set_back)
         if self.odom is not None:  # otherwise the other node may be no simulator
             self._await(complete, LOCKSTEP_PATIENCE, LOCKSTEP_PATIENCE)
 
     def _knows_periods(self) -> bool:
         return all(topic is not None and math.isfinite(topic.period_ns) for topic in (self.odom, self.scan))
 
-    def _forget_later_time(self) -> None:
-        """Forget messages from before the clock was set back. Those of the next tick may come before its clock does."""
-        latest_ns = (self._ros_time() + 1.0 / self._tuning.params.control_rate) * 1e9
+    def _forget_earlier_run(self, is_set_back: bool) -> None:
+        """Forget messages from before the clock was set back, at that tick also those whose callbacks came later.
+
+        These are told by their stamps, with a margin, as a message may be handled before the clock that follows it.
+        """
+        latest_ns = (self._ros_time() + 1.0 / self._tuning.params.control_rate) * 1e9 if is_set_back else math.inf
 
         def kept(topic: Optional[Received]) -> Optional[Received]:
-            return None if topic is None or topic.stamp_ns > latest_ns else topic
+            return topic if topic is not None and self.is_of_this_run(topic) and topic.stamp_ns <= latest_ns else None
 
         with self._arrived:
             self.odom, self.scan, self.valid_scan = kept(self.odom), kept(self.scan), kept(self.valid_scan)
+
+    def is_of_this_run(self, topic: Received) -> bool:
+        """False for a message that was received before the clock was set back: later than it is now."""
+        return topic.at <= self._ros_time()
 
     def _await(self, complete: Callable[[], bool], wall: float, processor: float) -> bool:
         """Wait for messages until `complete`, by await_others(); returns whether it is."""
@@ -133,8 +142,7 @@ class Inputs:
             ("scan", Outcome.NO_SCAN, self.scan, self.valid_scan),
         ):
             last = started
-            # A message later than the present is from before the clock was set back; one later than `now` need not be.
-            if valid is not None and valid.at <= self._ros_time():
+            if valid is not None and self.is_of_this_run(valid):  # one later than `now` may be
                 last = max(started, valid.at)
             overdue = now - last > self._tuning.params.data_timeout
             connecting = newest is None or newest.wall < accepted

@@ -173,10 +173,10 @@ class GotoNode:
     def _simulator_in_lockstep(self) -> bool:
         """Whether the node that publishes odometry receives the answers; others, such as rosbag, may subscribe too.
 
-        Before the first odometry that node is unknown: it may be any.
+        Before the first odometry, also after the clock was set back, that node is unknown: it may be any.
         """
         odom = self.inputs.odom
-        if odom is None:
+        if odom is None or not self.inputs.is_of_this_run(odom):
             return bool(self.answers.get_num_connections())
         return is_connected_to(self.answers, sender(odom.message))
 

@@ -81,8 +81,9 @@ def test_goal_begins_anew_at_rest_each_time_that_the_clock_is_set_back() -> None
     tuning = cast(Tuning, SimpleNamespace(params=GotoParams()))
     goal = GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), tuning, cast(Inputs, BlockedRobot()))
     commands = []
-    for tick in 3 * [*range(PERIOD, 10 * PERIOD, PERIOD)]:
+    for tick in 3 * [*range(PERIOD, 10 * PERIOD, PERIOD)] + 2 * [PERIOD]:
         goal.step(tick * 1_000_000)
         commands.append(goal.twist)
-    assert commands[:9] == commands[9:18] == commands[18:]
+    assert commands[:9] == commands[9:18] == commands[18:27]
+    assert commands[27:] == 2 * commands[:1]
     assert 0.0 < commands[0].v < commands[8].v

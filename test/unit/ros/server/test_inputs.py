@@ -183,11 +183,37 @@ def test_messages_from_before_the_clock_was_set_back_are_forgotten_and_the_first
 
 
 def test_odometry_from_before_the_clock_was_set_back_that_came_late_is_not_used(server):
+    server.run_until(5.0)
+    server.inputs.await_tick(5 * 10**9)
     server.run_until(0.1)
     server.receive_scan(0.1)
     server.at_looks = [lambda: server.receive_odom(5.0)]
     server.inputs.await_tick(10**8)
     assert server.inputs.read() is None
+
+
+def test_messages_that_are_handled_before_the_clock_that_follows_them_are_kept(server):
+    server.run_until(1.0)
+    for stamp in (0.9, 1.0):
+        server.receive_odom(stamp)
+        server.receive_scan(stamp)
+    server.inputs.await_tick(10**9)
+    server.receive_odom(1.3)  # of a simulator whose control period is longer
+    server.receive_scan(1.3)
+    server.run_until(1.05)
+    server.inputs.await_tick(105 * 10**7)
+    assert server.inputs.read() is not None
+
+
+def test_messages_from_before_a_reset_soon_after_the_start_are_forgotten(server):
+    server.run_until(0.2)
+    for stamp in (0.1, 0.2):
+        server.receive_odom(stamp)
+        server.receive_scan(stamp)
+    server.inputs.await_tick(2 * 10**8)
+    server.run_until(0.1)
+    server.inputs.await_tick(10**8)
+    assert server.inputs.odom is None and server.inputs.valid_scan is None
 
 
 def test_data_that_arrives_in_the_moment_of_the_last_look_is_not_missing(server):
