@@ -54,16 +54,17 @@ def await_others(
     processor: float,
     processor_time: Callable[[], float] = time.process_time,
     want_to_run: Callable[[], bool] = others_want_to_run,
+    look: float = LOOK,
 ) -> bool:
     """Wait for what other threads of this process do, for `wall` [s] and then as long as they want to run.
 
     `wait` waits for up to so many seconds, and returns whether it is done. This process may use `processor` [s] of its
-    time meanwhile. Returns whether it is done.
+    time meanwhile, and `look` [s, wall] passes from one look at them to the next. Returns whether it is done.
     """
     limit = processor_time() + processor
     done = wait(wall)
     while not done and processor_time() < limit and want_to_run():
-        done = wait(LOOK)
+        done = wait(look)
     return bool(done or wait(0.0))  # it may have been done just before the last look
 
 

@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 
 from ...errors import FrameError
 from ...geometry import Pose2D, compose
-from ...process.peer import others_want_to_run
+from ...process.peer import await_others, others_want_to_run
 from ...suggestions import did_you_mean
 from .. import convert, graph
 from ..rospy_internals import publishers_of
@@ -95,13 +95,16 @@ class GoalTransformer:
 
         In all it may take PATIENCE times as long: a publisher of transforms that hangs is underway for ever.
         """
-        limit, end = self._processor_time() + self.timeout, time.monotonic() + PATIENCE * self.timeout
-        position = wait_until(at_stamp, self.timeout, POLL)
-        while position is None and self._processor_time() < limit and self._is_underway() and not rospy.is_shutdown():
-            if time.monotonic() >= end:
-                break
-            position = wait_until(at_stamp, LOOK, POLL)
-        return position or at_stamp()  # it may have come just before the last look
+        end = time.monotonic() + PATIENCE * self.timeout
+        await_others(
+            lambda timeout: wait_until(at_stamp, timeout, POLL) is not None,
+            self.timeout,
+            self.timeout,
+            self._processor_time,
+            lambda: time.monotonic() < end and not rospy.is_shutdown() and self._is_underway(),
+            LOOK,
+        )
+        return at_stamp()
 
     def _is_underway(self) -> bool:
         """Whether a callback waits for a processor, or a publisher that lives is not connected yet."""

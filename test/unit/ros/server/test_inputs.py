@@ -32,10 +32,6 @@ class Server:
         self.at_looks.pop(0)()
         return True
 
-    def run_until(self, seconds):
-        """The clock's next time [s]."""
-        self.ros_time = seconds
-
     def receive_odom(self, stamp):
         """Odometry of a time [s]."""
         odom = Odometry()
@@ -140,7 +136,7 @@ def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
 
 def test_messages_of_a_tick_are_waited_for_while_their_callbacks_get_no_processor(server, monkeypatch):
     monkeypatch.setattr(f"{Inputs.__module__}.LOCKSTEP_PATIENCE", 0.01)
-    server.run_until(2.0)
+    server.ros_time = 2.0
     for stamp in (1.0, 1.5):
         server.receive_odom(stamp)
         server.receive_scan(stamp)
@@ -155,7 +151,7 @@ def test_messages_of_an_unknown_period_are_waited_for_while_callbacks_want_to_ru
         server.receive_odom(0.9)
         server.receive_scan(0.9)
     server.at_looks = [lambda: None, lambda: server.receive_odom(1.0), lambda: server.receive_scan(1.0)]
-    server.run_until(1.0)
+    server.ros_time = 1.0
     server.inputs.await_tick(10**9)
     assert server.at_looks == [] and (server.inputs.odom.stamp_ns, server.inputs.scan.stamp_ns) == (10**9, 10**9)
 
@@ -168,24 +164,22 @@ def test_message_that_was_not_sent_is_not_waited_for(server):
 
 
 def test_messages_from_before_the_clock_was_set_back_are_forgotten_and_the_first_ones_after_it_are_waited_for(server):
-    server.run_until(5.0)
+    server.ros_time = 5.0
     for stamp in (4.9, 5.0):
         server.receive_odom(stamp)
         server.receive_scan(stamp)
-    server.run_until(0.1)
-    server.at_looks = [
-        lambda: server.receive_odom(5.0),
-        lambda: server.receive_odom(0.1),
-    ]  # in this order, by one thread
+    server.ros_time = 0.1
+    # One thread handles these, in this order.
+    server.at_looks = [lambda: server.receive_odom(5.0), lambda: server.receive_odom(0.1)]
     server.inputs.await_tick(10**8)
     assert server.at_looks == [] and server.inputs.odom.stamp_ns == 10**8
     assert server.inputs.scan is None and server.inputs.read() is None
 
 
 def test_odometry_from_before_the_clock_was_set_back_that_came_late_is_not_used(server):
-    server.run_until(5.0)
+    server.ros_time = 5.0
     server.inputs.await_tick(5 * 10**9)
-    server.run_until(0.1)
+    server.ros_time = 0.1
     server.receive_scan(0.1)
     server.at_looks = [lambda: server.receive_odom(5.0)]
     server.inputs.await_tick(10**8)
@@ -193,25 +187,25 @@ def test_odometry_from_before_the_clock_was_set_back_that_came_late_is_not_used(
 
 
 def test_messages_that_are_handled_before_the_clock_that_follows_them_are_kept(server):
-    server.run_until(1.0)
+    server.ros_time = 1.0
     for stamp in (0.9, 1.0):
         server.receive_odom(stamp)
         server.receive_scan(stamp)
     server.inputs.await_tick(10**9)
     server.receive_odom(1.3)  # of a simulator whose control period is longer
     server.receive_scan(1.3)
-    server.run_until(1.05)
+    server.ros_time = 1.05
     server.inputs.await_tick(105 * 10**7)
     assert server.inputs.read() is not None
 
 
 def test_messages_from_before_a_reset_soon_after_the_start_are_forgotten(server):
-    server.run_until(0.2)
+    server.ros_time = 0.2
     for stamp in (0.1, 0.2):
         server.receive_odom(stamp)
         server.receive_scan(stamp)
     server.inputs.await_tick(2 * 10**8)
-    server.run_until(0.1)
+    server.ros_time = 0.1
     server.inputs.await_tick(10**8)
     assert server.inputs.odom is None and server.inputs.valid_scan is None
 
