@@ -33,13 +33,13 @@ def with_subscribers_reported(source):
 
 
 def test_the_page_shows_the_run_takes_no_requests_and_changes_nothing_for_the_submission(tmp_path):
-    with Watched(tmp_path, NoDisplay(), ahead=2.0, change=with_subscribers_reported) as grading, chromium() as browser:
+    with Watched(tmp_path, NoDisplay(), change=with_subscribers_reported) as grading, chromium() as browser:
         address = grading.wait_for(lambda: re.search(ADDRESS, grading.text()), "the page's address")
         tab = Tab(browser, address[1])
-        tab.wait_for_text("still working on it")
+        # Its end, which stays: the run is at real time and may be over before a slow browser draws the panel.
+        tab.wait_for_text(r"subscribers \[1, 1, 1\]")
         for label in ("Cancel goal", "Stop", "Reset"):
             assert not tab.button(label).is_visible(), label
-        tab.wait_for_text(r"subscribers \[1, 1, 1\]")
         grading.wait_for_full_marks()
         foreign, errors = tab.foreign, tab.errors
     assert (foreign, [error for error in errors if "WebSocket" not in error]) == ([], [])
