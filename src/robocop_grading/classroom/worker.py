@@ -1,12 +1,14 @@
 """Grades a packed hand-in on a dask worker and returns the files of its report."""
 
+import contextlib
 import dataclasses
+import faulthandler
 import os
 import socket
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, Optional, Union
+from typing import Dict, Iterator, Optional, Union
 
 from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
 
@@ -16,12 +18,14 @@ from ..hosting.workspace import places
 from ..judge import Grade
 from ..plan import Plan
 from ..report.write import write
-from ..runner import Runner
+from ..runner import BUDGET, Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import lab_environment, prepare_submission
 from .hand_ins import HandIn, unpack
 
 MOST_PROBLEM = 4_000  # characters
+# [s, wall] for one hand-in. Whatever it does, its grading ends earlier, so a worker that takes longer hangs itself.
+LONGEST = 4.0 * BUDGET
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
     """
     started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
     state, share = places()
-    with temporary_folder("robocop-class-", _scratch()) as top:
+    with ended_if_it_hangs(LONGEST), temporary_folder("robocop-class-", _scratch()) as top:
         folder = top / "report"
         try:
             sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
@@ -88,6 +92,19 @@ def work(task: Task) -> Union[Done, NoTimeError]:
         time.monotonic() - started,
         f"{socket.gethostname()}:{os.getpid()}",
     )
+
+
+@contextlib.contextmanager
+def ended_if_it_hangs(limit: float) -> Iterator[None]:
+    """End this process with a traceback if the block takes longer than `limit` [s, wall], though nothing can run in it.
+
+    Dask then starts another worker and gives it the hand-in.
+    """
+    faulthandler.dump_traceback_later(limit, exit=True)  # by a thread that does not need the interpreter
+    try:
+        yield
+    finally:
+        faulthandler.cancel_dump_traceback_later()
 
 
 def _scratch() -> Optional[Path]:

@@ -49,6 +49,7 @@ class Teleop(Part):
         """Full speed: linear [m/s], angular [rad/s]."""
         super().__init__(context)
         self._dead_man = DeadMan()
+        self._began = False  # somebody drives, and it is not known yet whether a goal is executed
         self._wake = threading.Condition()
         self._publishers: Dict[str, rospy.Publisher] = {}  # by robot
         self._used = 0.0  # [s, wall] when the last command was sent
@@ -87,10 +88,12 @@ class Teleop(Part):
         if not state.accepts_requests:
             return
         with self._wake:
-            begins = self._dead_man.request(page, state.selected, twist, time.monotonic())
-            if begins:
+            if self._dead_man.request(page, state.selected, twist, time.monotonic()):
+                self._began = True
                 self._wake.notify()
-        if begins and state.answering and state.executing is not False:
+            cancels = self._began and state.answering and state.executing is not False
+            self._began = self._began and not state.answering  # a server may be about to connect
+        if cancels:
             cancel(self.context.requests)
 
     def stop(self) -> None:

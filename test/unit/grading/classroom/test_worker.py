@@ -1,12 +1,29 @@
 """Whatever a hand-in makes of the grader, it affects its own row only."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 from class_records import PLAN
 
 from robocop_grading.classroom import worker
 from robocop_grading.classroom.hand_ins import pack
+
+# Nothing else can run in a process while this does: PyDLL keeps the interpreter.
+HANGS = """
+import ctypes
+from robocop_grading.classroom.worker import ended_if_it_hangs
+with ended_if_it_hangs(1e6):
+    pass
+with ended_if_it_hangs(0.1):
+    ctypes.PyDLL(None).pause()
+"""
+
+
+def test_a_worker_that_hangs_is_ended_with_a_traceback_though_nothing_can_run_in_it():
+    ended = subprocess.run([sys.executable, "-c", HANGS], stderr=subprocess.PIPE, text=True)
+    assert ended.returncode == 1 and "line 7 in <module>" in ended.stderr
 
 
 @pytest.mark.parametrize(
