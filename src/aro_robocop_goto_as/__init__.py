@@ -4,7 +4,7 @@ From a velocity command to odometry, scan, tf and clock:
 
     ros.sim.command_topics        cmd_vel -> a job for the thread that owns the simulation
     simulation.controllers        the job: applies it, in lockstep at the end of the control tick
-    simulation.simulator          a command, clamped to robot.command_limits -> its row of robot.fleet
+    simulation.simulator          a command, clamped to robot.base_controller -> its row of robot.fleet
                                   in each round of the loop: finds the next step on which something is due
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
@@ -22,7 +22,7 @@ From a goal to its result:
 
     ros.server.goal_server        goal -> the control loop in ros.server.node
     ros.server.goal_execution     one control period of the goal; ends one that is stuck, late or without sensor data
-        ros.server.inputs         newest odom and scan -> pose, clearance ahead
+        ros.server.inputs         newest odom and scan -> pose, and by obstacle_ahead the clearance
         goto                      the handout's rule: rotate, move forward, reached or obstacle
     ros.server.node               -> feedback, cmd_vel, in the end result and terminal state
 

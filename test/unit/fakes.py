@@ -85,7 +85,6 @@ class Owner:
                 self._pace()
 
     def _pace(self) -> None:
-        self.events += map(str, self.simulation.controllers.take_refused())
         self.simulation.jobs.run_queued()
         self._hold(lambda: self.simulation.time_control.hold(self.simulator.steps))
 

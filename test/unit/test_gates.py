@@ -52,12 +52,13 @@ ORDER = {
     "physics": "compiled errors geometry raycast robot world",
     "sensors": "compiled geometry sim_params physics raycast robot sensors.camera sensors.scan_profiles world",
     "goto": "geometry goto_params",
+    "obstacle_ahead": "",
     "web": "errors geometry ros.names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors sensors.camera sensors.scan_profiles world",
     "ros": "compiled errors geometry param_loading sim_params process robot ros.names sensors sensors.scan_profiles "
     "simulation world",
     "ros.sim": "errors geometry sim_params process robot ros ros.names sensors sensors.camera simulation world",
-    "ros.server": "errors geometry goto goto_params sim_params process ros ros.names simulation trail",
+    "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros ros.names simulation trail",
     "ros.client": "bridge_params errors geometry process ros ros.names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
     "ros.cli": "bootstrap errors farthest geometry param_loading sim_params process reading robot.model_names ros "
@@ -67,8 +68,8 @@ ORDER = {
     f"{GRADER}.hosting": "errors process ros.cli ros.names",
     GRADER: f"errors geometry {GRADER}.hosting param_loading process sim_params web web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.hosting process",
-    f"{GRADER}.session": "errors geometry goto sim_params process robot ros ros.names ros.sim simulation web world "
-    f"{GRADER}",
+    f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros ros.names ros.sim sim_params "
+    f"simulation web world {GRADER}",
 }
 # Modules whose rosdep key differs from their name.
 ROSDEP_KEYS = {

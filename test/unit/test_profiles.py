@@ -10,7 +10,7 @@ from support import ROOT, drive, everything, model_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D
 from aro_robocop_goto_as.param_loading import from_dict
-from aro_robocop_goto_as.robot.command_limits import limits_from
+from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.sensors.imu import FORCE
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.grid_index import Tiles
-from aro_robocop_goto_as.robot.command_limits import Limits
+from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.covariances import imu_covariances
@@ -112,7 +112,8 @@ def drives(random: np.random.Generator, engine: KinematicEngine) -> None:
             fleet.commanded_at[robot] = step / 30
         engine.advance(step, 10)
         engine.move_obstacles(step / 3.0)
-        odometers.update(random.standard_normal((len(fleet), 2)))
+        random.standard_normal(out=odometers.noise)
+        odometers.update()
         assert all(engine.touching(robot) in (False, True) for robot in range(len(fleet)))
 
 

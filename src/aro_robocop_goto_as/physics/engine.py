@@ -16,7 +16,7 @@ class Engine(Protocol):
 
     fleet: Fleet
 
-    def advance(self, first: int, steps: int) -> None:
+    def advance(self, first: int, steps: int, /) -> None:
         """Advance the base controllers and all robots by a number of steps, from step number `first` on."""
 
     def update_fleet(self) -> None:

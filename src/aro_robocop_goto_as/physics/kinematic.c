@@ -237,8 +237,9 @@ static void move(struct kinematic *kin, double dt)
     }
 }
 
-/* Base controllers and motion, for `steps` steps from step number `first` on, of which there are `rate` a second. */
-void aro_kinematic_advance(struct kinematic *kin, int64_t first, int64_t steps, int64_t rate)
+/* Base controllers and motion, for `steps` steps from step number `first` on, of which there are `rate` a second: one
+ * robot after the other in each step. */
+void aro_kinematic_advance(struct kinematic *kin, int64_t rate, int64_t first, int64_t steps)
 {
     double dt = 1.0 / (double)rate;
     int64_t step;

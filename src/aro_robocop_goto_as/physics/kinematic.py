@@ -7,7 +7,8 @@ blocked, so its encoders keep counting, as those of slipping wheels do. kinemati
 
 import ctypes
 import math
-from typing import Sequence, Tuple
+from functools import partial
+from typing import Callable, Sequence, Tuple
 
 import numpy as np
 
@@ -77,7 +78,6 @@ class KinematicEngine:
         """`rate` [Hz] of the steps."""
         n = len(fleet)
         self.fleet = fleet
-        self._rate = rate
         heights = [body_heights(model) for model in fleet.models]
         self._heights = sorted(set(heights))
         self._section_of = np.array([self._heights.index(of_one) for of_one in heights], dtype=np.int64)
@@ -92,6 +92,7 @@ class KinematicEngine:
             address("crowded", self._crowded, (n,), np.uint8),
         )
         self._pointer = ctypes.byref(self._struct)
+        self.advance: Callable[[int, int], None] = partial(self._library.aro_kinematic_advance, self._pointer, rate)
         self.change_world(world, 0.0)
 
     def change_world(self, world: World, time: float) -> None:
@@ -100,10 +101,6 @@ class KinematicEngine:
         self._structs = (_BodySectionStruct * len(self._sections))(*(section.struct for section in self._sections))
         self._struct.sections = self._structs
         self._free_travel[:] = 0.0
-
-    def advance(self, first: int, steps: int) -> None:
-        """Advance the base controllers and all robots, one robot after the other in each step."""
-        self._library.aro_kinematic_advance(self._pointer, first, steps, self._rate)
 
     def update_fleet(self) -> None:
         """Nothing to do: the fleet's rows are the state."""

@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-#define ARO_FLEET_VERSION 2
+#define ARO_FLEET_VERSION 3
 
-/* Columns of limits, as in Limits of command_limits.py */
+/* Columns of limits, as in Limits of base_controller.py */
 enum { MAX_V, MAX_W, MAX_DV, MAX_DW, TIMEOUT, LIMITS };
 
 struct fleet {

@@ -9,10 +9,10 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .command_limits import Limits
+from .base_controller import Limits
 from .model import Pair, RobotModel
 
-VERSION = 2  # of the structures that the library's functions take, as in fleet.h
+VERSION = 3  # of the structures that the library's functions take, as in fleet.h
 COLUMNS = {"radii": 0, "commands": 2, "commanded_at": 0, "velocities": 2, "targets": 2}
 COLUMNS.update(poses=3, twists=2, wheel_angles=2, wheel_speeds=2)
 

@@ -1,7 +1,8 @@
 """Wheel odometry of a fleet, with its configured errors, or the true poses in the world."""
 
 import ctypes
-from typing import Optional
+from functools import partial
+from typing import Callable
 
 import numpy as np
 
@@ -26,6 +27,8 @@ class Odometers:
 
     poses: (n, 3) odom_from_footprint at the latest update: x, y [m], yaw [rad]
     twists: (n, 2) mean velocity since the update before: v [m/s], w [rad/s]
+    noise: (n, 2) standard normal, of the next update if wheels are slipping
+    update(): bring all of them to the fleet's present state
     """
 
     def __init__(self, params: OdometryParams, fleet: Fleet, rate: int) -> None:
@@ -33,7 +36,7 @@ class Odometers:
         n = len(fleet)
         self._fleet = fleet
         self.in_world = params.odom_source == "world"
-        self.slipping = params.odom_slip > 0.0 and not self.in_world  # whether update() needs noise
+        self.slipping = params.odom_slip > 0.0 and not self.in_world
         self._tick = params.encoder_tick
         self._wheels = fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
         self.poses, self.twists = np.zeros((n, 3)), np.zeros((n, 2))
@@ -50,14 +53,11 @@ class Odometers:
             params.odom_slip,
             self._tick,
         )
-        self._noise = np.zeros((n, 2))
-        self._arguments = (
-            ctypes.addressof(self._struct),
-            fleet.struct.wheel_angles,
-            address("noise", self._noise, (n, 2)),
-            1.0 / rate,
-        )
-        self._integrate = library().aro_odometry
+        self.noise = np.zeros((n, 2))
+        self.update: Callable[[], None] = self._copy
+        if not self.in_world:
+            rows = ctypes.addressof(self._struct), fleet.struct.wheel_angles, address("noise", self.noise, (n, 2))
+            self.update = partial(library().aro_odometry, *rows, 1.0 / rate)
         self.reset()
 
     def reset(self) -> None:
@@ -73,19 +73,14 @@ class Odometers:
         angles = self._fleet.wheel_angles
         return np.floor(angles / self._tick) * self._tick if self._tick else angles
 
-    def update(self, noise: Optional[np.ndarray] = None) -> None:
-        """Update all odometers to the fleet's present state; noise of slipping wheels: (n, 2) standard normal."""
-        if self.in_world:
-            self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
-            return
-        if self.slipping:
-            self._noise[:] = 0.0 if noise is None else noise
-        self._integrate(*self._arguments)
+    def _copy(self) -> None:
+        self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
 
     def pose_now(self, robot: int) -> Pose2D:
         """odom_from_footprint as the next update will see it, without the slip that it draws."""
         rows = (self.poses, self.twists, self._read, self._counted, self._rolled)
         before = [row.copy() for row in rows]
+        self.noise[:] = 0.0
         self.update()
         pose = Pose2D(*self.poses[robot].tolist())
         for row, values in zip(rows, before):

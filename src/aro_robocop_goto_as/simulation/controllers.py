@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Dict, List, Optional, Tuple
 
-from ..errors import CommandError
 from ..geometry import STANDSTILL, Twist2D
 from ..sim_params import LockstepParams
 from .jobs import Clock
@@ -46,20 +45,24 @@ class Controllers:
         self._clock = clock
         # In lockstep the newest command of each robot, which is applied at the tick's end:
         self._pending: Dict[int, Tuple[ControllerId, Twist2D]] = {}
-        self._refused: List[CommandError] = []
         self._report = TickReport()
         self._held_since = self._next_look = 0.0  # [s, wall]
         self._is_reset = False  # since the tick began
         self._silent_since = math.inf  # [s, wall] at all looks since then, nobody was kept from answering
 
-    def command(self, controller: ControllerId, twist: Twist2D) -> None:
-        """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick."""
+    def command(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
+        """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick.
+
+        None: it was refused, so the one before stays in force, but in lockstep it is an answer like any other.
+        """
         if not self.in_lockstep:
-            self._apply(controller.robot, twist)
+            if twist is not None:
+                self._simulator.command(twist, controller.robot)
         elif not self.lockstep.is_stamped(controller):  # which sends the same command with its answer
             self.lockstep.tick = self.tick
             self.lockstep.commanded(controller)
-            self._pending[controller.robot] = controller, twist
+            if twist is not None:
+                self._pending[controller.robot] = controller, twist
 
     def answer(self, controller: ControllerId, stamp_ns: int, twist: Optional[Twist2D]) -> None:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
@@ -131,20 +134,9 @@ class Controllers:
         self.enroll(answering)
         pending, self._pending = self._pending, {}
         for robot, (_, twist) in pending.items():
-            self._apply(robot, twist)
+            self._simulator.command(twist, robot)
         self._report.slower = [(name, self._rate / period) for name, period in self.lockstep.take_slower()]
         return self._report
-
-    def _apply(self, robot: int, twist: Twist2D) -> None:
-        try:
-            self._simulator.command(twist, robot)
-        except CommandError as error:
-            self._refused.append(error)
-
-    def take_refused(self) -> List[CommandError]:
-        """The commands refused since the last call, as they are not finite; the previous ones stay in force."""
-        refused, self._refused = self._refused, []
-        return refused
 
     def restart(self) -> None:
         """Forget pending commands, because the simulation was reset."""

@@ -4,7 +4,7 @@ from typing import Callable, List, Sequence
 
 from ..physics.engine import Engine
 from ..raycast.free_places import free_place, free_places
-from ..robot.command_limits import limits_from
+from ..robot.base_controller import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotModel, RobotSpec
 from ..sim_params import EngineParams, RobotParams, SimParams

@@ -40,10 +40,7 @@ class Jobs:
         self._clock = clock
         self._stopped = stopped
         self._queue: Queue[Job] = queue.Queue()
-
-    def post(self, job: Job) -> None:
-        """Have the owner run a job."""
-        self._queue.put(job)
+        self.post: Callable[[Job], None] = self._queue.put  # has the owner run a job
 
     def call(self, function: Callable[[], T]) -> T:
         """Have the owner run a function; returns what it returns, raises the RobocopError that it raises.

@@ -118,8 +118,9 @@ class Observations:
         lidar.measure(distances, robots, self.seed, self.step, self.scans)
 
     def _update_odometry(self, _robots: Robots) -> None:
-        shape = len(self._models), 2
-        self.odometry.update(self._noise_of(SLIP_STREAM).standard_normal(shape) if self.odometry.slipping else None)
+        if self.odometry.slipping:
+            self._noise_of(SLIP_STREAM).standard_normal(out=self.odometry.noise)
+        self.odometry.update()
         if self._p.topics.localization == "truth":
             for robot, pose in enumerate(self.odometry.poses.tolist()):
                 self.map_from_odom[robot] = compose(self.fleet.pose(robot), inverse(Pose2D(*pose)))

@@ -10,7 +10,7 @@ from ..geometry import Pose2D, Twist2D, compose, inverse
 from ..physics.engine import Engine
 from ..raycast.obstacle_distance import ObstacleDistance, body_heights
 from ..raycast.occupancy import occupancy_of
-from ..robot.command_limits import clamped
+from ..robot.base_controller import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams

@@ -11,7 +11,7 @@ import rospy
 from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.goto import clearance_ahead
+from aro_robocop_goto_as.obstacle_ahead import clearance_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert

@@ -12,7 +12,7 @@ from support import ORIGIN, model_named, world_named
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.physics.bullet import BulletEngine
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
-from aro_robocop_goto_as.robot.command_limits import limits_from
+from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.sim_params import SimParams
 

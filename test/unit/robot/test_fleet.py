@@ -4,7 +4,7 @@ import pytest
 from support import model_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.robot.command_limits import Limits
+from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import COLUMNS, Fleet
 from aro_robocop_goto_as.robot.model import RobotModel
 

@@ -9,7 +9,7 @@ from aro_robocop_goto_as.errors import RobotModelError
 from aro_robocop_goto_as.geometry import Pose3D, Vector3
 from aro_robocop_goto_as.physics.bullet_shapes import load_urdf
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
-from aro_robocop_goto_as.robot.command_limits import limits_from
+from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.robot.urdf import load_robot
 from aro_robocop_goto_as.sim_params import SimParams

@@ -11,7 +11,7 @@ from reference_fleet import ReferenceOdometry
 from support import model_named
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
-from aro_robocop_goto_as.robot.command_limits import Limits
+from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sim_params import OdometryParams
@@ -42,7 +42,8 @@ def test_odometry_is_that_of_the_definition(
     for turned, noise in travel:
         fleet.wheel_angles[1] += turned
         foreseen = odometers.pose_now(1)
-        odometers.update(np.array([(9.0, 9.0), noise]) if slip else None)
+        odometers.noise[:] = (9.0, 9.0), noise
+        odometers.update()
         expected.update(fleet.wheel_angles[1], np.array(noise), 1.0 / 30.0)
         x, y, yaw = odometers.poses[1].tolist()
         assert (x, y) == pytest.approx((expected.pose.x, expected.pose.y), abs=1e-8)
@@ -72,7 +73,8 @@ def test_odometry_starts_at_zero_whatever_the_wheel_angles() -> None:
     fleet = _fleet()
     fleet.wheel_angles[0] = 3.0, 4.0
     odometers = Odometers(OdometryParams(odom_slip=0.1, encoder_tick=0.1), fleet, 30)
-    odometers.update(np.ones((1, 2)))
+    odometers.noise[:] = 1.0
+    odometers.update()
     assert not odometers.poses.any() and not odometers.twists.any()
 
 
@@ -80,7 +82,8 @@ def test_joint_angles_are_whole_completed_ticks_without_slip() -> None:
     fleet = _fleet()
     odometers = Odometers(OdometryParams(odom_slip=0.5, encoder_tick=0.1), fleet, 30)
     fleet.wheel_angles[0] = 0.25, -0.05
-    odometers.update(np.ones((1, 2)))
+    odometers.noise[:] = 1.0
+    odometers.update()
     assert odometers.joint_angles()[0] == pytest.approx((0.2, -0.1))
 
 
@@ -88,7 +91,8 @@ def test_slip_makes_encoders_overcount_in_either_direction() -> None:
     fleet = _fleet()
     odometers = Odometers(OdometryParams(odom_slip=0.1), fleet, 30)
     fleet.wheel_angles[0] = 2.0, -2.0
-    odometers.update(np.array([[1.0, -2.0]]))
+    odometers.noise[:] = [[1.0, -2.0]]
+    odometers.update()
     assert odometers.poses[0, 2] == pytest.approx((-2.4 - 2.2) * RADIUS / SEPARATION)
     assert odometers.twists[0, 0] == pytest.approx((2.2 - 2.4) / 2.0 * RADIUS * 30)
 

@@ -1,7 +1,5 @@
 """Commands, and how long a control tick in lockstep is held for its answers."""
 
-import math
-
 import pytest
 from fakes import Owner
 from support import ORIGIN
@@ -11,7 +9,7 @@ from aro_robocop_goto_as.simulation.controllers import SECOND_LOOK, STILL
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
 
 NODE, ANSWERING = ControllerId(0, "/controller"), ControllerId(0, "/answering")
-AHEAD, INVALID = Twist2D(0.1, 0.0), Twist2D(math.nan, 0.0)
+AHEAD = Twist2D(0.1, 0.0)
 
 
 def lockstep(end: float, *nodes: str, **params: object) -> Owner:
@@ -21,21 +19,23 @@ def lockstep(end: float, *nodes: str, **params: object) -> Owner:
     return owner
 
 
-def test_command_that_is_not_finite_is_refused_and_the_previous_one_stays_in_force() -> None:
-    owner = Owner(1.0)
+@pytest.mark.parametrize("sync", ["free", "lockstep"])
+def test_refused_command_leaves_the_previous_one_in_force(sync: str) -> None:
+    owner = Owner(1.0, sync=sync)
+    owner.nodes = {NODE.node}
     owner.simulation.controllers.command(NODE, AHEAD)
-    owner.simulation.controllers.command(NODE, INVALID)
+    owner.simulation.controllers.command(NODE, None)
     owner.run()
-    assert "linear.x nan m/s" in str(owner.events)
     assert owner.simulator.velocity().v == pytest.approx(0.1)
 
 
-def test_command_that_is_not_finite_is_refused_at_the_end_of_the_tick_in_lockstep() -> None:
-    owner = lockstep(0.15, NODE.node)
-    owner.simulation.controllers.command(NODE, INVALID)
+def test_refused_command_is_an_answer_in_lockstep() -> None:
+    owner = lockstep(0.55, NODE.node)
+    owner.simulation.controllers.command(NODE, None)
+    owner.on_tick = lambda _stamp: owner.post(0.3, lambda: owner.simulation.controllers.command(NODE, None))
     owner.run()
-    assert "linear.x nan m/s" in str(owner.events)
-    assert owner.simulator.world_from_footprint() == ORIGIN
+    assert owner.clock.time == pytest.approx(101.5)
+    assert owner.events == [] and owner.simulator.world_from_footprint() == ORIGIN
 
 
 def test_tick_waits_for_each_answer_without_a_miss() -> None:

@@ -10,10 +10,10 @@ import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from ... import goto
 from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
 from ...goto import Outcome
+from ...obstacle_ahead import clearance_ahead
 from ...process.peer import await_others, others_want_to_run
 from .. import convert
 from .tuning import Tuning
@@ -58,7 +58,7 @@ class Inputs:
         self._callbacks_want_to_run = callbacks_want_to_run
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
-        self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by goto.clearance_ahead
+        self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by clearance_ahead
         self._tick_ns = 0  # the newest one that was awaited
         self._arrived = threading.Condition()
 
@@ -197,4 +197,4 @@ class Inputs:
         if s.angle_increment * (s.angle_max - s.angle_min) < 0.0:  # clockwise or counter-clockwise?
             return None
         half_angle = self._tuning.params.obstacle_half_angle
-        return goto.clearance_ahead(s.ranges, s.angle_min, s.angle_increment, s.range_min, s.range_max, half_angle)
+        return clearance_ahead(s.ranges, s.angle_min, s.angle_increment, s.range_min, s.range_max, half_angle)

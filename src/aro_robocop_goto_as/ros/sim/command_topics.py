@@ -10,7 +10,10 @@ from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import TickAnswer
 
+from ...errors import CommandError
+from ...geometry import Twist2D
 from ...process.peer import Peer, others_want_to_run
+from ...robot.base_controller import require_finite
 from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert, graph
@@ -30,6 +33,17 @@ def is_fully_connected(node: str) -> bool:
     except (OSError, rosgraph.MasterException):
         return True  # unknown: the master does not answer
     return all(is_topic_connected_to(topic, node) for topic in topics)
+
+
+def _velocity(message: Twist) -> Optional[Twist2D]:
+    """The velocity that a message commands; None, with a warning, if it is not finite."""
+    twist = convert.from_twist_msg(message)
+    try:
+        require_finite(twist)
+    except CommandError as error:
+        rospy.logwarn_throttle(5.0, "%s", error)
+        return None
+    return twist
 
 
 class AnsweringNodes:
@@ -86,12 +100,11 @@ class CommandTopics:
         jobs, controllers = self._simulation.jobs, self._simulation.controllers
 
         def on_command(message: Twist) -> None:
-            controller, twist = ControllerId(robot, sender(message)), convert.from_twist_msg(message)
-            jobs.post(partial(controllers.command, controller, twist))
+            jobs.post(partial(controllers.command, ControllerId(robot, sender(message)), _velocity(message)))
 
         def on_answer(message: TickAnswer) -> None:
             controller, stamp_ns = ControllerId(robot, sender(message)), convert.to_ns(message.tick)
-            twist = convert.from_twist_msg(message.command) if message.has_command else None
+            twist = _velocity(message.command) if message.has_command else None
             jobs.post(partial(controllers.answer, controller, stamp_ns, twist))
 
         # TCP_NODELAY: otherwise the publisher's kernel may hold a command back for 40 ms, at ten times real time 0.4 s.

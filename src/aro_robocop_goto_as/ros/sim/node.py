@@ -141,9 +141,7 @@ class SimNode:
             self._status.publish()
 
     def _warn(self) -> None:
-        """Warn of commands that were refused, and of robots that were placed in contact with something."""
-        for error in self._simulation.controllers.take_refused():
-            rospy.logwarn_throttle(5.0, "%s", error)
+        """Warn of robots that were placed in contact with something."""
         for robot in self._simulator.newly_placed_in_contact():
             name, pose = self._simulator.robots[robot].name, self._simulator.world_from_footprint(robot)
             text = "robot %sis placed in contact with an obstacle or another robot, at x %.2f y %.2f"

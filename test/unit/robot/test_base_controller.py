@@ -13,7 +13,7 @@ from support import model_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.robot.command_limits import Limits, clamped, limits_from
+from aro_robocop_goto_as.robot.base_controller import Limits, clamped, limits_from
 from aro_robocop_goto_as.robot.fleet import Fleet, library
 from aro_robocop_goto_as.sim_params import SimParams
 

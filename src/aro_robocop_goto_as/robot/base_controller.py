@@ -1,4 +1,4 @@
-"""The limits of base controllers; commands are clamped to them here, base_controller.c accelerates within them."""
+"""Base controllers: commands are clamped to their limits here, base_controller.c accelerates within them."""
 
 import math
 from typing import NamedTuple
@@ -32,11 +32,16 @@ def limits_from(params: LimitParams, figures: ModelFigures) -> Limits:
     return Limits(*(own if given is None else given for given, own in pairs))
 
 
-def clamped(twist: Twist2D, limits: Limits) -> Twist2D:
-    """A velocity command within the velocity limits; CommandError for NaN or infinity."""
+def require_finite(twist: Twist2D) -> None:
+    """CommandError if a velocity command is NaN or infinite."""
     if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
         raise CommandError(
             f"velocity command refused: linear.x {twist.v} m/s, angular.z {twist.w} rad/s; expected finite numbers"
         )
+
+
+def clamped(twist: Twist2D, limits: Limits) -> Twist2D:
+    """A velocity command within the velocity limits; CommandError for NaN or infinity."""
+    require_finite(twist)
     v, w = max(-limits.max_v, min(limits.max_v, twist.v)), max(-limits.max_w, min(limits.max_w, twist.w))
     return Twist2D(v, w)

@@ -1,0 +1,79 @@
+"""The clearance ahead as a pure function of a scan."""
+
+import math
+from typing import List
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aro_robocop_goto_as.geometry import wrap_angle
+from aro_robocop_goto_as.obstacle_ahead import clearance_ahead
+
+LAYOUTS = [
+    (0.0, 6.28319 / 359, 360),
+    (-math.pi, 2 * math.pi / 360, 360),
+    (math.pi, -2 * math.pi / 500, 500),
+    (-2.0, 0.01, 401),
+]
+
+
+def _ahead(ranges: List[float], layout: "tuple[float, float, int]" = LAYOUTS[0]) -> "float | None":
+    return clearance_ahead(ranges, layout[0], layout[1], 0.12, 10.0, math.pi / 6)
+
+
+@given(st.sampled_from(LAYOUTS), st.floats(-math.pi, math.pi), st.floats(0.13, 9.9))
+def test_only_returns_within_30_degrees_of_ahead_count(
+    layout: "tuple[float, float, int]", direction: float, distance: float
+) -> None:
+    start, increment, count = layout
+    angles = np.array([wrap_angle(start + increment * i) for i in range(count)])
+    beam = int(np.argmin(np.abs(angles - direction)))
+    ranges = [math.inf] * count
+    ranges[beam] = distance
+    expected = distance if abs(angles[beam]) <= math.pi / 6 + 1e-9 else math.inf
+    assert _ahead(ranges, layout) == expected
+
+
+@pytest.mark.parametrize("nothing", [math.inf, 0.0, 0.12, 10.0, 55.0])
+def test_what_is_no_valid_return_is_no_obstacle(nothing: float) -> None:
+    assert _ahead([nothing] * 360) == math.inf
+
+
+def test_minus_infinity_means_zero_clearance() -> None:
+    assert _ahead([-math.inf] + [5.0] * 359) == 0.0
+
+
+@pytest.mark.parametrize("valid", [math.inf, 0.0, 55.0])
+def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid: float) -> None:
+    ranges = [math.nan if abs(beam - 180) > 140 else 2.0 for beam in range(360)]  # NaN within 40 degrees of ahead
+    assert math.isnan(_ahead(ranges) or 0.0)
+    ranges[350] = valid
+    assert _ahead(ranges) == math.inf
+    ranges[5] = 0.7
+    assert _ahead(ranges) == 0.7
+
+
+@pytest.mark.parametrize("limits", [(math.nan, 10.0), (0.12, math.nan), (0.0, 0.0), (10.0, 0.12), (0.0, -math.inf)])
+def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits: "tuple[float, float]") -> None:
+    assert math.isnan(clearance_ahead([0.5] * 360, *LAYOUTS[0][:2], *limits, math.pi / 6) or 0.0)
+
+
+@pytest.mark.parametrize("layout", [(math.nan, 0.1), (0.0, math.nan), (math.inf, 0.1), (0.0, math.inf)])
+def test_beams_without_a_direction_do_not_point_ahead(layout: "tuple[float, float]") -> None:
+    assert clearance_ahead([0.5] * 10, *layout, 0.12, 10.0, math.pi / 6) is None
+
+
+@pytest.mark.parametrize("increment", [0.0, -0.0, math.radians(540.0) / 358, math.radians(-540.0) / 358, 1.0, -1e30])
+def test_beams_in_one_direction_or_round_and_round_do_not_point_ahead(increment: float) -> None:
+    assert clearance_ahead([0.5] * 360, 0.0, increment, 0.12, 10.0, math.pi / 6) is None
+
+
+def test_a_single_beam_needs_no_increment() -> None:
+    assert clearance_ahead([0.5], 0.0, 0.0, 0.12, 10.0, math.pi / 6) == 0.5
+
+
+def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:
+    assert clearance_ahead([1.0] * 10, 1.0, 0.1, 0.12, 10.0, math.pi / 6) is None
+    assert clearance_ahead([], 0.0, 0.1, 0.12, 10.0, math.pi / 6) is None
