@@ -4,7 +4,7 @@ From a velocity command to odometry, scan, tf and clock:
 
     ros.sim.command_topics        cmd_vel -> a job for the thread that owns the simulation
     simulation.controllers        the job: applies it, in lockstep at the end of the control tick
-    simulation.simulator          a command, clamped to robot.base_controller -> its row of robot.fleet
+    simulation.simulator          a command, clamped by robot.base_controller -> its row of robot.fleet
                                   in each round of the loop: finds the next step on which something is due
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds

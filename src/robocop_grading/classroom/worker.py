@@ -24,8 +24,9 @@ from ..submission import lab_environment, prepare_submission
 from .hand_ins import HandIn, unpack
 
 MOST_PROBLEM = 4_000  # characters
-# [s, wall] for one hand-in. Whatever it does, its grading ends earlier, so a worker that takes longer hangs itself.
-LONGEST = 4.0 * BUDGET
+# [s, wall] for one hand-in. The limits of its parts, attempts and builds are less than that in sum: a worker that takes
+# longer hangs itself.
+LONGEST = 8.0 * BUDGET
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
 def ended_if_it_hangs(limit: float) -> Iterator[None]:
     """End this process with a traceback if the block takes longer than `limit` [s, wall], though nothing can run in it.
 
-    Dask then starts another worker and gives it the hand-in.
+    Dask then starts another worker and gives it the hand-in. One at a time in a process.
     """
     faulthandler.dump_traceback_later(limit, exit=True)  # by a thread that does not need the interpreter
     try:

@@ -97,6 +97,14 @@ def test_slip_makes_encoders_overcount_in_either_direction() -> None:
     assert odometers.twists[0, 0] == pytest.approx((2.2 - 2.4) / 2.0 * RADIUS * 30)
 
 
+def test_the_pose_now_has_no_slip_drawn_for_the_update_before() -> None:
+    fleet = _fleet()
+    odometers = Odometers(OdometryParams(odom_slip=0.1), fleet, 30)
+    odometers.noise[:] = 3.0
+    fleet.wheel_angles[0] = 2.0, 2.0
+    assert odometers.pose_now(0).x == pytest.approx(2.0 * RADIUS)
+
+
 def test_odometry_of_the_world_has_no_errors() -> None:
     fleet = _fleet()
     fleet.place(0, Pose2D(1.0, 2.0, 3.0))

@@ -152,6 +152,8 @@ def grade(arguments: List[str]) -> None:
 
 def grade_worker(arguments: List[str]) -> None:
     """A dask worker for grade-class."""
+    if any(argument.split("=")[0] == "--nthreads" for argument in arguments):
+        program.refuse("grade-worker grades one hand-in at a time: start several instead of --nthreads")
     program.need("hosting", "grade", "class")
     options = "--nthreads 1 --memory-limit 0 --no-dashboard --local-directory".split()
     os.environ["DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED"] = "False"  # see PROFILER in classroom/dask_cluster.py

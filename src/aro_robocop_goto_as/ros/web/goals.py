@@ -84,7 +84,8 @@ class Goals(Part):
         cancel_button = gui.add_button("Cancel goal", icon="x", visible=live)
         cancel_button.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
-        self._status: Optional[rospy.Subscriber] = None  # of the selected robot's server
+        self._robot = ""  # the one that the next four are about
+        self._status: Optional[rospy.Subscriber] = None  # of its server
         self._executing: Optional[bool] = None  # as its newest status says; None before the first one
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Any = None  # the message
@@ -120,7 +121,7 @@ class Goals(Part):
             requests.publish(f"pose {where}", "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._feedback = self._executing = self._newest = None
+        self._robot, self._feedback, self._executing, self._newest = robot, None, None, None
         self._status = inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
 
@@ -152,7 +153,10 @@ class Goals(Part):
         if self._executing is False:
             self._feedback = None
         answering = connected if not state.recorded else self._executing is not None
-        self.context.state.change(executing=self._executing, answering=answering)
+        if self._robot == self.context.state.now.selected:
+            self.context.state.change(executing=self._executing, answering=answering)
+        else:  # of the robot that was chosen just now nothing is known yet
+            self.context.state.change(executing=None, answering=False)
         self._draw_goal(state.selected)
         rows = self._goal_rows(state.selected)
         if self._feedback is not None:

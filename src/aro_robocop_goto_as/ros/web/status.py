@@ -34,7 +34,7 @@ class Status(Part):
 
         async def on_select(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
             if event.client is not None:
-                context.state.change(chosen=event.target.value)
+                context.state.change(chosen=event.target.value, executing=None, answering=False)
 
         self._robot.on_update(on_select)
 

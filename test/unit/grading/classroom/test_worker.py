@@ -3,27 +3,33 @@
 import json
 import subprocess
 import sys
+from unittest.mock import MagicMock
 
 import pytest
 from class_records import PLAN
+from waiting import DEADLINE
 
 from robocop_grading.classroom import worker
 from robocop_grading.classroom.hand_ins import pack
 
-# Nothing else can run in a process while this does: PyDLL keeps the interpreter.
+# Nothing else can run in a process while poll() does: PyDLL keeps the interpreter.
 HANGS = """
-import ctypes
+import ctypes, sys
 from robocop_grading.classroom.worker import ended_if_it_hangs
-with ended_if_it_hangs(1e6):
-    pass
+poll = ctypes.PyDLL(None).poll
 with ended_if_it_hangs(0.1):
-    ctypes.PyDLL(None).pause()
+    pass
+poll(None, 0, 1000)
+print("alive", flush=True)
+with ended_if_it_hangs(0.1):
+    poll(None, 0, -1)
 """
 
 
-def test_a_worker_that_hangs_is_ended_with_a_traceback_though_nothing_can_run_in_it():
-    ended = subprocess.run([sys.executable, "-c", HANGS], stderr=subprocess.PIPE, text=True)
-    assert ended.returncode == 1 and "line 7 in <module>" in ended.stderr
+def test_only_a_worker_that_hangs_is_ended_with_a_traceback_though_nothing_can_run_in_it():
+    ended = subprocess.run([sys.executable, "-c", HANGS], capture_output=True, text=True, timeout=DEADLINE)
+    assert (ended.returncode, ended.stdout) == (1, "alive\n")
+    assert "line 10 in <module>" in ended.stderr
 
 
 @pytest.mark.parametrize(
@@ -36,9 +42,12 @@ def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, mo
     monkeypatch.setattr(worker, "open_sandbox", lambda *_: None)
     monkeypatch.setattr(worker, "prepare_submission", fails)
     monkeypatch.setattr(worker, "_scratch", lambda: None)
+    guard = MagicMock()
+    monkeypatch.setattr(worker, "ended_if_it_hangs", guard)
     monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
     monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
     anna = pack(folder / "anna")
     done = worker.work(worker.Task(anna, PLAN))
+    guard.assert_called_once_with(worker.LONGEST)
     report = json.loads(done.files["report.json"])
     assert report["checks"] == [] and type(error).__name__ in report["problems"][0]

@@ -87,6 +87,12 @@ def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
     assert "no part 'wbe'; there are: axclient class docs grade " in done.stderr and "did you mean web?" in done.stderr
 
 
+@pytest.mark.parametrize("words", [("--nthreads", "4"), ("--nthreads=4",)])
+def test_a_worker_with_several_threads_is_refused(words):
+    done = robocop("grade-worker", "tls://127.0.0.1:1", *words)
+    assert done.returncode == 1 and "start several instead of --nthreads" in done.stderr
+
+
 def test_unreachable_display_counts_as_none():
     assert "rviz:=false" in dry_run("run", DISPLAY=":4711")[0]
 

@@ -25,6 +25,15 @@ def made(**state):
     return part, context
 
 
+def test_nothing_is_known_of_a_robot_that_was_chosen_just_now():
+    part, context = made()
+    part.show(context.state.now)
+    assert context.state.now.answering
+    context.state.change(chosen="blue")
+    part.show(context.state.now)
+    assert (context.state.now.answering, context.state.now.executing) == (False, None)
+
+
 def test_a_click_sends_a_2d_nav_goal():
     part, context = made()
     part._on_click(CLICK)
