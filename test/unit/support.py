@@ -14,7 +14,7 @@ from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import SENSORS, Observations
+from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import Box, Cylinder, World
@@ -52,6 +52,9 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
     yield make
     for one in made:
         one.close()
+
+
+SENSORS = ("scan", "odom", "tf", "joints", "imu", "ground_truth", "bumper", "battery", "magnetic_field", "camera")
 
 
 def everything(robots: int) -> Dict[str, Sequence[int]]:

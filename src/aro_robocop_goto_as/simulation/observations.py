@@ -20,7 +20,6 @@ from ..world.model import World
 
 SCAN, ODOM, JOINTS, IMU, GROUND_TRUTH = "scan", "odom", "joints", "imu", "ground_truth"
 BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA, TF = "bumper", "battery", "magnetic_field", "camera", "tf"
-SENSORS = (SCAN, ODOM, TF, JOINTS, IMU, GROUND_TRUTH, BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA)
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
 Robots = Sequence[int]  # indices
