@@ -281,7 +281,10 @@ def main():
             noted = campaign.soak(options.soak)
             print(usage_text(noted) if noted else "ended before the first look at the processes")
         elif options.episode is None:
-            campaign.run(options.goals)
+            try:
+                campaign.run(options.goals)
+            except KeyboardInterrupt:
+                campaign.violations.append("interrupted; the table holds the episodes until then")
         else:
             campaign.stage.prepare()
             campaign.run_episode(options.episode)
