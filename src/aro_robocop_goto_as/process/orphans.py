@@ -21,7 +21,8 @@ def end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
     parent = os.getpid()
 
     def between_fork_and_exec() -> None:
-        signal.signal(number, signal.SIG_DFL)  # until the exec it is this process's handler that would get the signal
+        if number != signal.SIGKILL:  # until the exec it is this process's handler that would get the signal
+            signal.signal(number, signal.SIG_DFL)
         LIBC.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
         if os.getppid() != parent:  # it has ended already
             os.kill(os.getpid(), number)
