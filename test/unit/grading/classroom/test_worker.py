@@ -14,7 +14,7 @@ from robocop_grading.classroom.hand_ins import pack
 
 # Nothing else can run in a process while poll() does: PyDLL keeps the interpreter.
 HANGS = """
-import ctypes, sys
+import ctypes
 from robocop_grading.classroom.worker import ended_if_it_hangs
 poll = ctypes.PyDLL(None).poll
 with ended_if_it_hangs(0.1):
