@@ -148,6 +148,24 @@ def test_sources_are_valid_python_3_8():
         ast.parse(path.read_text(encoding="utf-8"), filename=str(path), feature_version=(3, 8))
 
 
+def is_text(path):
+    """Whether a file is UTF-8."""
+    try:
+        path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def test_only_pictures_are_binary():
+    passed_over = {"__pycache__", "images"}
+    files = [path for path in ROOT.rglob("*") if path.is_file()]
+    parts = {path: path.relative_to(ROOT).parts for path in files}
+    kept = [path for path in files if not any(part[0] == "." or part in passed_over for part in parts[path])]
+    assert len(kept) > 500
+    expect_none([f"{path.relative_to(ROOT)} is not text" for path in kept if not is_text(path)])
+
+
 def test_core_imports_without_ros():
     core = [module for module in IMPORTS.paths if not within(module, *MAY_IMPORT_ROS)]
     names = [module if within(module, GRADER) else f"{PACKAGE}.{module}".rstrip(".") for module in core]
