@@ -7,9 +7,9 @@ from support import ORIGIN, kept, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.awaited_answers import ControllerId
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
-from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulation import Simulation
 
@@ -77,7 +77,7 @@ class Owner:
                     self.on_tick(seen.stamp_ns)
                 if seen.due.control and controllers.in_lockstep:
                     controllers.begin_tick()
-                    self._hold(lambda: controllers.hold(self._connected, self.is_kept))
+                    self._hold(lambda: controllers.lockstep.hold(self._connected, self.is_kept))
                     report = controllers.end_tick(self._answering)
                     self.events += [("late", report.late)] if report.late else []
                     self.events += [("gone", controller) for controller in report.gone]

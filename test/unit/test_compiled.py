@@ -53,7 +53,7 @@ def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 4: build"),
+        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 5: build"),
         ("int other(void) { return 1; }", "can't be used .*aro_caster_version.*: build"),
     ],
 )

@@ -36,6 +36,7 @@ from aro_robocop_goto_as.ros.packed import (
 )
 from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
 from aro_robocop_goto_as.sensors.lidar import Lidar
+from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.odometry import Odometers
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 from aro_robocop_goto_as.sim_params import ImuParams, OdometryParams
@@ -71,11 +72,12 @@ def scans(random: np.random.Generator, fan: Fan) -> None:
     scene.footprints[0] = random.uniform(-4.0, 4.0, 3)
     for max_range in (0.0, 3.5, 1e300, math.inf):
         order, spec = random.permutation(robots), random.choice(sorted(PROFILES))
-        distances = fan.scan(scene, order.tolist(), max_range)
-        assert ((distances >= 0.0) & (distances <= max_range) | np.isinf(distances)).all()
+        ranges = np.zeros((robots, fan.samples))
+        fan.casting(scene, order.tolist(), max_range, ranges)()
+        assert ((ranges >= 0.0) & (ranges <= max_range) | np.isinf(ranges)).all()
         lidar = Lidar(replace(PROFILES[spec].spec, samples=max(2, fan.samples)))
         if fan.samples > 1:
-            lidar.measure(distances, order.tolist(), 1, int(random.integers(2**40)), np.zeros((robots, fan.samples)))
+            lidar.measuring(order.tolist(), Episode(1, int(random.integers(2**40))), ranges)()
 
 
 SPEEDS = [0.0, 0.1, -1.0, 1e-300, 1e4, -1e9, 1e150, 1e308]

@@ -2,7 +2,8 @@
 
 import ctypes
 import math
-from typing import Optional, Sequence
+from functools import partial
+from typing import Callable, Optional, Sequence
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from .caster_library import FanStruct, ScanPlaneStruct, SceneStruct, load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
-REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 NO_OWNERS = np.zeros(0, np.int64)
 
 
@@ -49,7 +49,6 @@ class Scene:
 
         footprints: (n, 3) [x m, y m, yaw rad] in the world, where the robots are at each scan; zeros if none are given
         """
-        self.aro_cast = load().aro_cast
         self._plane_of = np.array(plane_of, dtype=np.int64)
         count = len(self._plane_of)
         if any(not 0 <= plane < len(planes) for plane in plane_of):
@@ -60,7 +59,7 @@ class Scene:
         self._mounts = mounts
         self._planes = list(planes)
         self._plane_structs = (ScanPlaneStruct * len(planes))(*(plane.struct for plane in planes))
-        self.struct = SceneStruct(
+        struct = SceneStruct(
             count,
             len(planes),
             address("footprints", self.footprints, (count, 3)),
@@ -68,6 +67,10 @@ class Scene:
             address("plane_of", self._plane_of, (count,), np.int64),
             self._plane_structs,
         )
+        self._as_parameter_ = ctypes.pointer(struct)  # ctypes' name: a call in which the scene is an argument keeps it
+
+    def __len__(self) -> int:
+        return len(self._plane_of)
 
 
 class Fan:
@@ -84,7 +87,7 @@ class Fan:
         angles = [angle_min + increment * i for i in range(samples)]
         # Not NumPy's sine and cosine: their last bits depend on the processor's vector instructions.
         self._dx, self._dy = (np.array([function(angle) for angle in angles]) for function in (math.cos, math.sin))
-        self._struct = FanStruct(
+        struct = FanStruct(
             angle_min,
             1.0 / increment,
             (samples - 1) * increment + 2.0 * TOLERANCE,
@@ -92,26 +95,26 @@ class Fan:
             address("dx", self._dx, (samples,)),
             address("dy", self._dy, (samples,)),
         )
+        self._as_parameter_ = ctypes.pointer(struct)
+
+    def casting(
+        self, scene: Scene, robots: Sequence[int], max_range: float, distances: np.ndarray
+    ) -> Callable[[], object]:
+        """What casts the beams of these robots' scanners each time it is called.
+
+        It writes to their rows of `distances` (n, samples) [m], +inf where nothing is within max_range [m]. From inside
+        a circle its far side is seen; a segment is seen from both sides. A scan does not depend on which other robots
+        are in `robots`. ValueError for an unknown robot or a pose that is not finite.
+        """
+        numbers = (ctypes.c_int64 * len(robots))(*robots)
+        address("distances", distances, (len(scene), self.samples))
+        return partial(load().aro_cast, self, scene, len(robots), numbers, max_range, distances.ctypes)
 
     def scan(self, scene: Scene, robots: Sequence[int], max_range: float = math.inf) -> np.ndarray:
-        """Distances (r, samples) [m] seen by these robots' scanners; +inf where nothing is within max_range [m].
-
-        From inside a circle its far side is seen; a segment is seen from both sides. A scan does not
-        depend on which other robots are in `robots`. ValueError for an unknown robot or a pose that is not finite.
-        """
-        numbers = np.ascontiguousarray(robots, dtype=np.int64)
-        distances = np.empty((len(numbers), self.samples))
-        status = scene.aro_cast(
-            ctypes.byref(self._struct),
-            ctypes.byref(scene.struct),
-            len(numbers),
-            address("robots", numbers, (None,), np.int64),
-            max_range,
-            address("distances", distances, (len(numbers), self.samples)),
-        )
-        if status:
-            raise ValueError(REFUSED[status])
-        return distances
+        """Distances (r, samples) [m] seen now by these robots' scanners, as casting() finds them."""
+        distances = np.empty((len(scene), self.samples))
+        self.casting(scene, robots, max_range, distances)()
+        return distances[list(robots)]
 
     def cast(self, world_from_scans: np.ndarray, section: CrossSection, reach: float = math.inf) -> np.ndarray:
         """Distances (r, samples) [m] from poses (r, 3) [x m, y m, yaw rad]; +inf where nothing is within `reach` [m].

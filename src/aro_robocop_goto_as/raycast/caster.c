@@ -13,7 +13,7 @@
 
 #include "grid.h"
 
-#define ARO_CASTER_VERSION 4
+#define ARO_CASTER_VERSION 5
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */
@@ -289,7 +289,7 @@ static void to_world(const double *pose, const double *local, double *x, double 
     *y = pose[1] + s * local[0] + c * local[1];
 }
 
-/* Distances (n_scans, samples) [m] of the scanners of these robots; +inf where nothing is within max_range [m]. */
+/* Distances [m] of these robots' scanners, in their rows of `distances` (n, samples); +inf beyond max_range [m]. */
 int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, const int64_t *robots, double max_range,
              double *distances)
 {
@@ -311,7 +311,7 @@ int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, 
     for (i = 0; i < n_scans; i++) {
         const double *footprint = scene->footprints + 3 * robots[i], *mount = scene->mounts + 3 * robots[i];
         double yaw = footprint[2] + mount[2];
-        struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + i * fan->samples};
+        struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + robots[i] * fan->samples};
         to_world(footprint, mount, &scan.x, &scan.y);
         for (k = 0; k < fan->samples; k++)
             scan.nearest[k] = INFINITY;

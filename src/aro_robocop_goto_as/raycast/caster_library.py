@@ -5,11 +5,13 @@ caster.c casts rays, movers.c moves circles, and sensors/lidar.c makes ranges wi
 
 import ctypes
 import functools
+from typing import Any
 
 from .. import compiled
 from ..compiled import members
 
-VERSION = 4  # of the structures below and of movers and sensors.lidar, as in caster.c
+VERSION = 5  # of the structures below and of movers and sensors.lidar, as in caster.c
+REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 
 
 class FanStruct(ctypes.Structure):
@@ -55,6 +57,12 @@ class SceneStruct(ctypes.Structure):
     ]
 
 
+def _require_ok(status: Any, _function: object, _arguments: object) -> Any:
+    if status:
+        raise ValueError(REFUSED[status])
+    return status
+
+
 @functools.lru_cache(maxsize=None)
 def load() -> ctypes.PyDLL:
     """The library. It holds the GIL during a call, so two threads cannot use a grid's marks at once.
@@ -62,19 +70,12 @@ def load() -> ctypes.PyDLL:
     InstallationError when it is missing, can't be loaded, or was built from other sources.
     """
     library = compiled.load("caster", VERSION)
-    library.aro_cast.restype = ctypes.c_int
-    library.aro_cast.argtypes = [
-        ctypes.POINTER(FanStruct),
-        ctypes.POINTER(SceneStruct),
-        ctypes.c_int64,
-        ctypes.c_void_p,
-        ctypes.c_double,
-        ctypes.c_void_p,
-    ]
-    library.aro_move.restype = ctypes.c_double
-    library.aro_move.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_double]
     pointer, integer, unsigned = ctypes.c_void_p, ctypes.c_int64, ctypes.c_uint64
+    library.aro_cast.restype, library.aro_cast.errcheck = ctypes.c_int, _require_ok
+    library.aro_cast.argtypes = [pointer, pointer, integer, pointer, ctypes.c_double, pointer]
+    library.aro_move.restype = ctypes.c_double
+    library.aro_move.argtypes = [pointer, integer, ctypes.c_double]
     library.aro_normals.restype = library.aro_measure.restype = None
     library.aro_normals.argtypes = [unsigned, unsigned, unsigned, integer, pointer]
-    library.aro_measure.argtypes = [pointer, integer, integer, pointer, pointer, unsigned, unsigned, pointer]
+    library.aro_measure.argtypes = [pointer, integer, pointer, pointer, pointer]
     return library

@@ -8,7 +8,7 @@ import numpy as np
 from ..geometry import Pose3D
 from ..robot.model import RobotModel
 from ..world.model import Box, Cylinder, Obstacle, World
-from .beams import Fan, ScanPlane, Scene
+from .beams import ScanPlane, Scene
 from .cross_section import NO_CIRCLES, CrossSection, outline
 
 
@@ -29,7 +29,10 @@ def circles_at(model: RobotModel, height: float) -> np.ndarray:
 
 
 class Scanners:
-    """One scanner per robot, all of the same kind; models differ in the height of their scanner."""
+    """One scanner per robot, all of the same kind; models differ in the height of their scanner.
+
+    scene: what they see, in the plane that TF describes: scanners are level, at their height on an upright robot
+    """
 
     def __init__(self, models: Sequence[RobotModel], world: World, footprints: np.ndarray) -> None:
         """footprints: (n, 3) x, y [m], yaw [rad] of all robots in the world, where they are at each scan."""
@@ -47,17 +50,13 @@ class Scanners:
             planes.append(ScanPlane(section, np.concatenate(circles), owners))
         mounts = [model.base_from_scan.on_plane() for model in self._models]
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
-        self._scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
+        self.scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
 
     def section(self, robot: int) -> CrossSection:
         """The world's cross-section at the height of one robot's scanner."""
         return self._sections[self._plane_of[robot]]
 
-    def distances(self, fan: Fan, max_range: float, robots: Sequence[int], time: float) -> np.ndarray:
-        """Exact distances (r, samples) [m] seen by the given robots at a time [s]; +inf beyond max_range [m].
-
-        In the plane that TF describes: scanners are level, at their height on an upright robot.
-        """
+    def move(self, time: float) -> None:
+        """Put moving obstacles where they are at a time [s]; a new world's are at time zero."""
         for section in self._sections:
             section.move(time)
-        return fan.scan(self._scene, robots, max_range)

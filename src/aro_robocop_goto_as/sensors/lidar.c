@@ -1,6 +1,6 @@
 /* The errors of laser scanners: exact distances -> ranges.
  *
- * The structure is mirrored in lidar.py; ARO_CASTER_VERSION changes with it.
+ * The structures are mirrored in lidar.py and noise_streams.py; ARO_CASTER_VERSION changes with it.
  */
 
 #include <math.h>
@@ -10,8 +10,15 @@ struct lidar {
     double range_min, range_max; /* [m] */
     double noise, step;          /* [m] standard deviation; resolution, 0: none */
     double too_near, no_return;  /* [m] what is reported in these cases */
+    double *normals;             /* (samples,) written by aro_measure */
+    int64_t samples;
     int64_t n_accuracy;          /* 0: the noise is normal, else its bounds come from a data sheet: */
     const double *accuracy;      /* (n_accuracy, 3): up to which distance [m], error [m], error as a share of it */
+};
+
+/* What the noise depends on. */
+struct episode {
+    uint64_t seed, step;
 };
 
 /* Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): SplitMix64. */
@@ -60,17 +67,17 @@ static double error_at(const struct lidar *lidar, double distance, double normal
     return (entry[1] + entry[2] * fmin(distance, lidar->range_max)) * fmax(-1.0, fmin(1.0, normal / 2.0));
 }
 
-/* Scans of these robots, whose exact distances are the rows of `distances` (n_scans, samples) [m; +inf: no return], to
- * their rows of `ranges` (n, samples) [m]. The noise of a robot on a step does not depend on the other robots. */
-void aro_measure(const struct lidar *lidar, int64_t n_scans, int64_t samples, const int64_t *robots,
-                 const double *distances, uint64_t seed, uint64_t step, double *ranges)
+/* Make ranges of the exact distances [m; +inf: no return] in these robots' rows of `ranges` (n, samples) [m]. The noise of
+ * a robot on a step does not depend on the other robots. */
+void aro_measure(const struct lidar *lidar, int64_t n_scans, const int64_t *robots, const struct episode *at,
+                 double *ranges)
 {
     int64_t i, k;
     for (i = 0; i < n_scans; i++) {
-        double *row = ranges + robots[i] * samples;
-        aro_normals(seed, (uint64_t)robots[i], step, samples, row);
-        for (k = 0; k < samples; k++) {
-            double distance = distances[i * samples + k], range = distance + error_at(lidar, distance, row[k]);
+        double *row = ranges + robots[i] * lidar->samples;
+        aro_normals(at->seed, (uint64_t)robots[i], at->step, lidar->samples, lidar->normals);
+        for (k = 0; k < lidar->samples; k++) {
+            double range = row[k] + error_at(lidar, row[k], lidar->normals[k]);
             if (range < lidar->range_min)
                 row[k] = lidar->too_near;
             else if (range > lidar->range_max)

@@ -2,13 +2,15 @@
 
 import ctypes
 import math
-from typing import Dict, Sequence
+from functools import partial
+from typing import Callable, Dict, Sequence
 
 import numpy as np
 
 from ..compiled import address, members
 from ..raycast.beams import Fan
 from ..raycast.caster_library import load
+from .noise_streams import Episode
 from .scan_profiles import LidarSpec
 
 
@@ -17,7 +19,8 @@ class _LidarStruct(ctypes.Structure):
 
     _fields_ = [
         *members(ctypes.c_double, "range_min range_max noise step too_near no_return"),
-        ("n_accuracy", ctypes.c_int64),
+        ("normals", ctypes.c_void_p),
+        *members(ctypes.c_int64, "samples n_accuracy"),
         ("accuracy", ctypes.c_void_p),
     ]
 
@@ -30,16 +33,19 @@ class Lidar:
         self.fan = Fan(spec.angle_min, spec.increment, spec.samples)
         self._turns: Dict[int, Lidar] = {}  # the same scanner by number of beams
         self._accuracy = np.array(spec.accuracy, dtype=float).reshape(-1, 3)
-        self._struct = _LidarStruct(
+        self._normals = np.zeros(spec.samples)
+        struct = _LidarStruct(
             spec.range_min,
             spec.range_max,
             spec.noise,
             spec.step,
             *((0.0, 0.0) if spec.zero_is_none else (-math.inf, math.inf)),  # as in REP-117, or as in the LDS drivers
+            address("normals", self._normals, (spec.samples,)),
+            spec.samples,
             len(self._accuracy),
             address("accuracy", self._accuracy, (None, 3)),
         )
-        self._measure = load().aro_measure
+        self._as_parameter_ = ctypes.pointer(struct)
 
     def next_turn(self, rng: np.random.Generator) -> "Lidar":
         """The scanner for one revolution, whose number of beams varies with the speed of the scanner's motor."""
@@ -49,22 +55,14 @@ class Lidar:
             self._turns[samples] = Lidar(self.spec.with_samples(samples))
         return self._turns[samples]
 
-    def measure(self, distances: np.ndarray, robots: Sequence[int], seed: int, step: int, ranges: np.ndarray) -> None:
-        """Measure exact distances (r, samples) [m] of these robots, and write them to their rows of `ranges`.
+    def measuring(self, robots: Sequence[int], episode: Episode, ranges: np.ndarray) -> Callable[[], None]:
+        """What makes ranges of exact distances each time it is called.
 
-        ranges: (n, samples) [m]. The noise depends on seed, robot and step.
+        Both are in these robots' rows of `ranges` (n, samples) [m]. The noise depends on seed, step and robot.
         As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
         if robots and not 0 <= min(robots) <= max(robots) < len(ranges):
             raise ValueError(f"robots: expected numbers from 0 to {len(ranges) - 1}, got {robots}")
-        samples, numbers = self.spec.samples, np.array(robots, dtype=np.int64)
-        self._measure(
-            ctypes.byref(self._struct),
-            len(robots),
-            samples,
-            address("robots", numbers, (None,), np.int64),
-            address("distances", distances, (len(robots), samples)),
-            seed,
-            step,
-            address("ranges", ranges, (None, samples)),
-        )
+        numbers = (ctypes.c_int64 * len(robots))(*robots)
+        address("ranges", ranges, (None, self.spec.samples))
+        return partial(load().aro_measure, self, len(robots), numbers, ctypes.pointer(episode), ranges.ctypes)

@@ -2,7 +2,7 @@
 
 import functools
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..robot.model import BodyState
 from ..sensors import imu, magnetometer
 from ..sensors.camera import CameraImage, CameraSpec
 from ..sensors.lidar import Lidar
-from ..sensors.noise_streams import NoiseStreams
+from ..sensors.noise_streams import Episode, NoiseStreams
 from ..sensors.odometry import Odometers
 from ..sim_params import SimParams
 from ..world.model import World
@@ -53,7 +53,7 @@ class Observations:
         self._p, self._world, self._engine, self._models = p, world, engine, models
         self._rate = p.rates.physics_rate  # [Hz]
         self.stamp_ns, self.due = 0, Due()  # of the last step on which something was due [ns]
-        self.seed, self.step = p.world.seed, 0  # of the noise; steps since the last reset
+        self.episode = Episode(p.world.seed, 0)
         self.lidar = Lidar(p.scan.lidar())
         self.scanners = Scanners(models, world, engine.fleet.poses)
         self.fleet, self.odometry = engine.fleet, Odometers(p.odometry, engine.fleet, p.rates.odom_rate)
@@ -66,7 +66,7 @@ class Observations:
         self.cameras: Sequence[Optional[CameraSpec]] = [  # None: a model without a camera
             None if model.base_from_camera is None else p.camera.spec(model.name) for model in models
         ]
-        self._noise = NoiseStreams()
+        self._noise = NoiseStreams(self.episode)
         self._make_renderer: Any = None
         if any(self.cameras):
             from ..sensors.camera_renderer import CameraRenderer  # imports pybullet
@@ -76,7 +76,7 @@ class Observations:
         self._measures: Dict[str, Callable[[Robots], object]] = {
             JOINTS: self._read_joints,
             ODOM: self._update_odometry,
-            SCAN: self._scan,
+            SCAN: self._scan_with_any_number_of_beams,
             BUMPER: self._read_bumpers,
             MAGNETIC_FIELD: self._measure_magnetic_fields,
             CAMERA: self._take_images,
@@ -91,34 +91,39 @@ class Observations:
 
         The fleet's rows, which are ground truth, are updated first, and no more often than something reads them.
         """
-        measured = [name for name in names if name == ODOM or (name in due and name in self._measures)]
-        measures = [functools.partial(self._measures[name], due.get(name, ())) for name in measured]
+        measures: List[Callable[[], object]] = []
+        for name in names:
+            if name == SCAN and name in due and not self.lidar.spec.varying:
+                measures += self._scanning(self.lidar, due[name])
+            elif name == ODOM or (name in due and name in self._measures):
+                measures.append(functools.partial(self._measures[name], due.get(name, ())))
         return [self._engine.update_fleet, *measures] if measures or GROUND_TRUTH in due else []
 
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return self.step / self._rate
+        return self.episode.step / self._rate
 
     # -- sensors --
-
-    def _noise_of(self, stream: int) -> np.random.Generator:
-        """Noise of one stream on this step, counted from the last reset."""
-        return self._noise.at(self.seed, stream, self.step)
 
     def ranges(self, beams: int) -> np.ndarray:
         """The array (n, beams) [m] to which scans with so many beams are written."""
         return self._ranges.setdefault(beams, np.zeros((len(self._models), beams)))
 
-    def _scan(self, robots: Robots) -> None:
-        lidar = self.lidar.next_turn(self._noise_of(0)) if self.lidar.spec.varying else self.lidar
-        distances = self.scanners.distances(lidar.fan, lidar.spec.range_max, robots, self.world_time)
+    def _scanning(self, lidar: Lidar, robots: Robots) -> Sequence[Callable[[], object]]:
+        scans = self.ranges(lidar.spec.samples)
+        cast = lidar.fan.casting(self.scanners.scene, robots, lidar.spec.range_max, scans)
+        return [cast, lidar.measuring(robots, self.episode, scans)]
+
+    def _scan_with_any_number_of_beams(self, robots: Robots) -> None:
+        lidar = self.lidar.next_turn(self._noise.stream(0))
         self.scans = self.ranges(lidar.spec.samples)
-        lidar.measure(distances, robots, self.seed, self.step, self.scans)
+        for measure in self._scanning(lidar, robots):
+            measure()
 
     def _update_odometry(self, _robots: Robots) -> None:
         if self.odometry.slipping:
-            self._noise_of(SLIP_STREAM).standard_normal(out=self.odometry.noise)
+            self._noise.stream(SLIP_STREAM).standard_normal(out=self.odometry.noise)
         self.odometry.update()
         if self._p.topics.localization == "truth":
             for robot, pose in enumerate(self.odometry.poses.tolist()):
@@ -140,7 +145,8 @@ class Observations:
     def measure_imus(self, robots: Robots, bodies_before: Sequence[BodyState]) -> None:
         """Measure the IMUs of these robots, whose states before the last step are given."""
         for robot, before in zip(robots, bodies_before):
-            after, mount, noise = self._engine.body(robot), self._models[robot].base_from_imu, self._noise_of(1 + robot)
+            after, mount = self._engine.body(robot), self._models[robot].base_from_imu
+            noise = self._noise.stream(1 + robot)
             self.imus[robot] = imu.measure(before, after, 1.0 / self._rate, mount, self._p.imu, noise)
 
     def _take_images(self, robots: Robots) -> None:
@@ -162,13 +168,15 @@ class Observations:
         """Odometry to zero where the robots are, at their spawn poses; noise and moving obstacles to their start."""
         self.odometry.reset()
         self.map_from_odom[:] = 0.0 if self.odometry.in_world else spawns
-        self.seed, self.step = seed, 0
+        self.episode.seed, self.episode.step = seed, 0
+        self.scanners.move(0.0)
 
     def change_world(self, world: World) -> None:
         """Replace the world."""
         self.close()
         self._world = world
         self.scanners.change_world(world)
+        self.scanners.move(self.world_time)
 
     def close(self) -> None:
         """Free the renderer; the next image makes a new one."""

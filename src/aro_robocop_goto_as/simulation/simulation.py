@@ -4,7 +4,7 @@ The owner is the ROS node, the grader, or a test. Its loop, of which every part 
 
     jobs.run_next(time.hold(...))       what other threads ask for, while the wall clock is waited for
     simulator.advance(subscriptions)    -> observations, which the owner publishes
-    controllers.hold(connected)         in lockstep: how long to wait for answers to a control tick
+    controllers.lockstep.hold(...)      in lockstep: how long to wait for answers to a control tick
     take_changes()                      -> what has jumped, which the owner publishes anew
 """
 

@@ -17,9 +17,8 @@ from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from . import observations
 from .observations import Due, Observations, Subscriptions
-from .schedule import Schedule, stamp_ns
+from .schedule import CLOCK, CONTROL, Schedule, rates_of, stamp_ns
 
-CLOCK, CONTROL = "clock", "control"  # scheduled as sensors are
 DUE_OFTEN = {observations.IMU, observations.MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
 
 
@@ -36,7 +35,7 @@ class Simulator:
         self.engine = engine
         self.observed = Observations(p, world, engine)
         self.lidar = self.observed.lidar
-        rates = _rates(p)
+        rates = rates_of(p)
         self._usual = Schedule({name: rate for name, rate in rates.items() if name not in DUE_OFTEN}, self.rate)
         self._full = Schedule(rates, self.rate)
         self._schedule = self._usual
@@ -66,7 +65,7 @@ class Simulator:
     @property
     def seed(self) -> int:
         """The seed of all noise."""
-        return self.observed.seed
+        return self.observed.episode.seed
 
     # -- steps --
 
@@ -109,9 +108,11 @@ class Simulator:
         for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
-            self.observed.step += at_once
+            self.observed.episode.step += at_once
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
+        if self.moving:
+            self.observed.scanners.move(self.world_time)
 
     def _due(self, names: Tuple[str, ...]) -> Due:
         """What is done when these are due."""
@@ -122,7 +123,7 @@ class Simulator:
 
     def sensors_at_control_ticks(self) -> FrozenSet[str]:
         """The sensors that are due on each control tick."""
-        rates = _rates(self.p)
+        rates = rates_of(self.p)
         return frozenset(name for name, rate in rates.items() if rate and rate % rates[CONTROL] == 0)
 
     # -- the state of the world and of its robots --
@@ -137,7 +138,7 @@ class Simulator:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
         self.engine.update_fleet()
         fan, range_max = self.lidar.fan, self.lidar.spec.range_max
-        return self.observed.scanners.distances(fan, range_max, [robot], self.world_time)[0]
+        return fan.scan(self.observed.scanners.scene, [robot], range_max)[0]
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
@@ -179,7 +180,7 @@ class Simulator:
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
         self.world = world.with_motion(self.p.world.moving)
-        self.moving = bool(self.world.moving())
+        self.moving, self._dues = bool(self.world.moving()), {}
         self.observed.change_world(self.world)
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
@@ -231,22 +232,3 @@ class Simulator:
         """Free the engine and the renderer."""
         self.observed.close()
         self.engine.close()
-
-
-def _rates(p: SimParams) -> Dict[str, int]:
-    """How often each sensor and tick is due [Hz], in the order of their messages; 0 = never."""
-    rates = p.rates
-    return {
-        CLOCK: rates.clock_rate,
-        CONTROL: rates.control_rate,
-        observations.GROUND_TRUTH: rates.ground_truth_rate,
-        observations.IMU: rates.imu_rate,
-        observations.JOINTS: rates.joint_state_rate,
-        observations.ODOM: rates.odom_rate,
-        observations.SCAN: p.scan.rate,
-        observations.BUMPER: rates.bumper_rate,
-        observations.MAGNETIC_FIELD: rates.magnetic_field_rate,
-        observations.BATTERY: rates.battery_state_rate,
-        observations.CAMERA: rates.camera_rate,
-        observations.TF: rates.odom_rate,
-    }

@@ -20,8 +20,8 @@ from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, TF, Observations, Subscriptions
+from aro_robocop_goto_as.simulation.schedule import CLOCK
 from aro_robocop_goto_as.simulation.simulation import Simulation
-from aro_robocop_goto_as.simulation.simulator import CLOCK
 
 from .. import record as rec
 from ..handout import AHEAD

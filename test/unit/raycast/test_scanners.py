@@ -20,7 +20,7 @@ def test_each_scanner_sees_world_and_robots_at_its_own_height() -> None:
     assert waffles_lidar < 0.14 < burgers_lidar
     fan = Fan(0.0, math.pi / 180.0, 360)
     world = World("w", (low_box,), Pose2D(), (), "")
-    scans = Scanners(models, world, np.array(at)).distances(fan, 10.0, [0, 1, 2], 0.0)
+    scans = fan.scan(Scanners(models, world, np.array(at)).scene, [0, 1, 2], 10.0)
     assert np.isinf(scans[0, 0]), "the box is below a Burger's scanner"
     assert scans[1, 45] == pytest.approx(1.5 * math.sqrt(2.0), abs=0.2)
     assert np.isinf(scans[0, 90]), "a Waffle is below a Burger's scanner"

@@ -11,6 +11,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.caster_library import load
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.sensors.lidar import Lidar
+from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.scan_profiles import Accuracy, LidarSpec
 from aro_robocop_goto_as.world.model import Cylinder, Obstacle, World
 
@@ -67,21 +68,20 @@ def test_ranges_are_those_of_the_definition(
 ) -> None:
     samples = len(distances)
     spec = LidarSpec(0.0, 6.0, samples, 0.12, 10.0, noise, accuracy, step, zero_is_none)
-    rows, ranges = (
-        np.array([np.roll(distances, robot) for robot in robots]).reshape(-1, samples),
-        np.full((5, samples), 7.0),
-    )
-    Lidar(spec).measure(rows, robots, *at, ranges)
-    for row, robot in zip(rows, robots):
+    rows = np.array([np.roll(distances, robot) for robot in range(5)])
+    ranges = rows.copy()
+    Lidar(spec).measuring(robots, Episode(*at), ranges)()
+    for robot, row in enumerate(rows):
+        if robot not in robots:
+            np.testing.assert_array_equal(ranges[robot], row)
+            continue
         np.testing.assert_array_equal(ranges[robot], _defined(spec, row, _normals(at[0], robot, at[1], samples)))
-    others = [robot for robot in range(5) if robot not in robots]
-    assert (ranges[others] == 7.0).all()
 
 
 def test_rows_that_do_not_exist_are_refused() -> None:
     for robot in (-1, 2):
         with pytest.raises(ValueError, match="expected numbers from 0 to 1"):
-            Lidar(SPEC).measure(np.zeros((1, 360)), [robot], 1, 1, np.zeros((2, 360)))
+            Lidar(SPEC).measuring([robot], Episode(1, 1), np.zeros((2, 360)))
 
 
 def test_noise_is_standard_normal() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.sensors.lidar import Lidar
+from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
@@ -18,8 +19,8 @@ Make = Callable[..., Simulator]
 
 def _measured(profile: str, distances: "list[float]", **changes: Any) -> "list[float]":
     spec = replace(PROFILES[profile].spec, samples=len(distances), **changes)
-    ranges = np.zeros((1, len(distances)))
-    Lidar(spec).measure(np.array([distances]), [0], 1, 2, ranges)
+    ranges = np.array([distances])
+    Lidar(spec).measuring([0], Episode(1, 2), ranges)()
     return ranges[0].tolist()
 
 

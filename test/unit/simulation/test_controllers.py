@@ -5,8 +5,8 @@ from fakes import Owner
 from support import ORIGIN
 
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.simulation.controllers import SECOND_LOOK, STILL
-from aro_robocop_goto_as.simulation.lockstep import ControllerId
+from aro_robocop_goto_as.simulation.awaited_answers import ControllerId
+from aro_robocop_goto_as.simulation.lockstep import SECOND_LOOK, STILL
 
 NODE, ANSWERING = ControllerId(0, "/controller"), ControllerId(0, "/answering")
 AHEAD = Twist2D(0.1, 0.0)
@@ -50,8 +50,8 @@ def test_tick_waits_for_each_answer_without_a_miss() -> None:
     owner.run()
     assert stamps == [tick * 10**8 for tick in range(1, 6)]
     assert owner.clock.time == pytest.approx(101.5)
-    assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
-    assert owner.simulation.controllers.lockstep.awaited() == [ANSWERING]
+    assert owner.simulation.controllers.answers.misses == 0 and owner.events == []
+    assert owner.simulation.controllers.answers.awaited() == [ANSWERING]
     assert owner.simulator.world_from_footprint().x > 0.03
 
 
@@ -59,7 +59,7 @@ def test_time_goes_on_without_a_silent_controller() -> None:
     owner = lockstep(0.3, "/answering", lockstep_timeout=3.0)
     owner.run()
     assert owner.events == [("late", [ANSWERING])]
-    assert owner.simulation.controllers.lockstep.misses == 1
+    assert owner.simulation.controllers.answers.misses == 1
     assert owner.clock.time == pytest.approx(103.0 + STILL)
 
 
@@ -70,7 +70,7 @@ def test_controller_that_gets_no_processor_is_waited_for() -> None:
     owner.on_tick = lambda stamp: owner.post(60.0, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD))
     owner.run()
     assert set(asked) == {(ANSWERING, 3.0)}
-    assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
+    assert owner.simulation.controllers.answers.misses == 0 and owner.events == []
     assert owner.clock.time == pytest.approx(160.0)
 
 
@@ -81,7 +81,7 @@ def test_answer_that_comes_between_the_looks_is_no_miss(later: float) -> None:
         3.0 + later, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD)
     )
     owner.run()
-    assert owner.simulation.controllers.lockstep.misses == 0
+    assert owner.simulation.controllers.answers.misses == 0
 
 
 def test_robot_of_a_controller_that_disconnects_is_stopped() -> None:
@@ -106,7 +106,7 @@ def test_another_controllers_command_outlives_one_that_disconnects() -> None:
 def test_answer_from_before_time_was_set_back_is_ignored() -> None:
     owner = lockstep(0.35, "/answering")
     controllers = owner.simulation.controllers
-    controllers.lockstep.enroll(ANSWERING)
+    controllers.answers.enroll(ANSWERING)
     controllers.answer(ANSWERING, 100 * 10**9, AHEAD)
     owner.on_tick = lambda stamp: owner.post(0.1, lambda: controllers.answer(ANSWERING, stamp, None))
     owner.run()
@@ -127,7 +127,7 @@ def test_reset_while_controllers_are_waited_for_asks_nobody_twice() -> None:
 
     owner.on_tick = answer
     owner.run()
-    assert controllers.lockstep.misses == 0
+    assert controllers.answers.misses == 0
     assert owner.clock.time < 101.0
 
 
@@ -138,7 +138,7 @@ def test_controllers_that_connect_while_time_stands_still_are_waited_for_from_th
     owner.post(1.0, lambda: owner.simulation.set_paused(False))
     owner.on_tick = lambda stamp: owner.post(0.3, lambda: controllers.answer(ANSWERING, stamp, None))
     owner.run()
-    assert owner.clock.time == pytest.approx(101.3) and controllers.lockstep.misses == 0
+    assert owner.clock.time == pytest.approx(101.3) and controllers.answers.misses == 0
 
 
 @pytest.mark.parametrize("ticks", [1.0, 1.5])
@@ -149,9 +149,9 @@ def test_controller_that_connects_while_time_stands_is_awaited_at_the_next_tick(
     controllers.command(NODE, AHEAD)  # notes the tick towards which time runs
     controllers.enroll(lambda robot: {ANSWERING.node})
     controllers.begin_tick()
-    controllers.lockstep.gone(NODE)
-    controllers.lockstep.tick = 2
-    assert controllers.lockstep.missing() == [ANSWERING]
+    controllers.answers.gone(NODE)
+    controllers.answers.tick = 2
+    assert controllers.answers.missing() == [ANSWERING]
 
 
 def test_command_of_an_answer_counts_once_its_sender_is_enrolled() -> None:

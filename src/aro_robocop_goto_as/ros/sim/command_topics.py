@@ -14,7 +14,7 @@ from ...errors import CommandError
 from ...geometry import Twist2D
 from ...process.peer import Peer, others_want_to_run
 from ...robot.base_controller import require_finite
-from ...simulation.lockstep import ControllerId
+from ...simulation.awaited_answers import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert, graph
 from ..names import prefixed

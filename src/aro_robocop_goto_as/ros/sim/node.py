@@ -103,7 +103,7 @@ class SimNode:
         controllers, commands = self._simulation.controllers, self._commands
         controllers.begin_tick()
         commands.begin_tick()
-        self._hold(lambda: controllers.hold(commands.connected, commands.is_kept))
+        self._hold(lambda: controllers.lockstep.hold(commands.connected, commands.is_kept))
         self._status.warn_of(controllers.end_tick(commands.answering))
 
     def _hold(self, hold: Callable[[], float]) -> None:

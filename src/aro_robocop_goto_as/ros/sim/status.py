@@ -9,8 +9,8 @@ from std_msgs.msg import Float64, Header
 
 from aro_robocop_goto_as.msg import SimStatus
 
-from ...simulation.controllers import TickReport
-from ...simulation.lockstep import ControllerId
+from ...simulation.awaited_answers import ControllerId
+from ...simulation.lockstep import TickReport
 from ...simulation.simulation import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
@@ -41,7 +41,7 @@ class StatusTopics:
             self.publish()
             if not self._simulation.time_control.paused:
                 self._count(report)
-        elif self._simulation.controllers.lockstep.awaited() != self._awaited:
+        elif self._simulation.controllers.answers.awaited() != self._awaited:
             self.publish()
         return report is not None
 
@@ -69,7 +69,7 @@ class StatusTopics:
         for controller in tick.gone:
             rospy.logwarn("lockstep: %s disconnected; the robot is stopped", self._name(controller))
         if tick.late:
-            names, timeout = ", ".join(map(self._name, tick.late)), controllers.timeout
+            names, timeout = ", ".join(map(self._name, tick.late)), controllers.lockstep.timeout
             rospy.logwarn(f"lockstep: no answer from {names} within {timeout:g} s; simulated time continues without it")
         for controller, rate in tick.slower:
             text = (
@@ -85,7 +85,7 @@ class StatusTopics:
     def publish(self) -> None:
         """Publish the newest report now."""
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        self._awaited = simulation.controllers.lockstep.awaited()
+        self._awaited = simulation.controllers.answers.awaited()
         status = SimStatus(
             stamp=convert.to_time(simulator.stamp_ns),
             world=simulator.world.name,
@@ -99,7 +99,7 @@ class StatusTopics:
             step_time=report.step_time,
             behind=report.lag,
             drivers=sorted(map(self._name, self._awaited)),
-            lockstep_misses=simulation.controllers.lockstep.misses,
+            lockstep_misses=simulation.controllers.answers.misses,
         )
         self._status.publish(status)
         if self._diagnostics.get_num_connections():

@@ -13,8 +13,23 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
-from ...simulation.observations import TF, Due, Observations, Subscriptions
-from ...simulation.simulator import CLOCK, Simulator
+from ...simulation.observations import (
+    BATTERY,
+    BUMPER,
+    CAMERA,
+    GROUND_TRUTH,
+    IMU,
+    JOINTS,
+    MAGNETIC_FIELD,
+    ODOM,
+    SCAN,
+    TF,
+    Due,
+    Observations,
+    Subscriptions,
+)
+from ...simulation.schedule import CLOCK
+from ...simulation.simulator import Simulator
 from .. import convert
 from ..batch import Batch, Posted
 from ..packed import packed_clock, packed_transforms
@@ -22,6 +37,8 @@ from ..publishing import publisher, push
 from ..rospy_internals import set_latched
 from .sensor_topics import SensorTopics
 
+# Of a step's messages. The first four are published by rospy, the others together; /clock follows them.
+ORDER = (BUMPER, MAGNETIC_FIELD, BATTERY, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
 KEPT = 1e-3  # [s, wall] for which a step's messages may wait for those of the next steps
 
 
@@ -126,8 +143,8 @@ class StepTopics:
         """What publishes the measurements that are not packed, and the batch of all others."""
         unpacked: List[Callable[[], None]] = []
         messages: List[Posted] = []
-        for sensor, indices in due.sensors.items():
-            robots = [self.robots[index] for index in indices if sensor not in self._hidden]
+        for sensor in ORDER:
+            robots = [self.robots[index] for index in due.sensors.get(sensor, ()) if sensor not in self._hidden]
             if sensor == TF:
                 transforms = [transform for robot in robots for transform in robot.transforms()]
                 messages += [(self._tf, packed_transforms(transforms))] if transforms else []
