@@ -13,7 +13,7 @@ from ..geometry import Twist2D
 from ..param_loading import from_dict
 from ..ros.sim.loading import load_simulator
 from ..sim_params import SimParams
-from ..simulation.observations import ODOM, SCAN
+from ..simulation.rates import ODOM, SCAN
 from ..simulation.schedule import due
 from .cases import ANGULAR, LINEAR, ODOM_RATE, SCAN_RATE, SCAN_SAMPLES, Case
 from .client import Client

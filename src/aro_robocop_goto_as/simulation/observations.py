@@ -1,4 +1,4 @@
-"""What one step yields: the names of the sensors, what is due, and the measurements."""
+"""What one step yields: what is due, and the measurements."""
 
 import functools
 from dataclasses import dataclass, field
@@ -17,9 +17,8 @@ from ..sensors.noise_streams import Episode, NoiseStreams
 from ..sensors.odometry import Odometers
 from ..sim_params import SimParams
 from ..world.model import World
+from .rates import BUMPER, CAMERA, GROUND_TRUTH, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
 
-SCAN, ODOM, JOINTS, IMU, GROUND_TRUTH = "scan", "odom", "joints", "imu", "ground_truth"
-BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA, TF = "bumper", "battery", "magnetic_field", "camera", "tf"
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
 Robots = Sequence[int]  # indices

@@ -1,36 +1,13 @@
 """The steps on which sensors and ticks are due, in integer arithmetic, so that nothing drifts."""
 
-from typing import Dict, List, Mapping, Tuple
+from typing import List, Mapping, Tuple
 
-from ..sim_params import SimParams
-from . import observations
-
-CLOCK, CONTROL = "clock", "control"  # scheduled as sensors are
 NANOSECONDS = 1000000000
 
 
 def stamp_ns(step: int, physics_rate: int) -> int:
     """Simulated time [ns] of a step at physics_rate [Hz], rounded down."""
     return step * NANOSECONDS // physics_rate
-
-
-def rates_of(p: SimParams) -> Dict[str, int]:
-    """How often each sensor and tick is due [Hz], in the order in which they are measured; 0 = never."""
-    rates = p.rates
-    return {
-        CLOCK: rates.clock_rate,
-        CONTROL: rates.control_rate,
-        observations.GROUND_TRUTH: rates.ground_truth_rate,
-        observations.IMU: rates.imu_rate,
-        observations.JOINTS: rates.joint_state_rate,
-        observations.ODOM: rates.odom_rate,
-        observations.SCAN: p.scan.rate,
-        observations.BUMPER: rates.bumper_rate,
-        observations.MAGNETIC_FIELD: rates.magnetic_field_rate,
-        observations.BATTERY: rates.battery_state_rate,
-        observations.CAMERA: rates.camera_rate,
-        observations.TF: rates.odom_rate,
-    }
 
 
 def due(step: int, rate: int, physics_rate: int) -> bool:

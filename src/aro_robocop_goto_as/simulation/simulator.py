@@ -15,11 +15,11 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
-from . import observations
 from .observations import Due, Observations, Subscriptions
-from .schedule import CLOCK, CONTROL, Schedule, rates_of, stamp_ns
+from .rates import CLOCK, CONTROL, IMU, MAGNETIC_FIELD, rates_of
+from .schedule import Schedule, stamp_ns
 
-DUE_OFTEN = {observations.IMU, observations.MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
+DUE_OFTEN = {IMU, MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
 
 
 class Simulator:
@@ -91,7 +91,7 @@ class Simulator:
             self._run(most)
             return None
         due = self._dues.get(names) or self._due(names)
-        imus = due.sensors.get(observations.IMU)
+        imus = due.sensors.get(IMU)
         if imus:  # which compare the states before and after the step
             self._run(steps - 1)
             before = [self.engine.body(robot) for robot in imus]

@@ -22,7 +22,8 @@ from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, Observations
+from aro_robocop_goto_as.simulation.observations import Observations
+from aro_robocop_goto_as.simulation.rates import JOINTS, ODOM, SCAN
 
 from .. import record as rec
 from ..handout import ACTION

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.raycast.free_places import free_place
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import SCAN
+from aro_robocop_goto_as.simulation.rates import SCAN
 from aro_robocop_goto_as.world.edit import requested_model, with_model, without_model
 from aro_robocop_goto_as.world.ground import is_in_ground, top
 from aro_robocop_goto_as.world.load import load_world

@@ -14,7 +14,7 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import SCAN
+from aro_robocop_goto_as.simulation.rates import SCAN
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 

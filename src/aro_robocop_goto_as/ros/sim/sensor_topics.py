@@ -11,7 +11,7 @@ from std_msgs.msg import Bool
 
 from ...geometry import Pose2D
 from ...robot.model import CAMERA_FRAME
-from ...simulation.observations import BATTERY, BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
+from ...simulation.rates import BATTERY, BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance

@@ -13,10 +13,12 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
-from ...simulation.observations import (
+from ...simulation.observations import Due, Observations, Subscriptions
+from ...simulation.rates import (
     BATTERY,
     BUMPER,
     CAMERA,
+    CLOCK,
     GROUND_TRUTH,
     IMU,
     JOINTS,
@@ -24,11 +26,7 @@ from ...simulation.observations import (
     ODOM,
     SCAN,
     TF,
-    Due,
-    Observations,
-    Subscriptions,
 )
-from ...simulation.schedule import CLOCK
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..batch import Batch, Posted

@@ -8,7 +8,8 @@ import pytest
 
 from aro_robocop_goto_as.ros.sim import step_topics
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
-from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, Due
+from aro_robocop_goto_as.simulation.observations import Due
+from aro_robocop_goto_as.simulation.rates import JOINTS, ODOM, SCAN
 
 ALWAYS = frozenset({ODOM, SCAN})  # due on each control tick
 Calls = List[Tuple[Any, ...]]
