@@ -10,7 +10,7 @@ import rospy
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
 from ... import goto
-from ...geometry import FARTHEST, STANDSTILL
+from ...geometry import FARTHEST, STANDSTILL, Pose2D
 from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate, Turning
 from ...goto_params import GotoParams
 from ...simulation.schedule import NANOSECONDS
@@ -49,6 +49,7 @@ class GoalExecution:
         self._last: Optional[float] = None  # time of the previous step
         self._stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
         self._progress: Optional[Progress] = None
+        self._pose: Optional[Pose2D] = None  # of the previous step
         self._turning = Turning()
 
     def refusal(self) -> Optional[Ending]:
@@ -81,9 +82,10 @@ class GoalExecution:
         pose, clearance = inputs
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
         turning = self._turning.after(decision)
-        if turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
+        jumped = self._pose is not None and goto.has_jumped(self._pose, pose, gap, p)
+        if jumped or turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
             self._progress = None
-        self._turning = turning
+        self._turning, self._pose = turning, pose
         errors, driven = decision.errors, now - self._stalled
         self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)

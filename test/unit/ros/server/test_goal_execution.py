@@ -38,9 +38,20 @@ class TurningRobot(BlockedRobot):
         self._reads = 0
 
     def read(self) -> Tuple[Pose2D, float]:
-        """Heading 0.5 rad beside the goal."""
+        """Heading 0.14 rad beside the goal."""
         self._reads += 1
-        return Pose2D(yaw=0.5 if self._reads // (4_000 // PERIOD) % 2 else -0.5), math.inf
+        return Pose2D(yaw=0.14 if self._reads // (4_000 // PERIOD) % 2 else -0.14), math.inf
+
+
+class CarriedRobot(BlockedRobot):
+    """One that drives straight to the goal, and is carried away just before it arrives, to drive there once more."""
+
+    def __init__(self) -> None:
+        self._xs = iter([*(0.02 * tick for tick in range(44)), *(-3.0 + 0.02 * tick for tick in range(200))])
+
+    def read(self) -> Tuple[Pose2D, float]:
+        """0.02 m nearer each time."""
+        return Pose2D(next(self._xs)), math.inf
 
 
 def end_of_goal(ticks: Iterable[int], inputs: Optional[BlockedRobot] = None) -> Tuple[int, Outcome]:
@@ -75,6 +86,10 @@ def test_a_turn_at_a_lower_speed_gets_its_own_time_and_there_are_two_of_them() -
     ended, outcome = end_of_goal(range(0, 60_000, PERIOD), TurningRobot())
     assert outcome is Outcome.STUCK
     assert ended == pytest.approx(8_000 + 5_000, abs=3 * PERIOD)
+
+
+def test_robot_that_is_carried_away_gets_its_time_anew() -> None:
+    assert end_of_goal(range(0, 60_000, PERIOD), CarriedRobot())[1] is Outcome.REACHED
 
 
 def test_goal_begins_anew_at_rest_each_time_that_the_clock_is_set_back() -> None:
