@@ -57,13 +57,15 @@ class Batch:
     subscribers; at most one of them is latched.
     """
 
-    def __init__(self, messages: Sequence[Posted], last: Sequence[Posted] = ()) -> None:
-        """`last`: messages that are not sent before all others are, such as the clock."""
+    def __init__(
+        self, messages: Sequence[Posted], last: Sequence[Posted] = (), filled: Sequence[PackedMessage] = ()
+    ) -> None:
+        """`last`: messages that are not sent before all others are, such as the clock; `filled`: sent to nobody."""
         self._messages = [*messages, *last]
         self._parcels = [(*posted, link) for posted in self._messages for link in posted[0].links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
-            for _, message in self._messages
+            for message in (*(message for _, message in self._messages), *filled)
             for field in message.fields
         ]
         parcels = [

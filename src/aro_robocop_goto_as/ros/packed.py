@@ -73,9 +73,13 @@ class PackedMessage:
         self.fields = tuple(fields)
         self.address = address("data", self.data, (None,), np.uint8)
 
+    def body(self) -> bytes:
+        """The serialized message, without its length."""
+        return self.data[_LENGTH.size :].tobytes()
+
     def serialize(self, buff: Any) -> None:
         """As genpy's messages do it."""
-        buff.write(self.data[_LENGTH.size :].tobytes())
+        buff.write(self.body())
 
 
 def packed_clock() -> PackedMessage:

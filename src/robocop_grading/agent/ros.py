@@ -2,6 +2,8 @@
 
 import contextlib
 import functools
+import heapq
+import itertools
 import math
 import queue
 import sys
@@ -17,6 +19,8 @@ SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to 
 MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how long more take [s]: 1 ms each
 _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
 clock_ns = 0  # [ns] as on /clock
+_sleepers: List[Tuple[int, int, scheduler.Waiter]] = []  # by the time on /clock [ns] at which they wake up
+_numbers = itertools.count()
 
 
 def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
@@ -58,6 +62,8 @@ def install(now_ns: int, ports: Set[int]) -> None:
     rospy.Subscriber.__init__ = _clock_first(rospy.Subscriber.__init__)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
+    for module in (rospy, rospy.timer):
+        module.sleep = _sleeping(rospy.timer.sleep)
     for module in (rospy, rospy.rostime):
         module.get_rostime = _then(rospy.rostime.get_rostime, clock.looked)
     rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
@@ -99,14 +105,48 @@ def _clock_first(subscribe: Any) -> Any:
     return call
 
 
-def set_clock(now_ns: int) -> None:
-    """Let rospy's time go on to `now_ns`, if it is simulated time, and wake what waits for that."""
+def _sleeping(sleep: Any) -> Any:
+    """rospy's function, but each thread wakes up at the end of its own sleep only, not at each tick of /clock."""
+
+    @functools.wraps(sleep)
+    def call(duration: Any) -> None:
+        import genpy
+        import rospy
+
+        started_ns = clock_ns
+        if not scheduler.active or rospy.rostime.is_wallclock() or not started_ns:
+            sleep(duration)
+            return
+        if not isinstance(duration, genpy.Duration):
+            duration = genpy.Duration.from_sec(duration)
+        waiter = scheduler.Waiter()
+        with scheduler.guard:
+            end_ns = started_ns + duration.to_nsec()
+            is_over = end_ns <= clock_ns or rospy.is_shutdown()
+            if not is_over:
+                heapq.heappush(_sleepers, (end_ns, next(_numbers), waiter))
+                scheduler.leave()
+        if not is_over:
+            waiter.gate.acquire()
+        sleep(genpy.Duration())  # raises what it has to
+
+    return call
+
+
+def set_clock(now_ns: int) -> bool:
+    """Set rospy's time to `now_ns`, if it is simulated time, and wake who waits for that; whether anybody did."""
     global clock_ns
     clock_ns = now_ns
-    rostime = sys.modules["rospy.rostime"]
-    if not rostime.is_wallclock():
-        with scheduler.work():
-            _show_clock()
+    rospy = sys.modules["rospy"]
+    if rospy.rostime.is_wallclock():
+        return False
+    woken = scheduler.woken
+    with scheduler.work():
+        _show_clock()
+        with scheduler.guard:
+            while _sleepers and (_sleepers[0][0] <= now_ns or rospy.is_shutdown()):
+                scheduler.wake(heapq.heappop(_sleepers)[2])
+    return scheduler.woken != woken
 
 
 def _show_clock() -> None:

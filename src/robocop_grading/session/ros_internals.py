@@ -1,4 +1,4 @@
-"""What the grader's process uses of private parts of rospy and actionlib, each with the reason."""
+"""What the grader's process uses of private parts of rospy, rosbag and actionlib, each with the reason."""
 
 import contextlib
 import functools
@@ -44,6 +44,11 @@ def install() -> None:
     setattr(socket, "setdefaulttimeout", lambda _: None)  # noqa: B010  rospy would give the master and nodes 60 s
     setattr(socket.socket, "recv", recv)  # noqa: B010  mypy refuses to assign to a method
     rospy.topics.QueuedConnection = lambda connection, _size: connection
+
+
+def raw(kind: Any, body: bytes) -> Tuple[str, bytes, str, Any]:
+    """A serialized message as rosbag.Bag.write() takes it."""
+    return kind._type, body, kind._md5sum, kind
 
 
 def handled(link: Link) -> int:

@@ -6,18 +6,25 @@ from typing import Any, Dict, Optional
 
 import rosbag
 import rospy
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
+from aro_robocop_goto_as.ros.batch import Batch
+from aro_robocop_goto_as.ros.packed import counter, packed_clock, packed_odometry, packed_scan, packed_transforms
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
-from aro_robocop_goto_as.simulation.observations import ODOM, SCAN, TF, Observations
+from aro_robocop_goto_as.simulation.observations import Observations
+from aro_robocop_goto_as.simulation.rates import CLOCK, ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 from ..plan import FARTHEST
+from . import ros_internals
 
 MOST_BAG = 32 * 1024**2  # bytes
 NO_COVARIANCE = [0.0] * 36
@@ -53,6 +60,19 @@ class ScenarioBag:
         self._robot = robot
         self._frames = frames
         self._bag: Optional[rosbag.Bag] = None
+        seen, footprint = sim.observed, robot.footprint_frame
+        odometry, truth = (seen.odometry.poses[0], seen.odometry.twists[0]), (seen.fleet.poses[0], seen.fleet.twists[0])
+        scan = packed_scan(sim.lidar.spec, frames.scan_frame, seen.scans[0], counter())
+        odom = packed_odometry(robot.odom_frame, footprint, NO_COVARIANCE, *odometry)
+        ground_truth_odom = packed_odometry(frames.world_frame, footprint, NO_COVARIANCE, *truth)
+        self._of_steps = [  # what is written of a step on which one of these is due
+            (SCAN, "/scan", LaserScan, scan),
+            (TF, "/tf", TFMessage, packed_transforms(robot.transforms())),
+            (ODOM, "/odom", Odometry, odom),
+            (ODOM, "/ground_truth_odom", Odometry, ground_truth_odom),
+            (CLOCK, "/clock", Clock, packed_clock()),
+        ]
+        self._batch = Batch([], filled=[message for *_, message in self._of_steps])
 
     def open(self, path: Path) -> None:
         """Begin a bag."""
@@ -67,10 +87,13 @@ class ScenarioBag:
             self._bag.close()
             self._bag = None
 
-    def write(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
+    def write(self, topic: str, message: Any) -> None:
         """Write a message, unless the bag has become too large."""
+        self._write(topic, message, max(convert.to_time(self._sim.stamp_ns), rospy.Time(0, 1)))
+
+    def _write(self, topic: str, message: Any, stamp: rospy.Time, raw: bool = False) -> None:
         if self._bag is not None and self._file.tell() < MOST_BAG:
-            self._bag.write(topic, message, stamp or max(convert.to_time(self._sim.stamp_ns), rospy.Time(0, 1)))
+            self._bag.write(topic, message, stamp, raw)
 
     def write_static_frames(self, site: Pose2D) -> None:
         """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
@@ -92,20 +115,12 @@ class ScenarioBag:
         self.write("/robocop_sim/world", MarkerArray(near))
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))
 
-    def write_step(self, seen: Observations, stamp: rospy.Time) -> None:
+    def write_step(self, seen: Observations) -> None:
         """Measurements as the submission gets them, and the truth."""
         if self._bag is None:
             return
-        odom, footprint = self._robot.odom_frame, self._robot.footprint_frame
-        if seen.of(SCAN):
-            self.write(
-                "/scan", convert.to_scan(seen.scans[0], self._sim.lidar.spec, stamp, self._frames.scan_frame), stamp
-            )
-        if seen.of(TF):
-            self.write("/tf", TFMessage(self._robot.transform_messages(stamp)), stamp)
-        if seen.of(ODOM):
-            pose, twist = Pose2D(*seen.odometry.poses[0].tolist()), Twist2D(*seen.odometry.twists[0].tolist())
-            self.write("/odom", convert.to_odometry(pose, twist, stamp, odom, footprint, NO_COVARIANCE), stamp)
-            pose, twist = self._sim.world_from_footprint(), self._sim.velocity()
-            truth = convert.to_odometry(pose, twist, stamp, self._frames.world_frame, footprint, NO_COVARIANCE)
-            self.write("/ground_truth_odom", truth, stamp)
+        due = {*seen.due.sensors, *([CLOCK] if seen.due.clock else [])}
+        self._batch.send(seen.stamp_ns)
+        for sensor, topic, kind, message in self._of_steps:
+            if sensor in due:
+                self._write(topic, ros_internals.raw(kind, message.body()), convert.to_time(seen.stamp_ns), raw=True)

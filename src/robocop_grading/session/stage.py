@@ -8,7 +8,6 @@ from typing import Any, Callable, Deque, Optional
 import genpy
 import numpy as np
 import rospy
-from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.obstacle_ahead import clearance_ahead
@@ -19,8 +18,9 @@ from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import JOINTS, ODOM, SCAN, TF, Observations, Subscriptions
-from aro_robocop_goto_as.simulation.schedule import CLOCK
+from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
+from aro_robocop_goto_as.simulation.rates import CLOCK, JOINTS, ODOM, SCAN, TF
+from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
 from aro_robocop_goto_as.simulation.simulation import Simulation
 
 from .. import record as rec
@@ -140,8 +140,10 @@ class Stage:
         A watched run is shown at real time, unless `real_time` is False.
         """
         self._real_time = real_time
-        for _ in range(STEPS_PER_TICK):
-            observed = self.sim.step(self.subscriptions())
+        end = self.sim.steps + STEPS_PER_TICK
+        while self.sim.steps < end:
+            until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
+            observed = self.sim.advance(self.subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
                 self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
@@ -149,6 +151,10 @@ class Stage:
         if self.node is None:
             self.run_jobs()
         return self.sample()
+
+    def _step_at(self, stamp_ns: int) -> int:
+        """The first step that is not before a simulated time [ns]."""
+        return -(-stamp_ns * self.sim.rate // NANOSECONDS)
 
     def digest(self) -> None:
         """Let the node do what it does at once, in no simulated time."""
@@ -189,16 +195,11 @@ class Stage:
             if node is not None and not node.is_busy and self._topics.clock.get_num_connections():
                 node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who subscribes to it has the newest data before
             self.publish_clock()
-        keep = partial(self._keep_step, observed, stamp)
+        keep = partial(self.bag.write_step, observed)
         if node is None:
             keep()
         else:
             node.go_on(observed.stamp_ns, self.clock_ns, meanwhile=keep)
-
-    def _keep_step(self, observed: Observations, stamp: rospy.Time) -> None:
-        self.bag.write_step(observed, stamp)
-        if observed.due.clock:
-            self.bag.write("/clock", Clock(stamp), stamp)
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
@@ -207,11 +208,11 @@ class Stage:
             self.watch.tf_static.publish(transforms)
         self.bag.write_static_frames(self._site)
 
-    def keep(self, topic: str, message: Any, stamp: Optional[rospy.Time] = None) -> None:
+    def keep(self, topic: str, message: Any) -> None:
         """Into the scenario's bag, and to the page where the run is shown."""
         if self.watch is not None:
             self.watch.forward(topic, message)
-        self.bag.write(topic, message, stamp)
+        self.bag.write(topic, message)
 
     def odom_from_footprint(self) -> Pose2D:
         """Where the robot truly is in its odom frame."""

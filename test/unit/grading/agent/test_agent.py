@@ -250,6 +250,38 @@ def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
             assert program.process.stdout.readline() == "b'hello' 0.6\n"
 
 
+SLEEPERS = """
+import rospy, threading
+rospy.rostime._set_rostime(rospy.Time(0, 1))
+rospy.rostime.set_rostime_initialized(True)
+def sleep(seconds):
+    try:
+        for _ in range(2):
+            rospy.sleep(seconds)
+            print(rospy.get_time(), seconds, flush=True)
+    except rospy.ROSInterruptException as error:
+        print(rospy.get_time(), error, flush=True)
+time.sleep(0.11)
+threads = [threading.Thread(target=sleep, args=[seconds]) for seconds in (0.1, 0.25, rospy.Duration(0.7))]
+for thread in threads:
+    thread.start()
+time.sleep(0.9)
+rospy.core._shutdown_flag = True
+for thread in threads:
+    thread.join()
+"""
+WOKEN = ["0.2 0.1", "0.3 0.1", "0.4 0.25", "0.7 0.25", "0.8 700000000", "1.1 ROS shutdown request"]
+
+
+def test_sleep_by_the_clock_ends_at_the_first_tick_after_it_or_after_a_shutdown(tmp_path):
+    with Program(tmp_path, SLEEPERS) as program:
+        program.go_on(STEP)
+        for tick in range(1, 13):
+            program.go_on(tick * 10**8 + STEP, clock=tick * 10**8)
+        program.process.kill()
+        assert program.process.stdout.read().splitlines() == WOKEN
+
+
 def test_grader_learns_of_new_topics_before_the_clock_goes_on(tmp_path):
     with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("sys.modules['robocop_agent.scheduler'].calls += 1")) as program:
         program.go_on(STEP)
