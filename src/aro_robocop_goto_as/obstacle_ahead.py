@@ -6,6 +6,13 @@ from typing import Optional, Sequence
 import numpy as np
 
 
+def beams_ahead(n_beams: int, angle_min: float, increment: float, half_angle: float) -> np.ndarray:
+    """Which beams (n_beams,) are within half_angle [rad] of straight ahead."""
+    with np.errstate(invalid="ignore", over="ignore"):  # angles that are not numbers do not point ahead
+        angles = angle_min + increment * np.arange(n_beams)
+        return np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) <= half_angle + 1e-9
+
+
 def clearance_ahead(
     ranges: Sequence[float], angle_min: float, increment: float, range_min: float, range_max: float, half_angle: float
 ) -> Optional[float]:
@@ -23,9 +30,7 @@ def clearance_ahead(
     distances = np.asarray(ranges, dtype=float)
     if len(distances) > 1 and not 0.0 < abs(increment) * (len(distances) - 1) <= 3.0 * math.pi:  # true for NaN
         return None
-    with np.errstate(invalid="ignore", over="ignore"):  # angles that are not numbers do not point ahead
-        angles = angle_min + increment * np.arange(len(distances))
-        ahead = np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) <= half_angle + 1e-9
+    ahead = beams_ahead(len(distances), angle_min, increment, half_angle)
     if not ahead.any():
         return None
     distances = distances[ahead]

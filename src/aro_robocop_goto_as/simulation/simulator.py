@@ -180,8 +180,10 @@ class Simulator:
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
         self.world = world.with_motion(self.p.world.moving)
-        self.moving, self._dues = bool(self.world.moving()), {}
+        self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
+        for names, due in self._dues.items():
+            due.measures = self.observed.measures_of(names, due.sensors)
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
 

@@ -10,7 +10,7 @@ import numpy as np
 import rospy
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.obstacle_ahead import clearance_ahead
+from aro_robocop_goto_as.obstacle_ahead import beams_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
@@ -64,6 +64,8 @@ class Stage:
         self._topics = StepTopics(self.sim, hidden={JOINTS, CLOCK})
         self.robot = self._topics.robots[0]
         self.odd_scan = False
+        spec = self.sim.lidar.spec
+        self._ahead = beams_ahead(spec.samples, spec.angle_min, spec.increment, AHEAD)
         self.bag = ScenarioBag(self.sim, self.robot, PARAMS.frames)
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
@@ -221,11 +223,7 @@ class Stage:
     def sample(self) -> Sample:
         """The truth now."""
         here, world, velocity = self.odom_from_footprint(), self.sim.world_from_footprint(), self.sim.velocity()
-        spec = self.sim.lidar.spec
-        ahead = clearance_ahead(
-            list(map(float, self.sim.exact_distances())), spec.angle_min, spec.increment, 0.0, float("inf"), AHEAD
-        )
-        nearest = float("inf") if ahead is None else ahead
+        nearest = float(self.sim.exact_distances()[self._ahead].min())
         return Sample(self.now, *here, *world, *velocity, nearest, bool(self.sim.touching()))
 
 

@@ -9,6 +9,7 @@ from support import ORIGIN, analytic_distances, drive, everything, lean, world_n
 
 from aro_robocop_goto_as.errors import CommandError, PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, wrap_angle
+from aro_robocop_goto_as.simulation.observations import Due
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
@@ -34,6 +35,24 @@ def test_only_rates_that_are_multiples_of_the_control_rate_are_due_on_each_contr
     sim = simulator("empty", **KINEMATIC, control_rate=10, odom_rate=30, scan_rate=5, joint_state_rate=15)
     at_ticks = sim.sensors_at_control_ticks()
     assert {"odom", "tf", "imu"} <= at_ticks and not {"scan", "joints"} & at_ticks
+
+
+def test_scans_see_a_changed_world_though_what_is_due_stays_the_same_object(simulator: Make) -> None:
+    sim, scan = simulator("empty", **KINEMATIC), {"scan": [0]}
+
+    def next_scan() -> Tuple[Due, np.ndarray]:
+        seen = None
+        while seen is None or not seen.of("scan"):
+            seen = sim.step(scan)
+        return seen.due, seen.scans[0].copy()
+
+    due, empty = next_scan()
+    sim.change_world(world_named("world"))
+    due_then, ranges = next_scan()
+    assert due_then is due, "messages are prepared once for each"
+    assert np.isinf(empty).all() and np.isfinite(ranges).any()
+    seen = np.isfinite(ranges)
+    assert np.abs(ranges[seen] - sim.exact_distances()[seen]).max() < 0.1
 
 
 @pytest.mark.parametrize("v", [0.2, -0.2])

@@ -86,7 +86,7 @@ class AnsweringNodes:
 class CommandTopics:
     """Subscribers in the robots' namespaces, and what is known of the nodes that publish to them.
 
-    rospy's threads post what arrives to the simulation's owner, who calls the methods; the last three in lockstep only.
+    rospy's threads post what arrives to the simulation's owner, who calls the methods.
     """
 
     def __init__(self, simulation: Simulation) -> None:

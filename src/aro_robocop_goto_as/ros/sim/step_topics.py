@@ -102,7 +102,8 @@ class StepTopics:
 
         It may if the same topics have some then, for no longer than KEPT and not beyond push().
         """
-        if due.control or not self._sensors_at_ticks.issuperset(due.sensors):
+        names = {*due.sensors, *([CLOCK] if due.clock else [])}
+        if due.control or not self._sensors_at_ticks.issuperset(names):
             return False
         now = time.monotonic()
         self._kept_since = self._kept_since or now

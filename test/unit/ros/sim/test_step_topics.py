@@ -9,9 +9,9 @@ import pytest
 from aro_robocop_goto_as.ros.sim import step_topics
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.simulation.observations import Due
-from aro_robocop_goto_as.simulation.rates import JOINTS, ODOM, SCAN
+from aro_robocop_goto_as.simulation.rates import CLOCK, JOINTS, ODOM, SCAN
 
-ALWAYS = frozenset({ODOM, SCAN})  # due on each control tick
+ALWAYS = frozenset({CLOCK, ODOM, SCAN})  # due on each control tick
 Calls = List[Tuple[Any, ...]]
 
 
@@ -58,6 +58,13 @@ def test_what_is_kept_is_sent_before_a_step_with_a_sensor_that_is_not_due_on_eac
     publish(topics, calls, ODOM)
     publish(topics, calls, JOINTS)
     assert calls == [(ODOM, True), ("push",), (JOINTS, False)]
+
+
+def test_a_clock_that_is_not_due_on_each_tick_is_not_kept(calls: Calls) -> None:
+    topics = topics_of_no_robots()
+    topics._sensors_at_ticks = ALWAYS - {CLOCK}
+    publish(topics, calls, ODOM)
+    assert calls == [(ODOM, False)]
 
 
 def test_what_is_kept_is_pushed_once(calls: Calls) -> None:
