@@ -121,7 +121,11 @@ class Campaign:
         (fault,) = (fault for fault in FAULTS if fault.name == "valid_goals")
         begun, number, noted = time.monotonic(), 0, []
         while len(noted) <= SOAK_ROWS and not self.violations:
-            self.run_episode(number, fault)
+            try:
+                self.run_episode(number, fault)
+            except KeyboardInterrupt:
+                self.violations.append("interrupted; the table holds what was noted until then")
+                break
             number += 1
             elapsed = time.monotonic() - begun
             if number >= WARM_UP and elapsed >= len(noted) * seconds / SOAK_ROWS:
