@@ -138,12 +138,10 @@ def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params:
     return Twist2D(approach(previous.v, decision.twist.v, params.linear_acceleration * dt), 0.0)
 
 
-def has_jumped(before: Pose2D, pose: Pose2D, dt: float, params: GotoParams) -> bool:
-    """Whether the pose has changed within `dt` [s] as no driving explains: the simulation was reset, for example."""
-    turned = abs(wrap_angle(pose.yaw - before.yaw))
-    driven = math.hypot(pose.x - before.x, pose.y - before.y)
-    farthest = 2.0 * params.max_linear_velocity * dt + params.position_tolerance
-    return driven > farthest or turned > 2.0 * params.max_angular_velocity * dt + params.angle_tolerance
+def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
+    """Whether the goal has got farther as no driving explains, with odometry late by up to data_timeout: by a reset."""
+    farthest = params.position_tolerance + params.max_linear_velocity * params.data_timeout
+    return errors.position > before.position + farthest
 
 
 @dataclass(frozen=True)

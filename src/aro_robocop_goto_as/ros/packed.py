@@ -87,8 +87,8 @@ def packed_clock() -> PackedMessage:
     return PackedMessage(Clock(), [Field(STAMP, _LENGTH.size, None)])
 
 
-def packed_scan(spec: LidarSpec, frame: str, ranges: Row, number: np.ndarray) -> PackedMessage:
-    """The ranges (n_beams,) [m] of one scanner; `number`: a counter."""
+def packed_scan(spec: LidarSpec, frame: str, ranges: Row, number: Optional[np.ndarray]) -> PackedMessage:
+    """The ranges (n_beams,) [m] of one scanner; `number`: a counter, None: all have number 0."""
     template = convert.to_scan(np.zeros(len(ranges)), spec, genpy.Time(), frame)
     start = _LENGTH.size + _HEADER + _string(frame) + _SCAN_FIGURES + _LENGTH.size
     return PackedMessage(template, [Field(HEADER, _LENGTH.size, number), Field(FLOATS, start, ranges)])

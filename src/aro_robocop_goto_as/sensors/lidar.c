@@ -67,8 +67,8 @@ static double error_at(const struct lidar *lidar, double distance, double normal
     return (entry[1] + entry[2] * fmin(distance, lidar->range_max)) * fmax(-1.0, fmin(1.0, normal / 2.0));
 }
 
-/* Make ranges of the exact distances [m; +inf: no return] in these robots' rows of `ranges` (n, samples) [m]. The noise of
- * a robot on a step does not depend on the other robots. */
+/* Make ranges of the exact distances [m; +inf: no return] in these robots' rows of `ranges` (n, samples) [m]. The noise
+ * of a robot on a step does not depend on the other robots. */
 void aro_measure(const struct lidar *lidar, int64_t n_scans, const int64_t *robots, const struct episode *at,
                  double *ranges)
 {

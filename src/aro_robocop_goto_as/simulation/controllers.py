@@ -19,7 +19,7 @@ class Controllers:
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
         self.answers = AwaitedAnswers()
-        self.lockstep = Lockstep(self.answers, params.lockstep_timeout, clock)
+        self.lockstep = Lockstep(self.answers, params.lockstep_timeout, clock, self._stop_robot_of)
         self._rate = simulator.p.rates.control_rate
         self._simulator = simulator
         # In lockstep the newest command of each robot, which is applied at the tick's end:
@@ -66,13 +66,15 @@ class Controllers:
         self.answers.tick = self.tick
         self.lockstep.begin_tick()
 
+    def _stop_robot_of(self, gone: ControllerId) -> None:
+        pending = self._pending.get(gone.robot)
+        if pending is None or pending[0] == gone:
+            self._pending[gone.robot] = gone, STANDSTILL
+
     def end_tick(self, answering: NodesOf) -> TickReport:
-        """Apply the commands of the tick, stop the robots of who has gone, and enroll who has connected meanwhile."""
+        """Apply the commands of the tick, and enroll who has connected meanwhile."""
         self.enroll(answering)
         report, pending, self._pending = self.lockstep.report, self._pending, {}
-        for controller in report.gone:
-            if pending.get(controller.robot, (controller,))[0] == controller:
-                pending[controller.robot] = controller, STANDSTILL
         for robot, (_, twist) in pending.items():
             self._simulator.command(twist, robot)
         report.slower = [(name, self._rate / period) for name, period in self.answers.take_slower()]

@@ -30,11 +30,13 @@ class TickReport:
 class Lockstep:
     """How long to wait for answers; between begin_tick() and the next one, `report` is that of this tick."""
 
-    def __init__(self, answers: AwaitedAnswers, timeout: float, clock: Clock) -> None:
-        """`timeout` [s, wall] for the answer of a controller whose turn it is."""
+    def __init__(
+        self, answers: AwaitedAnswers, timeout: float, clock: Clock, on_gone: Callable[[ControllerId], None]
+    ) -> None:
+        """`timeout` [s, wall] for the answer of a controller whose turn it is; `on_gone`: one has disconnected."""
         self.timeout = timeout
         self.report = TickReport()
-        self._answers, self._clock = answers, clock
+        self._answers, self._clock, self._on_gone = answers, clock, on_gone
         self._held_since = self._next_look = 0.0  # [s, wall]
         self._is_released = False
         self._silent_since = math.inf  # [s, wall] at all looks since then, nobody was kept from answering
@@ -80,3 +82,4 @@ class Lockstep:
             if controller.node not in connected(controller.robot):
                 self.report.gone.append(controller)
                 self._answers.gone(controller)
+                self._on_gone(controller)

@@ -7,6 +7,7 @@ import itertools
 import math
 import queue
 import sys
+import threading
 import time
 import xmlrpc.client
 from typing import Any, Callable, Dict, List, Set, Tuple
@@ -113,46 +114,66 @@ def _sleeping(sleep: Any) -> Any:
         import genpy
         import rospy
 
-        started_ns = clock_ns
-        if not scheduler.active or rospy.rostime.is_wallclock() or not started_ns:
-            sleep(duration)
-            return
+        started_ns, seconds = clock_ns, duration
         if not isinstance(duration, genpy.Duration):
             duration = genpy.Duration.from_sec(duration)
+        length_ns = duration.to_nsec()
+        if not scheduler.active or rospy.rostime.is_wallclock() or not started_ns or length_ns <= 0:
+            sleep(seconds)
+            return
         waiter = scheduler.Waiter()
         with scheduler.guard:
-            end_ns = started_ns + duration.to_nsec()
-            is_over = end_ns <= clock_ns or rospy.is_shutdown()
-            if not is_over:
-                heapq.heappush(_sleepers, (end_ns, next(_numbers), waiter))
+            sleeps = started_ns + length_ns > clock_ns and not rospy.is_shutdown()
+            if sleeps:
+                heapq.heappush(_sleepers, (started_ns + length_ns, next(_numbers), waiter))
                 scheduler.leave()
-        if not is_over:
+        if sleeps:
             waiter.gate.acquire()
         sleep(genpy.Duration())  # raises what it has to
 
     return call
 
 
-def set_clock(now_ns: int) -> bool:
-    """Set rospy's time to `now_ns`, if it is simulated time, and wake who waits for that; whether anybody did."""
-    global clock_ns
-    clock_ns = now_ns
-    rospy = sys.modules["rospy"]
-    if rospy.rostime.is_wallclock():
+def sleeper_is_due() -> bool:
+    """Whether a thread's sleep by /clock is over."""
+    rospy = sys.modules.get("rospy")
+    if not _sleepers or rospy is None:
         return False
+    return bool(_sleepers[0][0] <= clock_ns or rospy.is_shutdown() or rospy.rostime.is_wallclock())
+
+
+def wake_sleeper() -> None:
+    """Wake the thread whose sleep is over first."""
+    with scheduler.guard:
+        scheduler.wake(heapq.heappop(_sleepers)[2])
+
+
+def set_clock(now_ns: int) -> bool:
+    """Let rospy's time go on to `now_ns`, if it is simulated time; whether that has woken a thread."""
+    global clock_ns
+    clock_ns = max(clock_ns, now_ns)  # a message to a busy node may be late
     woken = scheduler.woken
-    with scheduler.work():
-        _show_clock()
-        with scheduler.guard:
-            while _sleepers and (_sleepers[0][0] <= now_ns or rospy.is_shutdown()):
-                scheduler.wake(heapq.heappop(_sleepers)[2])
+    if not sys.modules["rospy.rostime"].is_wallclock():
+        with scheduler.work():
+            _show_clock()
     return scheduler.woken != woken
 
 
 def _show_clock() -> None:
     import rospy
 
-    rospy.rostime._set_rostime(rospy.Time(0, clock_ns))
+    rospy.rostime._rostime_current = rospy.Time(0, clock_ns)
+    condition = rospy.rostime.get_rostime_cond()
+    if condition.acquire(False):
+        condition.notify_all()
+        condition.release()
+    else:  # a thread holds it, perhaps while it waits for a time, which must go on
+        threading.Thread(target=_notify, args=[condition], daemon=True).start()
+
+
+def _notify(condition: threading.Condition) -> None:
+    with condition:
+        condition.notify_all()
 
 
 def _then(function: Any, afterwards: Callable[[], None]) -> Any:

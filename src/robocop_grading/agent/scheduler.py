@@ -119,7 +119,8 @@ def wake(waiter: Waiter) -> None:
 def _ready(files: Files) -> List[int]:
     """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
     entries = (_PollEntry * len(files))(*(_PollEntry(*wanted) for wanted in files))
-    _poll_with_gil(entries, len(files), 0)
+    if _poll_with_gil(entries, len(files), 0) < 0:
+        raise OSError("poll() of the descriptors that threads wait for")
     return [entry.revents for entry in entries]
 
 
@@ -244,14 +245,17 @@ def wake_next() -> None:
 
 @contextmanager
 def work() -> Iterator[None]:
-    """While this lasts the calling thread, which nothing else knows of, is one of those that run."""
+    """While this lasts the calling thread is one of those that run, also the grader's, of which nothing else knows."""
+    me = _thread.get_ident()
     with guard:
-        running.add(_thread.get_ident())
+        runs = me in running
+        running.add(me)
     try:
         yield
     finally:
-        with guard:
-            leave()
+        if not runs:
+            with guard:
+                leave()
 
 
 def advance(until_ns: int) -> None:

@@ -15,7 +15,7 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.packed import counter, packed_clock, packed_odometry, packed_scan, packed_transforms
+from aro_robocop_goto_as.ros.packed import packed_clock, packed_odometry, packed_scan, packed_transforms
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
@@ -62,7 +62,7 @@ class ScenarioBag:
         self._bag: Optional[rosbag.Bag] = None
         seen, footprint = sim.observed, robot.footprint_frame
         odometry, truth = (seen.odometry.poses[0], seen.odometry.twists[0]), (seen.fleet.poses[0], seen.fleet.twists[0])
-        scan = packed_scan(sim.lidar.spec, frames.scan_frame, seen.scans[0], counter())
+        scan = packed_scan(sim.lidar.spec, frames.scan_frame, seen.scans[0], None)
         odom = packed_odometry(robot.odom_frame, footprint, NO_COVARIANCE, *odometry)
         ground_truth_odom = packed_odometry(frames.world_frame, footprint, NO_COVARIANCE, *truth)
         self._of_steps = [  # what is written of a step on which one of these is due

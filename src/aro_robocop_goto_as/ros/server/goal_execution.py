@@ -10,14 +10,15 @@ import rospy
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
 from ... import goto
-from ...geometry import FARTHEST, STANDSTILL, Pose2D
-from ...goto import Decision, End, Goal, MoveForward, Outcome, Progress, Rotate, Turning
+from ...geometry import FARTHEST, STANDSTILL
+from ...goto import Decision, End, Errors, Goal, MoveForward, Outcome, Progress, Rotate, Turning
 from ...goto_params import GotoParams
 from ...simulation.schedule import NANOSECONDS
 from ..names import place
 from .inputs import Inputs
 from .tuning import Tuning
 
+MOST_JUMPS = 10  # of odometry after which a goal begins anew, as after a reset; of one that jumps for ever, no more
 LONGEST_GAP = 2.0  # control periods between two steps; what is longer is time in which the server could not drive
 
 
@@ -49,7 +50,8 @@ class GoalExecution:
         self._last: Optional[float] = None  # time of the previous step
         self._stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
         self._progress: Optional[Progress] = None
-        self._pose: Optional[Pose2D] = None  # of the previous step
+        self._errors: Optional[Errors] = None  # of the previous step
+        self._jumps = 0
         self._turning = Turning()
 
     def refusal(self) -> Optional[Ending]:
@@ -80,13 +82,15 @@ class GoalExecution:
         if inputs is None:
             return None, None
         pose, clearance = inputs
+        errors = goto.errors_to(self.goal, pose)
+        if self._errors is not None and self._jumps < MOST_JUMPS and goto.has_jumped(self._errors, errors, p):
+            self._jumps, self._progress, self._turning = self._jumps + 1, None, Turning()
+        self._errors = errors
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
         turning = self._turning.after(decision)
-        jumped = self._pose is not None and goto.has_jumped(self._pose, pose, gap, p)
-        if jumped or turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
+        if turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
             self._progress = None
-        self._turning, self._pose = turning, pose
-        errors, driven = decision.errors, now - self._stalled
+        self._turning, driven = turning, now - self._stalled
         self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)
         feedback = GoToPositionFeedback(errors.position, errors.angle, describe(decision))

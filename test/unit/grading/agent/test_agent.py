@@ -282,6 +282,48 @@ def test_sleep_by_the_clock_ends_at_the_first_tick_after_it_or_after_a_shutdown(
         assert program.process.stdout.read().splitlines() == WOKEN
 
 
+TOGETHER = """
+import rospy, threading
+rospy.rostime._set_rostime(rospy.Time(0, 1))
+rospy.rostime.set_rostime_initialized(True)
+def sleep(name):
+    for _ in range(20):
+        rospy.sleep(0.1)
+        print(name, end="", flush=True)
+time.sleep(0.15)
+for name in "ABC":
+    threading.Thread(target=sleep, args=[name]).start()
+    time.sleep(0.001)
+"""
+
+
+def test_threads_whose_sleeps_end_at_the_same_tick_wake_up_one_after_another(tmp_path):
+    with Program(tmp_path, TOGETHER) as program:
+        program.go_on(STEP)
+        for tick in range(1, 24):
+            program.go_on(tick * 10**8 + 2 * STEP, clock=tick * 10**8)
+        program.process.kill()
+        assert program.process.stdout.read() == 20 * "ABC"
+
+
+HOLDS_THE_CONDITION = """
+import rospy
+rospy.rostime._set_rostime(rospy.Time(0, 1))
+rospy.rostime.set_rostime_initialized(True)
+with rospy.rostime.get_rostime_cond():
+    time.sleep(0.3)
+    print(rospy.get_time(), flush=True)
+"""
+
+
+def test_thread_that_waits_while_it_holds_the_clocks_condition_does_not_stop_time(tmp_path):
+    with Program(tmp_path, HOLDS_THE_CONDITION) as program:
+        for tick in range(1, 6):
+            program.go_on(tick * 10**8, clock=tick * 10**8)
+        program.process.kill()
+        assert program.process.stdout.read() == "0.3\n"
+
+
 def test_grader_learns_of_new_topics_before_the_clock_goes_on(tmp_path):
     with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("sys.modules['robocop_agent.scheduler'].calls += 1")) as program:
         program.go_on(STEP)

@@ -38,9 +38,9 @@ class TurningRobot(BlockedRobot):
         self._reads = 0
 
     def read(self) -> Tuple[Pose2D, float]:
-        """Heading 0.14 rad beside the goal."""
+        """Heading 0.5 rad beside the goal."""
         self._reads += 1
-        return Pose2D(yaw=0.14 if self._reads // (4_000 // PERIOD) % 2 else -0.14), math.inf
+        return Pose2D(yaw=0.5 if self._reads // (4_000 // PERIOD) % 2 else -0.5), math.inf
 
 
 class CarriedRobot(BlockedRobot):
@@ -52,6 +52,18 @@ class CarriedRobot(BlockedRobot):
     def read(self) -> Tuple[Pose2D, float]:
         """0.02 m nearer each time."""
         return Pose2D(next(self._xs)), math.inf
+
+
+class FlickeringRobot(BlockedRobot):
+    """One that stands still, and whose localization can't decide between two places."""
+
+    def __init__(self) -> None:
+        self._reads = 0
+
+    def read(self) -> Tuple[Pose2D, float]:
+        """The other place every 4 s."""
+        self._reads += 1
+        return Pose2D(-1.0 if self._reads // (4_000 // PERIOD) % 2 else 0.0), math.inf
 
 
 def end_of_goal(ticks: Iterable[int], inputs: Optional[BlockedRobot] = None) -> Tuple[int, Outcome]:
@@ -90,6 +102,11 @@ def test_a_turn_at_a_lower_speed_gets_its_own_time_and_there_are_two_of_them() -
 
 def test_robot_that_is_carried_away_gets_its_time_anew() -> None:
     assert end_of_goal(range(0, 60_000, PERIOD), CarriedRobot())[1] is Outcome.REACHED
+
+
+def test_odometry_that_jumps_for_ever_does_not_keep_a_goal_alive() -> None:
+    ended, outcome = end_of_goal(range(0, 600_000, PERIOD), FlickeringRobot())
+    assert outcome is Outcome.STUCK and ended < 100_000
 
 
 def test_goal_begins_anew_at_rest_each_time_that_the_clock_is_set_back() -> None:
