@@ -139,9 +139,10 @@ def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params:
 
 
 def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
-    """Whether the goal has got farther as no driving explains, with odometry late by up to data_timeout: by a reset."""
-    farthest = params.position_tolerance + params.max_linear_velocity * params.data_timeout
-    return errors.position > before.position + farthest
+    """Whether the robot got away from the goal as no driving explains, with odometry late by data_timeout: a reset."""
+    driven = params.position_tolerance + params.max_linear_velocity * params.data_timeout
+    turned = params.angle_tolerance + params.max_angular_velocity * params.data_timeout
+    return errors.position > before.position + driven or abs(errors.angle) > abs(before.angle) + turned
 
 
 @dataclass(frozen=True)

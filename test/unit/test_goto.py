@@ -163,5 +163,6 @@ def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
 
 def test_only_what_no_driving_explains_is_a_jump() -> None:
     before = Errors(1.0, 0.0)
-    assert not any(has_jumped(before, Errors(position, 3.1), P) for position in (0.0, 1.0, 1.29))
+    assert not any(has_jumped(before, Errors(position, -1.09), P) for position in (0.0, 1.0, 1.29))
     assert has_jumped(before, Errors(1.31, 0.0), P)
+    assert has_jumped(before, Errors(1.0, -1.11), P)

@@ -22,6 +22,7 @@ _kept: Dict[Tuple[str, Any], "_Subscription"] = {}
 clock_ns = 0  # [ns] as on /clock
 _sleepers: List[Tuple[int, int, scheduler.Waiter]] = []  # by the time on /clock [ns] at which they wake up
 _numbers = itertools.count()
+_notifies = False  # a thread waits to notify the others of the clock
 
 
 def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
@@ -99,7 +100,7 @@ def _clock_first(subscribe: Any) -> Any:
             and clock not in rospy.topics.get_topic_manager().subs
         ):
             subscribe(
-                object.__new__(rospy.Subscriber), clock, Clock, lambda message: set_clock(message.clock.to_nsec())
+                object.__new__(rospy.Subscriber), clock, Clock, lambda message: _hear_clock(message.clock.to_nsec())
             )
         subscribe(self, name, *arguments, **options)
 
@@ -151,28 +152,38 @@ def wake_sleeper() -> None:
 def set_clock(now_ns: int) -> bool:
     """Let rospy's time go on to `now_ns`, if it is simulated time; whether that has woken a thread."""
     global clock_ns
-    clock_ns = max(clock_ns, now_ns)  # a message to a busy node may be late
-    woken = scheduler.woken
+    clock_ns, woken, notifies = now_ns, scheduler.woken, False
     if not sys.modules["rospy.rostime"].is_wallclock():
         with scheduler.work():
-            _show_clock()
-    return scheduler.woken != woken
+            notifies = _show_clock()
+    return notifies or scheduler.woken != woken
 
 
-def _show_clock() -> None:
+def _hear_clock(now_ns: int) -> None:
+    if now_ns > clock_ns:  # to a busy node, a message may be late
+        set_clock(now_ns)
+
+
+def _show_clock() -> bool:
+    """Set rospy's time and wake who waits for that; whether a thread does the latter."""
     import rospy
 
+    global _notifies
     rospy.rostime._rostime_current = rospy.Time(0, clock_ns)
     condition = rospy.rostime.get_rostime_cond()
     if condition.acquire(False):
         condition.notify_all()
         condition.release()
-    else:  # a thread holds it, perhaps while it waits for a time, which must go on
+    elif not _notifies:  # a thread holds it, perhaps while it waits for a time, which must go on
+        _notifies = True
         threading.Thread(target=_notify, args=[condition], daemon=True).start()
+    return _notifies
 
 
 def _notify(condition: threading.Condition) -> None:
+    global _notifies
     with condition:
+        _notifies = False
         condition.notify_all()
 
 

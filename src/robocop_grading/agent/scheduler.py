@@ -6,6 +6,7 @@ as running before it wakes up, so there is no moment at which work is on its way
 
 import _thread
 import ctypes
+import errno
 import heapq
 import itertools
 import os
@@ -72,7 +73,7 @@ class _PollEntry(ctypes.Structure):
     _fields_ = [("fd", ctypes.c_int), ("events", ctypes.c_short), ("revents", ctypes.c_short)]
 
 
-_poll_with_gil = ctypes.PyDLL(None).poll  # PyDLL does not release the interpreter's lock
+_poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not release the interpreter's lock
 
 
 class Traffic:
@@ -119,8 +120,9 @@ def wake(waiter: Waiter) -> None:
 def _ready(files: Files) -> List[int]:
     """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
     entries = (_PollEntry * len(files))(*(_PollEntry(*wanted) for wanted in files))
-    if _poll_with_gil(entries, len(files), 0) < 0:
-        raise OSError("poll() of the descriptors that threads wait for")
+    while _poll_with_gil(entries, len(files), 0) < 0:
+        if ctypes.get_errno() != errno.EINTR:  # a signal
+            raise OSError(ctypes.get_errno(), "poll() of the descriptors that threads wait for")
     return [entry.revents for entry in entries]
 
 

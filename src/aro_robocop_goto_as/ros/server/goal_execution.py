@@ -71,6 +71,7 @@ class GoalExecution:
         p, now = self._tuning.params, tick_ns / NANOSECONDS
         if self._started is None or self._last is None or now <= self._last:  # first period, or the clock was set back
             self._started, self._progress, self._last, self._turning = now, None, None, Turning()
+            self._errors, self._jumps = None, 0
             self.twist = STANDSTILL
         gap = 0.0 if self._last is None else now - self._last
         self._stalled += max(0.0, gap - LONGEST_GAP / p.control_rate)
