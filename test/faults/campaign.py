@@ -88,6 +88,7 @@ class Campaign:
         self.last = [fault for fault in FAULTS if fault.needs == "last" and re.match(select, fault.name)]
         self.table = collections.defaultdict(collections.Counter)
         self.violations = []
+        self.noted = []  # during a soak test: time since its start [s, wall], goals, usage
         self.baseline = None
 
     def fault_of(self, number):
@@ -119,13 +120,9 @@ class Campaign:
         """Goals without faults for so long [s, wall]; usage is noted SOAK_ROWS times, and must stay level."""
         self.stage.prepare()
         (fault,) = (fault for fault in FAULTS if fault.name == "valid_goals")
-        begun, number, noted = time.monotonic(), 0, []
+        begun, number, noted = time.monotonic(), 0, self.noted
         while len(noted) <= SOAK_ROWS and not self.violations:
-            try:
-                self.run_episode(number, fault)
-            except KeyboardInterrupt:
-                self.violations.append("interrupted; the table holds what was noted until then")
-                break
+            self.run_episode(number, fault)
             number += 1
             elapsed = time.monotonic() - begun
             if number >= WARM_UP and elapsed >= len(noted) * seconds / SOAK_ROWS:
@@ -134,7 +131,6 @@ class Campaign:
                 self._guard("usage", self.require_level_usage)
         if not self.violations:
             self._guard("usage", lambda: _require_no_slope([used for _, _, used in noted]))
-        return noted
 
     @property
     def goals_sent(self):
@@ -281,20 +277,21 @@ def main():
     system = System(options.folder, options.mistake)
     try:
         campaign = Campaign(options.configuration, options.seed, options.full, options.verbose, options.select, system)
-        if options.soak is not None:
-            noted = campaign.soak(options.soak)
-            print(usage_text(noted) if noted else "ended before the first look at the processes")
-        elif options.episode is None:
-            try:
+        try:
+            if options.soak is not None:
+                campaign.soak(options.soak)
+            elif options.episode is None:
                 campaign.run(options.goals)
-            except KeyboardInterrupt:
-                campaign.violations.append("interrupted; the table holds the episodes until then")
-        else:
-            campaign.stage.prepare()
-            campaign.run_episode(options.episode)
+            else:
+                campaign.stage.prepare()
+                campaign.run_episode(options.episode)
+        except KeyboardInterrupt:
+            campaign.violations.append("interrupted; the tables hold what was done until then")
     finally:
         rospy.signal_shutdown("the campaign is over")
         system.close()
+    if options.soak is not None:
+        print(usage_text(campaign.noted) if campaign.noted else "ended before the first look at the processes")
     print(table_text(campaign.table))
     print(f"{campaign.goals_sent} goals, {time.monotonic() - started:.0f} s, seed {options.seed}")
     print(*campaign.violations, sep="\n")

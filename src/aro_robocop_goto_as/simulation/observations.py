@@ -2,7 +2,7 @@
 
 import functools
 from dataclasses import dataclass, field
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, FrozenSet, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..sensors.noise_streams import Episode, NoiseStreams
 from ..sensors.odometry import Odometers
 from ..sim_params import SimParams
 from ..world.model import World
-from .rates import BUMPER, CAMERA, GROUND_TRUTH, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
+from .rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
 
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
@@ -33,6 +33,10 @@ class Due:
     control: bool = False  # a control tick: the controllers' period is over
     sensors: Subscriptions = field(default_factory=dict)  # those that are due, for whom they are subscribed to
     measures: Sequence[Callable[[], object]] = ()  # the calls that measure them
+    names: FrozenSet[str] = field(init=False)  # of these sensors, and CLOCK if it is due
+
+    def __post_init__(self) -> None:
+        self.names = frozenset([*self.sensors, *([CLOCK] if self.clock else [])])
 
 
 class Observations:

@@ -121,8 +121,8 @@ class Simulator:
         self._dues[names] = Due(CLOCK in names, CONTROL in names, sensors, measures)
         return self._dues[names]
 
-    def sensors_at_control_ticks(self) -> FrozenSet[str]:
-        """The sensors that are due on each control tick."""
+    def due_at_control_ticks(self) -> FrozenSet[str]:
+        """The sensors and ticks that are due on each control tick."""
         rates = rates_of(self.p)
         return frozenset(name for name, rate in rates.items() if rate and rate % rates[CONTROL] == 0)
 

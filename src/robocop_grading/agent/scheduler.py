@@ -119,7 +119,7 @@ def wake(waiter: Waiter) -> None:
 
 def _ready(files: Files) -> List[int]:
     """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
-    entries = (_PollEntry * len(files))(*(_PollEntry(*wanted) for wanted in files))
+    entries = (_PollEntry * len(files))(*(_PollEntry(file, events) for file, events in files))
     while _poll_with_gil(entries, len(files), 0) < 0:
         if ctypes.get_errno() != errno.EINTR:  # a signal
             raise OSError(ctypes.get_errno(), "poll() of the descriptors that threads wait for")
@@ -221,7 +221,7 @@ def wait_for_work(timeout: float) -> None:
 
 def nothing_arrives() -> bool:
     """Whether nothing is readable, or on its way, that a thread waits for; called with the guard held."""
-    wanted = [wanted for waiter in reading.values() for wanted in waiter.files]
+    wanted = [file_and_events for waiter in reading.values() for file_and_events in waiter.files]
     for file, _ in wanted:
         traffic = received.get(file)
         if traffic is not None and traffic.link in expected and traffic.received < expected[traffic.link]:

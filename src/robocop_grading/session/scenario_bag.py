@@ -119,8 +119,7 @@ class ScenarioBag:
         """Measurements as the submission gets them, and the truth."""
         if self._bag is None:
             return
-        due = {*seen.due.sensors, *([CLOCK] if seen.due.clock else [])}
         self._batch.send(seen.stamp_ns)
         for sensor, topic, kind, message in self._of_steps:
-            if sensor in due:
+            if sensor in seen.due.names:
                 self._write(topic, ros_internals.raw(kind, message.body()), convert.to_time(seen.stamp_ns), raw=True)

@@ -33,7 +33,7 @@ def _odom(sim: Simulator) -> Pose2D:
 
 def test_only_rates_that_are_multiples_of_the_control_rate_are_due_on_each_control_tick(simulator: Make) -> None:
     sim = simulator("empty", **KINEMATIC, control_rate=10, odom_rate=30, scan_rate=5, joint_state_rate=15)
-    at_ticks = sim.sensors_at_control_ticks()
+    at_ticks = sim.due_at_control_ticks()
     assert {"odom", "tf", "imu"} <= at_ticks and not {"scan", "joints"} & at_ticks
 
 

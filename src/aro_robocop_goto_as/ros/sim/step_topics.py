@@ -56,7 +56,7 @@ class StepTopics:
         self._subscriptions: Subscriptions = {}
         self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
-        self._sensors_at_ticks = simulator.sensors_at_control_ticks()
+        self._due_at_ticks = simulator.due_at_control_ticks()
         self._kept_since = 0.0  # [s, wall] since when the kernel may keep messages; 0: it does not
 
     def _on_change(self) -> None:
@@ -102,8 +102,7 @@ class StepTopics:
 
         It may if the same topics have some then, for no longer than KEPT and not beyond push().
         """
-        names = {*due.sensors, *([CLOCK] if due.clock else [])}
-        if due.control or not self._sensors_at_ticks.issuperset(names):
+        if due.control or not due.names <= self._due_at_ticks:
             return False
         now = time.monotonic()
         self._kept_since = self._kept_since or now

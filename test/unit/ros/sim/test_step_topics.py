@@ -42,7 +42,7 @@ def publish(topics: StepTopics, calls: Calls, sensor: str, control: bool = False
 def topics_of_no_robots() -> StepTopics:
     """Without publishers, which need a ROS master."""
     topics = object.__new__(StepTopics)
-    topics._sensors_at_ticks, topics._kept_since = ALWAYS, 0.0
+    topics._due_at_ticks, topics._kept_since = ALWAYS, 0.0
     return topics
 
 
@@ -67,7 +67,7 @@ def test_each_sensor_has_its_place_among_the_messages_of_a_step() -> None:
 
 def test_a_clock_that_is_not_due_on_each_tick_is_not_kept(calls: Calls) -> None:
     topics = topics_of_no_robots()
-    topics._sensors_at_ticks = ALWAYS - {CLOCK}
+    topics._due_at_ticks = ALWAYS - {CLOCK}
     publish(topics, calls, ODOM)
     assert calls == [(ODOM, False)]
 
