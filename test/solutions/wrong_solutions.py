@@ -505,6 +505,13 @@ WRONG = (
         alone=True,
     ),
     _server(
+        "exits_with_result",
+        "stays_alive",
+        "died",
+        ("set_succeeded(result)", "set_succeeded(result)\n            __import__('os')._exit(3)"),
+        alone=True,
+    ),
+    _server(
         "exception_while_driving",
         "no_exception",
         "RecursionError",

@@ -27,20 +27,16 @@ def install() -> None:
         except (OSError, IndexError):  # it is closed, or no TCP connection
             return bytes(receive(connection, *arguments))
         _handled[link] = _received.setdefault(link, 0)  # a thread that asks for more is done with what it had
-        data: bytes = receive(connection, *arguments)
-        _received[link] = _received.get(link, 0) + len(data)
+        data = b""
+        try:
+            data = receive(connection, *arguments)
+            _received[link] = _received.get(link, 0) + len(data)
+        finally:
+            if not data:  # the other side has ended the connection, and the thread is done with all that came before
+                _handled.pop(link, None)
+                _received.pop(link, None)
         return data
 
-    close: Any = tcpros_base.TCPROSTransport.close
-
-    def closed(transport: Any) -> None:
-        link = _link(transport)
-        close(transport)
-        if link is not None:  # what is still on its way will not be received
-            _handled.pop(link, None)
-            _received.pop(link, None)
-
-    setattr(tcpros_base.TCPROSTransport, "close", closed)  # noqa: B010
     setattr(socket, "setdefaulttimeout", lambda _: None)  # noqa: B010  rospy would give the master and nodes 60 s
     setattr(socket.socket, "recv", recv)  # noqa: B010  mypy refuses to assign to a method
     rospy.topics.QueuedConnection = lambda connection, _size: connection
@@ -57,6 +53,18 @@ def handled(link: Link) -> int:
     Of one that a subscriber of this process's topics has made, only the header is ever received.
     """
     return -1 if link[1] == ports()[1] else _handled.get(link, -1)
+
+
+def hears_others() -> bool:
+    """Whether another node's topic is connected, or something that came from it has not had its callbacks yet.
+
+    rospy closes a connection that the other side has ended when it has made use of all that came before.
+    """
+    return any(
+        connection.socket is not None and connection.callerid_pub != rospy.get_name()
+        for subscription in list(_topics().subs.values())
+        for connection in subscription.connections
+    )
 
 
 @functools.lru_cache(maxsize=None)
