@@ -7,9 +7,7 @@ import os
 import resource
 import select
 import socket
-import threading
 import time
-from functools import partial
 from pathlib import Path
 from subprocess import PIPE, STDOUT
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
@@ -23,9 +21,8 @@ from ..sandbox.guard import Guard
 from ..sandbox.stillness import Stillness
 from ..submission import CHANNEL
 from . import ros_internals
+from .output import Output
 
-MAX_OUTPUT = 200_000  # bytes of a node's output that are kept; the rest is read and dropped
-MAX_LINE = 2_000  # bytes
 MAX_ANSWER = 1_000_000  # bytes
 NEVER = 1 << 62  # [ns]
 SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
@@ -53,7 +50,7 @@ class _Answer(NamedTuple):
 
 
 class Node:
-    """One node; a thread passes every line of its output to `on_line`. While it is waited for, `run_jobs` is called."""
+    """One node; each line of its output is passed to `on_line`. While it is waited for, `run_jobs` is called."""
 
     def __init__(
         self,
@@ -88,19 +85,13 @@ class Node:
         self.ended = ""  # why the node was ended here, if it was
         self._lost = False  # the agent has ended
         self.guard = Guard(self._process.pid, processor_time=_own_limit())
-        self._on_line = on_line
-        threading.Thread(target=self._read, daemon=True).start()
-
-    def _read(self) -> None:
-        stream, size = self._process.stdout, 0
-        assert stream is not None
-        for line in iter(partial(stream.readline, MAX_LINE), b""):
-            size += len(line)
-            if size <= MAX_OUTPUT:
-                self._on_line(line.decode(errors="replace").rstrip("\n"))
+        assert self._process.stdout is not None
+        self._output = Output(self._process.stdout, on_line)
 
     def status(self) -> Optional[int]:
-        """The exit status of a node that ended by itself; None while it runs."""
+        """The exit status of a node that ended by itself, once all that it sent has arrived; None while it runs."""
+        if not self._lost and self._has_ended():
+            self._lose()
         return self._process.poll()
 
     def end(self) -> None:
@@ -108,6 +99,7 @@ class Node:
         self.guard.stop()
         child.kill_tree(self._process.pid)
         self._process.wait()
+        self._output.close()
         self._channel.close()
 
     # -- time --
@@ -171,17 +163,22 @@ class Node:
             return None
 
     def _has_answer(self) -> bool:
-        """Wait a moment for the agent; whether there is a line from it, or never will be."""
-        while b"\n" not in self._buffer and select.select([self._channel], [], [], POLL)[0]:
+        """Wait a moment for the agent; whether there is a line from it, or never will be. Output is read meanwhile."""
+        files = [self._channel, self._output] if self._output.is_open else [self._channel]
+        ready, _, _ = select.select(files, [], [], POLL)
+        if self._output in ready:
+            self._output.read()
+        if self._channel in ready:
             data = b""
             with contextlib.suppress(OSError):
                 data = os.read(self._channel.fileno(), 65536)
+            self._buffer += data
             if not data or len(self._buffer) > MAX_ANSWER:
                 return True
-            self._buffer += data
         return b"\n" in self._buffer
 
     def _has_ended(self) -> bool:
+        self._output.read()  # it may wait for that
         return self._process.poll() is not None
 
     def _lose(self) -> None:
@@ -192,6 +189,7 @@ class Node:
             self.end()
         self._wait(lambda: not ros_internals.hears_others(), SHORTLY)  # what it has sent before its end counts
         self._run_jobs()
+        self._output.pass_on()
 
     # -- messages and connections --
 
@@ -203,6 +201,7 @@ class Node:
 
         self._wait(arrived, SHORTLY)
         self._run_jobs()
+        self._output.pass_on()
 
     def _connect(self) -> bool:
         """Wait until the node is connected with whom it has told the master; whether it was not before."""

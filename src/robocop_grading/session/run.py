@@ -98,7 +98,7 @@ class Run:
             self.job.command,
             self.job.environment,
             self.job.folder,
-            lambda line: self.stage.post(self._on_line, line),
+            self._on_line,
             self.stage.run_jobs,
             int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0),
             self.stage.sim.stamp_ns,

@@ -1,0 +1,49 @@
+"""What a node prints, line by line, up to a limit; read by whoever waits for the node, without a thread."""
+
+import os
+from typing import IO, Callable
+
+MAX_OUTPUT = 200_000  # bytes of a node's output that are kept; the rest is read and dropped
+MAX_LINE = 2_000  # bytes; a longer one is several
+PIPE = 1 << 20  # bytes that a pipe holds at most, unless root has raised its limit
+
+
+class Output:
+    """A node's output; each line is passed to `on_line`."""
+
+    def __init__(self, stream: IO[bytes], on_line: Callable[[str], object]) -> None:
+        self._stream, self._on_line = stream, on_line
+        self._size = 0  # bytes so far
+        self._text = b""  # read, and not passed on yet
+        self.is_open = True
+        os.set_blocking(stream.fileno(), False)
+
+    def fileno(self) -> int:
+        return self._stream.fileno()
+
+    def read(self) -> None:
+        """Take what has been printed so far."""
+        try:
+            data = os.read(self.fileno(), PIPE) if self.is_open else b""
+        except BlockingIOError:  # nothing
+            return
+        self.is_open = bool(data)
+        self._text += data[: max(0, MAX_OUTPUT - self._size)]
+        self._size += len(data)
+
+    def pass_on(self) -> None:
+        """Read, and pass on all lines that have been printed; the last one, too, if nothing else will follow."""
+        self.read()
+        *lines, self._text = self._text.split(b"\n")
+        if not self.is_open:
+            lines, self._text = [*lines, self._text], b""
+        for line in lines:
+            for start in range(0, len(line), MAX_LINE):
+                self._on_line(line[start : start + MAX_LINE].decode(errors="replace"))
+
+    def close(self) -> None:
+        """Pass on what there is; nothing else will be read."""
+        self.pass_on()
+        self.is_open = False
+        self.pass_on()
+        self._stream.close()

@@ -1,0 +1,63 @@
+"""All that a node prints becomes lines, in order, however it is written; of a flood only the beginning is kept."""
+
+import os
+from typing import List, Tuple
+
+import pytest
+
+from robocop_grading.session.output import MAX_LINE, MAX_OUTPUT, Output
+
+
+@pytest.fixture
+def printed():
+    """The end that a node writes to, what reads it, and the lines so far."""
+    theirs, mine = os.pipe(), []
+    output = Output(os.fdopen(theirs[0], "rb", buffering=0), mine.append)
+    yield theirs[1], output, mine
+    output.close()
+
+
+Printed = Tuple[int, Output, List[str]]
+
+
+def test_a_line_is_passed_on_when_it_is_complete(printed: Printed) -> None:
+    writer, output, lines = printed
+    os.write(writer, b"one\ntw")
+    output.pass_on()
+    assert lines == ["one"]
+    os.write(writer, b"o\n\nthree")
+    output.read()
+    assert lines == ["one"]  # not before it is asked for
+    output.pass_on()
+    assert lines == ["one", "two"]
+    os.close(writer)
+    output.pass_on()  # reads the end
+    assert lines == ["one", "two", "three"]
+    assert not output.is_open
+
+
+def test_an_unfinished_line_is_passed_on_when_the_node_is_ended(printed: Printed) -> None:
+    writer, output, lines = printed
+    os.write(writer, b"half a line")
+    output.close()
+    output.close()
+    assert lines == ["half a line"]
+    os.close(writer)
+
+
+def test_a_long_line_is_several_and_bytes_that_are_no_text_are_replaced(printed: Printed) -> None:
+    writer, output, lines = printed
+    os.write(writer, b"x" * (MAX_LINE + 1) + b"\xff\n")
+    os.close(writer)
+    output.pass_on()
+    assert lines == ["x" * MAX_LINE, "x\ufffd"]
+
+
+def test_of_a_flood_the_beginning_is_kept_and_the_rest_is_read(printed: Printed) -> None:
+    writer, output, lines = printed
+    for _ in range(2 * MAX_OUTPUT // 1000):
+        os.write(writer, b"x" * 999 + b"\n")  # blocks for ever if nobody reads
+        output.read()
+    output.pass_on()
+    assert len(lines) == MAX_OUTPUT // 1000
+    os.close(writer)
