@@ -125,7 +125,8 @@ class Channel:
     def _sent(self) -> List[int]:
         """The connections on which something has been sent since the last time."""
         found: List[int] = []
-        for traffic in list(scheduler.received.values()):
+        closed, scheduler.closed[:] = list(scheduler.closed), []
+        for traffic in [*scheduler.received.values(), *closed]:
             if traffic.link is not None and traffic.sent != traffic.reported:
                 traffic.reported = traffic.sent
                 found += [*traffic.link, traffic.sent]

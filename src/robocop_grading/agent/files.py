@@ -30,6 +30,13 @@ def traffic_of(connection: socket.socket) -> Traffic:
     return traffic
 
 
+def _forget(connection: socket.socket) -> None:
+    """The socket is closed, but the grader still has to read what was sent."""
+    traffic = scheduler.received.pop(connection.fileno(), None)
+    if traffic is not None:
+        scheduler.closed.append(traffic)
+
+
 def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
@@ -168,13 +175,13 @@ def install() -> None:
 
     @functools.wraps(close)
     def forget_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
-        scheduler.received.pop(closed.fileno(), None)
+        _forget(closed)
         close(closed, *arguments, **options)
 
     @functools.wraps(init)
     def forget_and_init(opened: socket.socket, *arguments: Any, **options: Any) -> None:
         init(opened, *arguments, **options)
-        scheduler.received.pop(opened.fileno(), None)  # of an earlier one that was collected as garbage
+        _forget(opened)  # of an earlier one that was collected as garbage
 
     cls.accept, cls._real_close, cls.__init__ = accept_when_ready, forget_and_close, forget_and_init
     module: Any = select

@@ -60,6 +60,7 @@ turn = 0  # number of the grader's requests that have been answered
 calling: Dict[int, int] = {}  # threads that wait for an answer of the grader's own, by which they count as running
 reading: Dict[int, Waiter] = {}  # threads in poll()
 received: Dict[int, "Traffic"] = {}  # by descriptor
+closed: List["Traffic"] = []  # since the last answer
 expected: Dict[Link, int] = {}  # bytes that the grader has sent
 _spent: Dict[int, Tuple[int, float]] = {}  # by thread: a simulated time [ns], and what it has done at that
 _deadlines: List[Tuple[int, int, Waiter]] = []

@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import NamedTuple
+from typing import List, NamedTuple
 
 import pytest
 from support import ROOT
@@ -19,11 +19,12 @@ PATIENCE = 60.0  # [s, wall] for a program to do what it does at one time
 
 
 class Answer(NamedTuple):
-    """The numbers with which an answer begins."""
+    """The numbers of an answer."""
 
     done: int
     next: int
     busy: int
+    sent: List[int]  # port of the program, other port, bytes; and so on
 
 
 class Program:
@@ -63,7 +64,8 @@ class Program:
             line = self._lines.readline()
         except OSError:
             return None
-        return Answer(*map(int, line.split()[:3])) if line else None
+        numbers = list(map(int, line.partition(b"\t")[0].split()))
+        return Answer(*numbers[:3], numbers[3:]) if line else None
 
     def output(self, seconds):
         """Let it live for this simulated time, or until it ends; what it has printed."""
@@ -237,6 +239,22 @@ rospy.sleep(0.5)
 print(data, round(rospy.get_time(), 3), flush=True)
 time.sleep(60)
 """
+
+
+def test_grader_learns_what_was_sent_by_a_connection_that_has_been_closed_since(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        text = f"""
+import socket
+for data in (b"x", b"xyz"):
+    with socket.create_connection(("127.0.0.1", {port})) as connection:
+        connection.sendall(data)
+time.sleep(1.0)
+"""
+        with Program(tmp_path, text) as program:
+            sent = program.go_on(STEP).sent
+            assert sent[1:3] + sent[4:] == [port, 1, port, 3]
+            assert program.go_on(2 * STEP).sent == []
 
 
 def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
