@@ -53,6 +53,14 @@ def test_a_long_line_is_several_and_bytes_that_are_no_text_are_replaced(printed:
     assert lines == ["x" * MAX_LINE, "x\ufffd"]
 
 
+def test_a_node_that_prints_a_lot_need_not_wait_for_the_grader(printed: Printed) -> None:
+    writer, output, _lines = printed
+    os.set_blocking(writer, False)
+    assert os.write(writer, b"x" * 1_000_000) == 1_000_000
+    output.read()
+    os.close(writer)
+
+
 def test_of_a_flood_the_beginning_is_kept_and_the_rest_is_read(printed: Printed) -> None:
     writer, output, lines = printed
     for _ in range(2 * MAX_OUTPUT // 1000):
