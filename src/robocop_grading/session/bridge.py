@@ -30,6 +30,7 @@ from .stage import Stage
 START_TIMEOUT = 20.0  # [s] for the node's first connection
 CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
+STATUS_TICKS = 2  # from one status message to the next, which is actionlib's 5 Hz
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
 STATUS_TYPES = {
@@ -58,6 +59,7 @@ class BridgeRun(Run):
         self.accepted_from: Dict[str, float] = {}  # likewise of PENDING goals: when they are accepted [s]
         self.server: Any = None
         self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
+        self._ticks = 0
 
     def scenarios(self) -> None:
         """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
@@ -80,6 +82,7 @@ class BridgeRun(Run):
             auto_start=False,
         )
         self.server.start()
+        self.server.status_timer.shutdown()  # by the wall clock; see tick()
 
     def _on_sent(self, message: GoToPositionActionGoal) -> None:
         position, name = message.goal.position, message.goal_id.id
@@ -161,9 +164,12 @@ class BridgeRun(Run):
                 self.reports[topic.name] = self.stage.listen(topic.name, kind, self._on_line, partial(_text, text))
 
     def tick(self, real_time: bool = True) -> None:
-        """One control tick, after which goals may be accepted."""
+        """One control tick, after which goals may be accepted, and the server tells of its goals if that is due."""
         super().tick(real_time)
         self._accept_goals()
+        self._ticks += 1
+        if self.server is not None and self._ticks % STATUS_TICKS == 0:
+            self.server.publish_status()
         self.stage.digest()  # its client has learned the state before time continues
 
     # -- scenarios, in this order --

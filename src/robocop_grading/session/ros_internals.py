@@ -42,6 +42,11 @@ def install() -> None:
     rospy.topics.QueuedConnection = lambda connection, _size: connection
 
 
+def set_time(now_ns: int) -> None:
+    """Set this process's rospy time, by which actionlib stamps messages, without a subscription to /clock."""
+    rospy.rostime._set_rostime(rospy.Time(0, now_ns))
+
+
 def raw(kind: Any, body: bytes) -> Tuple[str, bytes, str, Any]:
     """A serialized message as rosbag.Bag.write() takes it."""
     return kind._type, body, kind._md5sum, kind

@@ -27,6 +27,7 @@ from .. import record as rec
 from ..handout import AHEAD
 from ..plan import Plan, site, world_of
 from ..record import Sample
+from . import ros_internals
 from .node import Node
 from .scenario_bag import ScenarioBag
 from .watch import Watch
@@ -177,6 +178,7 @@ class Stage:
     def publish_clock(self) -> None:
         """For nodes that have just come up."""
         self.clock_ns = self.sim.stamp_ns
+        ros_internals.set_time(self.clock_ns)
         self._topics.publish_clock(self.clock_ns)
         self._topics.count()
 
