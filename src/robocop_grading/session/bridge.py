@@ -83,6 +83,7 @@ class BridgeRun(Run):
         )
         self.server.start()
         self.server.status_timer.shutdown()  # by the wall clock; see tick()
+        self.stage.join()
 
     def _on_sent(self, message: GoToPositionActionGoal) -> None:
         position, name = message.goal.position, message.goal_id.id
@@ -162,6 +163,7 @@ class BridgeRun(Run):
                 text = f"published on {topic.name}"
                 kind = roslib.message.get_message_class(topic.type)
                 self.reports[topic.name] = self.stage.listen(topic.name, kind, self._on_line, partial(_text, text))
+                self.stage.join()
 
     def tick(self, real_time: bool = True) -> None:
         """One control tick, after which goals may be accepted, and the server tells of its goals if that is due."""

@@ -79,7 +79,8 @@ class Node:
         self._run_jobs = run_jobs
         self._buffer = b""
         self._sent: Dict[ros_internals.Link, int] = {}  # bytes, as the agent has been told
-        self._topics: Dict[str, Any] = {}  # that are not connected yet
+        self._topics: Dict[str, Any] = {"published": [], "subscribed": []}  # as the agent has told last
+        self._has_new_topics = False  # it has told of some, which may not be connected yet
         self.next_ns = now_ns  # when the node will do something without having received a message
         self.is_busy = False  # it computes without an end, as a loop without pauses
         self.ended = ""  # why the node was ended here, if it was
@@ -120,7 +121,8 @@ class Node:
                 return
             self.next_ns = min(NEVER, answer.next_ns + self._started_ns)
             self.is_busy = answer.is_busy
-            self._topics = answer.topics or self._topics
+            if answer.topics:
+                self._topics, self._has_new_topics = answer.topics, True
             self._await(answer.sent)
             again = self._connect() or answer.done_ns + self._started_ns < until_ns
             if again:
@@ -203,20 +205,32 @@ class Node:
         self._run_jobs()
         self._output.pass_on()
 
+    def join(self) -> None:
+        """Wait until the node is connected to topics that this process has begun to publish or to subscribe to.
+
+        It learns of them from the master, which nothing else waits for.
+        """
+        if not self.is_busy:  # else it does nothing until it is to go on
+            self._wait(lambda: self._hears() and self._reaches() or self._has_ended(), SOON)
+            self._run_jobs()
+
     def _connect(self) -> bool:
         """Wait until the node is connected with whom it has told the master; whether it was not before."""
-        if not self._topics or self._is_connected():
-            self._topics = {}
-            return False
-        self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
-        self._run_jobs()
-        self._topics = {}
-        return not self._has_ended()
+        connects = self._has_new_topics and not self._is_connected()
+        self._has_new_topics = False
+        if connects:
+            self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
+            self._run_jobs()
+        return connects and not self._has_ended()
+
+    def _hears(self) -> bool:
+        return all(ros_internals.hears(self._topics["node"], *topic) for topic in self._topics["published"])
+
+    def _reaches(self) -> bool:
+        return all(ros_internals.reaches(self._topics["node"], *topic[:2]) for topic in self._topics["subscribed"])
 
     def _is_connected(self) -> bool:
-        return all(
-            ros_internals.hears(self._topics["node"], topic, checksum) for topic, checksum in self._topics["published"]
-        ) and all(
+        return self._hears() and all(
             ros_internals.is_connected(topic, checksum, set(ports) - {0})
             for topic, checksum, ports in self._topics["subscribed"]
         )

@@ -108,13 +108,25 @@ def hears(node: str, topic: str, checksum: str) -> bool:
     return node in {getattr(connection, "callerid_pub", None) for connection in subscription.connections}
 
 
+def reaches(node: str, topic: str, checksum: str) -> bool:
+    """Whether what this process publishes on a topic goes to a node, or it does not publish that, or not this type."""
+    connections = _subscribers(topic, checksum)
+    return connections is None or node in {connection.endpoint_id for connection in connections}
+
+
 def is_connected(topic: str, checksum: str, node_ports: Set[int]) -> bool:
     """Whether what this process publishes on a topic goes to all these ports of a node."""
+    connections = _subscribers(topic, checksum)
+    links = map(_link, connections or [])
+    return connections is None or node_ports <= {link[0] for link in links if link is not None}
+
+
+def _subscribers(topic: str, checksum: str) -> Optional[List[Any]]:
     publication = _topics().pubs.get(topic)
     if publication is None or "*" != checksum != publication.data_class._md5sum:
-        return True
-    links = {_link(connection) for connection in publication.connections}
-    return node_ports <= {link[0] for link in links if link is not None}
+        return None
+    connections: List[Any] = publication.connections
+    return connections
 
 
 def goal_senders(server: actionlib.ActionServer) -> int:

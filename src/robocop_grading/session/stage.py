@@ -164,6 +164,12 @@ class Stage:
         if self.node is not None:
             self.node.go_on(self.sim.stamp_ns, self.clock_ns)
 
+    def join(self) -> None:
+        """Let the node connect to topics that are new, in no simulated time."""
+        if self.node is not None and self.node.status() is None:
+            self.node.join()
+            self.digest()
+
     def run_jobs(self) -> None:
         """Handle what has arrived."""
         while self._arrived:
