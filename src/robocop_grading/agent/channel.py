@@ -8,19 +8,22 @@ may have changed. Of each connection: PORT OF THIS PROCESS, PORT OF THE GRADER, 
 """
 
 import ctypes
+import itertools
 import json
 import math
 import os
 import socket
 from typing import Iterator, List, Set
 
-from . import ros, scheduler, stuck
+from . import readers, ros, scheduler, stuck
 
 STARTING = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
 PATIENCE = 0.5  # [s] likewise for what it does at one time ...
 TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
 IMPATIENCE = 0.002  # [s] as long as it goes on, and
 BRIEFLY = 0.2  # [s] once it has come to an end
+TURN = 0.1  # [s] of processor time that other threads leave to one
+MANY = 100  # times that threads are woken between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
@@ -45,13 +48,14 @@ class Channel:
     def _serve(self) -> None:
         for request in self._requests():
             until_ns, clock_ns, *sent = map(int, request.split())
-            scheduler.expected.update(((port, of), count) for port, of, count in zip(*[iter(sent)] * 3))
+            for port, of, count in zip(*[iter(sent)] * 3):
+                readers.expect((port, of), count)
             self._busy = not self._go_on(until_ns, clock_ns)
             answer = [scheduler.now_ns, scheduler.next_deadline(), int(self._busy), *self._sent()]
             has_called = scheduler.calls != self._calls  # it may have told the master, or connected to a topic
             self._calls = scheduler.calls
             topics = "\t" + json.dumps(ros.topics(self._ports)) if has_called else ""
-            scheduler.turn += 1  # what the grader sends from now on belongs to the next one
+            scheduler.requests += 1  # what the grader sends from now on belongs to the next one
             self._write(f"{' '.join(map(str, answer))}{topics}\n".encode())
             if self._busy and not has_called:  # the grader connects to new topics, which needs its threads
                 self._freeze()
@@ -67,11 +71,19 @@ class Channel:
     def _requests(self) -> Iterator[bytes]:
         data = b""
         while True:
+            self._wait_for_request()
             more = os.read(self._descriptor, 65536)
             if not more:
                 return
             *lines, data = (data + more).split(b"\n")
             yield from lines
+
+    def _wait_for_request(self) -> None:
+        """Let threads do what others ask of the node meanwhile: the master, or who wants to hear a topic."""
+        while not readers.wait_for(self._descriptor, LOOK if scheduler.running else None):
+            readers.wake(topics=False)
+            while not (scheduler.wait_until_idle(LOOK) or readers.wait_for(self._descriptor, 0.0)):
+                pass
 
     def _go_on(self, until_ns: int, clock_ns: int) -> bool:
         """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
@@ -103,30 +115,42 @@ class Channel:
     def _rest(self) -> bool:
         """Wait until all threads wait, and nothing is on its way to them; False if they need too much time for it."""
         look, started = 0.001, stuck.processor_time() if self._busy else math.inf
-        while True:
+        turn, turn_started = -1, 0.0
+        for count in itertools.count(1):
             idle = scheduler.wait_until_idle(look)
             stuck.others.look()
-            if (idle or stuck.all_stuck()) and not stuck.others.work:
-                with scheduler.guard:
-                    if scheduler.nothing_arrives():
-                        self._allowance, self._exhausted = self._patience, 0
-                        return True
-            if idle:
-                scheduler.wait_for_work(look)  # what is on its way will wake a thread
+            is_over = idle or (stuck.all_stuck() and not scheduler.wait_for_none_that_runs())
+            if is_over or scheduler.running <= scheduler.unawaited:
+                if readers.wake():
+                    if count % MANY:
+                        continue
+                elif is_over and not stuck.others.work:
+                    with scheduler.guard:
+                        if not readers.more_is_expected():
+                            self._allowance, self._exhausted = self._patience, 0
+                            return True
+                if idle:
+                    readers.wait_for_more(look)
             look = min(2.0 * look, LOOK, self._allowance / 2.0)
             used = stuck.processor_time()  # not before: mostly there is nothing to wait for, and the kernel takes long
             started = min(started, used)
+            if turn != scheduler.turns:
+                turn, turn_started = scheduler.turns, used
+            if used - turn_started > TURN and (readers.wake() or scheduler.queue):
+                scheduler.wait_for_none_that_runs()
             if used - started > self._allowance:
+                scheduler.wait_for_none_that_runs()
                 self._exhausted += 1
                 if self._exhausted >= TIMES:
                     self._allowance, self._patience = IMPATIENCE, BRIEFLY
                 return False
+        return False
 
     def _sent(self) -> List[int]:
         """The connections on which something has been sent since the last time."""
         found: List[int] = []
-        closed, scheduler.closed[:] = list(scheduler.closed), []
-        for traffic in [*scheduler.received.values(), *closed]:
+        closed, readers.closed[:] = list(readers.closed), []
+        for traffic in [*readers.received.values(), *closed]:
             if traffic.link is not None and traffic.sent != traffic.reported:
                 traffic.reported = traffic.sent
                 found += [*traffic.link, traffic.sent]

@@ -7,14 +7,15 @@ import selectors
 import socket
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from . import scheduler
-from .scheduler import Files, Traffic
+from . import readers, scheduler
+from .readers import Traffic
+from .scheduler import Files
 
 
 def traffic_of(connection: socket.socket) -> Traffic:
     """The counts of a socket."""
     file = connection.fileno()
-    traffic = scheduler.received.get(file)
+    traffic = readers.received.get(file)
     if traffic is None or traffic.link is None:
         link = None
         if connection.family in (socket.AF_INET, socket.AF_INET6):
@@ -23,25 +24,25 @@ def traffic_of(connection: socket.socket) -> Traffic:
             except OSError:  # it is not connected yet
                 pass
         if traffic is None:
-            traffic = scheduler.received[file] = Traffic(link)
+            traffic = readers.received[file] = Traffic(link)
         if link is not None:
-            scheduler.expected.pop(link, None)  # of an earlier connection with the same ports
+            readers.expected.pop(link, None)  # of an earlier connection with the same ports
         traffic.link = link
     return traffic
 
 
 def _forget(connection: socket.socket) -> None:
     """The socket is closed, but the grader still has to read what was sent."""
-    traffic = scheduler.received.pop(connection.fileno(), None)
+    traffic = readers.received.pop(connection.fileno(), None)
     if traffic is not None:
-        scheduler.closed.append(traffic)
+        readers.closed.append(traffic)
 
 
 def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
     if timeout != 0 and not flags & socket.MSG_DONTWAIT:
-        if not scheduler.poll([(connection.fileno(), select.POLLIN)], timeout):
+        if not readers.poll([(connection.fileno(), select.POLLIN)], timeout):
             raise socket.timeout("timed out")
 
 
@@ -77,7 +78,7 @@ def _when_ready(look: Callable[[], Any], files: Files, timeout: Optional[float])
     ready = look()
     if timeout == 0 or any(ready):
         return ready
-    scheduler.poll(files, None if timeout is None or timeout < 0 else timeout)
+    readers.poll(files, None if timeout is None or timeout < 0 else timeout)
     return look()
 
 
@@ -89,7 +90,7 @@ class Poll:
     """select.poll()."""
 
     def __init__(self) -> None:
-        self._poll = scheduler.select_poll()
+        self._poll = readers.select_poll()
         self._files: Dict[int, int] = {}
         self._empty_ns = -1  # simulated time at which nothing was ready
 

@@ -22,14 +22,14 @@ class Lock:
             return False
         if not scheduler.active:
             return bool(self._lock.acquire(True, timeout))
-        waiter = Waiter()
+        waiter = scheduler.this_thread()
         with scheduler.guard:
             self._waiters.append(waiter)  # before the second attempt: release() looks for it after releasing
             if self._lock.acquire(False):
                 self._waiters.remove(waiter)
                 return True
             scheduler.park(waiter, scheduler.deadline(None if timeout < 0 else timeout))
-        waiter.gate.acquire()
+        scheduler.wait(waiter)
         return waiter.granted
 
     def release(self) -> None:

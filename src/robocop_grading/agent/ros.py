@@ -122,14 +122,14 @@ def _sleeping(sleep: Any) -> Any:
         if not scheduler.active or rospy.rostime.is_wallclock() or not started_ns or length_ns <= 0:
             sleep(seconds)
             return
-        waiter = scheduler.Waiter()
+        waiter = scheduler.this_thread()
         with scheduler.guard:
             sleeps = started_ns + length_ns > clock_ns and not rospy.is_shutdown()
             if sleeps:
                 heapq.heappush(_sleepers, (started_ns + length_ns, next(_numbers), waiter))
                 scheduler.leave()
         if sleeps:
-            waiter.gate.acquire()
+            scheduler.wait(waiter)
         sleep(genpy.Duration())  # raises what it has to
 
     return call
@@ -152,11 +152,11 @@ def wake_sleeper() -> None:
 def set_clock(now_ns: int) -> bool:
     """Let rospy's time go on to `now_ns`, if it is simulated time; whether that has woken a thread."""
     global clock_ns
-    clock_ns, woken, notifies = now_ns, scheduler.woken, False
+    clock_ns, turns, notifies = now_ns, scheduler.turns, False
     if not sys.modules["rospy.rostime"].is_wallclock():
         with scheduler.work():
             notifies = _show_clock()
-    return notifies or scheduler.woken != woken
+    return notifies or scheduler.turns != turns
 
 
 def _hear_clock(now_ns: int) -> None:
@@ -207,7 +207,7 @@ class _Subscription:
 
     def _receive(self, message: Any) -> None:
         for waiting in list(self._waiting):
-            if waiting[0] < scheduler.turn:
+            if waiting[0] < scheduler.requests:
                 self._waiting.remove(waiting)
                 waiting[1].put(message)
 
@@ -217,7 +217,7 @@ class _Subscription:
 
         started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]
         # With rospy's own subscription it would not be connected yet, and get none of those that are on their way now.
-        self._waiting.append((-1 if self.subscriber is None else scheduler.turn, messages))
+        self._waiting.append((-1 if self.subscriber is None else scheduler.requests, messages))
         if self.subscriber is None:
             self.subscriber = rospy.Subscriber(self._topic, self._type, self._receive)
         while not rospy.is_shutdown() and scheduler.now_ns < end_ns:

@@ -1,50 +1,39 @@
-"""Which of the process's threads run, for what the others wait, and simulated time.
+"""Whose turn it is of the process's threads, for what the others wait, and simulated time.
 
-A thread runs unless it has said that it waits. Whoever ends its wait (the release of a lock, simulated time) counts it
-as running before it wakes up, so there is no moment at which work is on its way unseen.
+One thread runs at a time, until it waits; then the next one that has been woken up has its turn. So the threads meet in
+the same order in every run. A thread that sleeps in an unknown way, or computes for long, is not waited for any more.
 """
 
 import _thread
-import ctypes
-import errno
 import heapq
 import itertools
 import os
-import select
 import time
+from collections import deque
 from contextlib import contextmanager
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Deque, Dict, Iterator, List, Optional, Set, Tuple
 
 NEVER = 1 << 62  # [ns]
 SLACK = 50_000  # [ns] the shortest wait, as on Linux: a loop that waits for what rounding has left of a time goes on
 Files = List[Tuple[int, int]]  # descriptors with the events of poll() that are waited for
-Link = Tuple[int, int]  # a TCP connection, by this process's port and the other one's
 
 
 class Waiter:
-    """One wait of one thread: in its gate, which somebody opens, or in poll()."""
+    """One wait of one thread: in its gate, which is opened when it has its turn."""
 
-    __slots__ = ("thread", "awake", "gate", "granted", "files", "alarm")
+    __slots__ = ("thread", "awake", "gate", "granted", "files")
 
-    def __init__(self, files: Optional[Files] = None) -> None:
-        self.thread = _thread.get_ident()
+    def __init__(self, thread: int, files: Optional[Files] = None) -> None:
+        self.thread = thread  # 0: one that has not begun
         self.awake = False
         self.granted = False  # it got what it waited for: not the deadline ended the wait
         self.files: Files = files or []
-        self.alarm = -1  # the end of a pipe, whose other end is one of the files that it waits for
-        self.gate: Any = None
-        if files is None:
-            self.gate = allocate_lock()
-            self.gate.acquire()
+        self.gate: Any = allocate_lock()
+        self.gate.acquire()
 
 
 # The system's own, which everything else of the process no longer finds.
-allocate_lock, start_new_thread, sleep, select_poll = (
-    _thread.allocate_lock,
-    _thread.start_new_thread,
-    time.sleep,
-    select.poll,
-)
+allocate_lock, start_new_thread, sleep = _thread.allocate_lock, _thread.start_new_thread, time.sleep
 # Recursive, because a destructor may run while it is held, which is for moments only.
 system: Any = _thread
 guard: Any = system.RLock()
@@ -53,38 +42,22 @@ epoch_ns, epoch_monotonic_ns = time.time_ns(), time.monotonic_ns()  # at simulat
 active = True  # False in a forked child: the grader does not see it, and it lives on the wall clock
 now_ns = 0
 running: Set[int] = set()  # threads
-woken = 0  # how often a thread was woken up, so far
-starting = 0  # threads that were started and have not begun
+unawaited: Set[int] = set()  # those of them that nobody waits for
+queue: Deque[Waiter] = deque()  # whose turns are next
+starting = 0  # threads that have their first turn, and have not begun
+turns = 0  # so far
 calls = 0  # of the grader, so far
-turn = 0  # number of the grader's requests that have been answered
+requests = 0  # of the grader's that have been answered
 calling: Dict[int, int] = {}  # threads that wait for an answer of the grader's own, by which they count as running
-reading: Dict[int, Waiter] = {}  # threads in poll()
-received: Dict[int, "Traffic"] = {}  # by descriptor
-closed: List["Traffic"] = []  # since the last answer
-expected: Dict[Link, int] = {}  # bytes that the grader has sent
 _spent: Dict[int, Tuple[int, float]] = {}  # by thread: a simulated time [ns], and what it has done at that
 _deadlines: List[Tuple[int, int, Waiter]] = []
 _numbers = itertools.count()
 _idle = allocate_lock()  # open when the last thread has begun to wait
 
 
-class _PollEntry(ctypes.Structure):
-    """`struct pollfd` of poll(2)."""
-
-    _fields_ = [("fd", ctypes.c_int), ("events", ctypes.c_short), ("revents", ctypes.c_short)]
-
-
-_poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not release the interpreter's lock
-
-
-class Traffic:
-    """What a socket has received and sent."""
-
-    __slots__ = ("link", "received", "sent", "reported")
-
-    def __init__(self, link: Optional[Link]) -> None:
-        self.link = link
-        self.received = self.sent = self.reported = 0  # bytes
+def this_thread() -> Waiter:
+    """A wait of the calling thread."""
+    return Waiter(_thread.get_ident())
 
 
 def deadline(timeout: Optional[float]) -> int:
@@ -102,37 +75,81 @@ def park(waiter: Waiter, until_ns: int) -> None:
 def leave() -> None:
     """The calling thread no longer runs; called with the guard held."""
     running.discard(_thread.get_ident())
-    if not running and not starting and _idle.locked():
+    unawaited.discard(_thread.get_ident())
+    pass_on()
+
+
+def pass_on() -> None:
+    """Let the next thread have its turn, unless one that is waited for runs; called with the guard held."""
+    global starting, turns
+    if starting or not running <= unawaited:
+        return
+    if queue:
+        turns += 1
+        waiter = queue.popleft()
+        if waiter.thread:
+            running.add(waiter.thread)
+        else:
+            starting += 1
+        waiter.gate.release()
+    elif _idle.locked():
         _idle.release()
+
+
+def wait(waiter: Waiter) -> None:
+    """Wait for the calling thread's next turn, when it has parked."""
+    try:
+        waiter.gate.acquire()
+    except BaseException:  # of a signal's handler
+        with guard:
+            waiter.awake = True
+            if waiter in queue:
+                queue.remove(waiter)
+            running.add(waiter.thread)
+        raise
 
 
 def wake(waiter: Waiter) -> None:
     """End a thread's wait; called with the guard held."""
-    global woken
-    woken += 1
     waiter.awake = True
-    running.add(waiter.thread)
-    if waiter.gate is not None:
-        waiter.gate.release()
-    elif waiter.alarm >= 0:
-        os.write(waiter.alarm, b"x")
+    queue.append(waiter)
+    pass_on()
 
 
-def _ready(files: Files) -> List[int]:
-    """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
-    entries = (_PollEntry * len(files))(*(_PollEntry(file, events) for file, events in files))
-    while _poll_with_gil(entries, len(files), 0) < 0:
-        if ctypes.get_errno() != errno.EINTR:  # a signal
-            raise OSError(ctypes.get_errno(), "poll() of the descriptors that threads wait for")
-    return [entry.revents for entry in entries]
+def new_thread() -> Waiter:
+    """The first turn of a thread that is about to be started, which calls begin() at first."""
+    waiter = Waiter(0)
+    with guard:
+        wake(waiter)
+    return waiter
+
+
+def begin(waiter: Waiter) -> None:
+    """Wait for the calling thread's first turn."""
+    global starting
+    waiter.gate.acquire()
+    with guard:
+        starting -= 1
+        running.add(_thread.get_ident())
+
+
+def no_thread(waiter: Waiter) -> None:
+    """The system did not start a thread."""
+    global starting
+    with guard:
+        if waiter in queue:
+            queue.remove(waiter)
+        else:
+            starting -= 1
+            pass_on()
 
 
 def pause(until_ns: int) -> None:
     """Wait for a simulated time."""
-    waiter = Waiter()
+    waiter = this_thread()
     with guard:
         park(waiter, until_ns)
-    waiter.gate.acquire()
+    wait(waiter)
 
 
 def spend(share: float, pause_s: float) -> None:
@@ -148,42 +165,6 @@ def spend(share: float, pause_s: float) -> None:
     _spent[me] = now_ns, spent
     if spent > 1.0 and me not in calling:
         pause(deadline(pause_s))
-
-
-def poll(files: Files, timeout: Optional[float] = None) -> bool:
-    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
-    if any(_ready(files)):
-        return True
-    poller = select_poll()
-    for file, events in files:
-        poller.register(file, events)
-    me = _thread.get_ident()
-    if me in calling:
-        poller.poll()
-        return True
-    if not active:
-        return bool(poller.poll(None if timeout is None else timeout * 1e3))
-    if timeout is not None and timeout <= 0.0:
-        return False
-    waiter = Waiter(files)
-    listener = -1
-    if timeout is not None:
-        listener, waiter.alarm = os.pipe()
-        poller.register(listener, select.POLLIN)
-    try:
-        with guard:
-            reading[me] = waiter
-            park(waiter, deadline(timeout))
-        poller.poll()
-    finally:
-        with guard:
-            reading.pop(me, None)
-            in_time, waiter.awake = not waiter.awake, True
-            running.add(me)
-        if listener >= 0:
-            os.close(listener)
-            os.close(waiter.alarm)
-    return in_time
 
 
 @contextmanager
@@ -215,19 +196,13 @@ def wait_until_idle(timeout: float) -> bool:
         return not running and not starting
 
 
-def wait_for_work(timeout: float) -> None:
-    """When every thread waits: wait until some have run and all wait again, for `timeout` [s, wall] at most."""
-    _idle.acquire(True, timeout)
-
-
-def nothing_arrives() -> bool:
-    """Whether nothing is readable, or on its way, that a thread waits for; called with the guard held."""
-    wanted = [file_and_events for waiter in reading.values() for file_and_events in waiter.files]
-    for file, _ in wanted:
-        traffic = received.get(file)
-        if traffic is not None and traffic.link in expected and traffic.received < expected[traffic.link]:
-            return False
-    return all(events in (0, select.POLLNVAL) for events in _ready(wanted))  # a closed one wakes nobody
+def wait_for_none_that_runs() -> bool:
+    """Nobody waits any more for the threads that run now; whether another one has its turn by that."""
+    with guard:
+        before = turns
+        unawaited.update(running)
+        pass_on()
+        return turns != before
 
 
 def next_deadline() -> int:

@@ -11,12 +11,9 @@ from .locks import Lock
 native_ids: Dict[int, int] = {}  # of the threads that exist, by their identity
 
 
-def _begin() -> None:
-    me = _thread.get_ident()
-    native_ids[me] = threading.get_native_id()
-    with scheduler.guard:
-        scheduler.starting -= 1
-        scheduler.running.add(me)
+def _begin(waiter: scheduler.Waiter) -> None:
+    native_ids[_thread.get_ident()] = threading.get_native_id()
+    scheduler.begin(waiter)
 
 
 def _end() -> None:
@@ -55,20 +52,18 @@ def install() -> None:
             return start(thread)
         thread.robocop_end = Lock()
         thread.robocop_end.acquire()
-        with scheduler.guard:
-            scheduler.starting += 1
+        thread.robocop_turn = scheduler.new_thread()
         try:
             start(thread)
         except RuntimeError:  # no more threads
-            with scheduler.guard:
-                scheduler.starting -= 1
+            scheduler.no_thread(thread.robocop_turn)
             raise
 
     @functools.wraps(bootstrap)
     def counted_bootstrap(thread: Any) -> None:
-        if not hasattr(thread, "robocop_end"):
+        if not hasattr(thread, "robocop_turn"):
             return bootstrap(thread)
-        _begin()
+        _begin(thread.robocop_turn)
         try:
             bootstrap(thread)
         finally:
@@ -88,16 +83,20 @@ def install() -> None:
 
     @functools.wraps(_thread.start_new_thread)
     def start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
+        turn = scheduler.new_thread()
+
         def counted() -> None:
-            _begin()
+            _begin(turn)
             try:
                 function(*arguments, **options)
             finally:
                 _end()
 
-        with scheduler.guard:
-            scheduler.starting += 1
-        return scheduler.start_new_thread(counted, ())
+        try:
+            return scheduler.start_new_thread(counted, ())
+        except RuntimeError:  # no more threads
+            scheduler.no_thread(turn)
+            raise
 
     system = _thread
     system.start_new_thread = system.start_new = start_new_thread

@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, Dict
+from typing import Any, Callable, Dict
 
 import actionlib
 import roslib.message
@@ -42,6 +42,25 @@ STATUS_TYPES = {
 FRAMES = ("base_footprint", "map")
 
 
+class _Server(actionlib.ActionServer):
+    """actionlib's, which the main thread tells what has arrived."""
+
+    def __init__(self, on_goal: Callable[[Any], None]) -> None:
+        super().__init__(ACTION, GoToPositionAction, on_goal, lambda _handle: None, auto_start=False)
+
+    def internal_goal_callback(self, goal: GoToPositionActionGoal) -> None:
+        """Not in the thread that receives it."""
+
+    def internal_cancel_callback(self, goal_id: GoalID) -> None:
+        """Likewise."""
+
+    def receive_goal(self, goal: GoToPositionActionGoal) -> None:
+        super().internal_goal_callback(goal)
+
+    def receive_cancel(self, goal_id: GoalID) -> None:
+        super().internal_cancel_callback(goal_id)
+
+
 class BridgeRun(Run):
     """One submission's bridge.
 
@@ -72,15 +91,9 @@ class BridgeRun(Run):
     # -- the server that it talks to --
 
     def _serve(self) -> None:
-        # actionlib's server does not report a goal whose cancel arrived first, so goals are counted on the topic.
+        # actionlib's server does not report a goal whose cancel is handled first, so goals are counted on the topic.
         self.stage.listen(f"{ACTION}/goal", GoToPositionActionGoal, self._on_sent)
-        self.server = actionlib.ActionServer(
-            ACTION,
-            GoToPositionAction,
-            lambda handle: self.stage.post(self._on_goal, handle),
-            lambda _handle: None,
-            auto_start=False,
-        )
+        self.server = _Server(self._on_goal)
         self.server.start()
         self.server.status_timer.shutdown()  # by the wall clock; see tick()
         self.stage.join()
@@ -89,9 +102,10 @@ class BridgeRun(Run):
         position, name = message.goal.position, message.goal_id.id
         self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
         self._note_if_cancelled(name)
+        self.server.receive_goal(message)
 
     def _note_if_cancelled(self, name: str) -> None:
-        """A goal's cancel may have arrived first: they use two connections."""
+        """Cancel requests are handled first of what has arrived."""
         if any(cancel.id == name for cancel in self.parts["cancels"]):
             self.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
 
@@ -119,6 +133,8 @@ class BridgeRun(Run):
         connections, and cannot know which message arrives first.
         """
         self.add("cancels", rec.Cancel(self.stage.now, message.id))
+        if self.server is not None:
+            self.server.receive_cancel(message)
         for goal in self.parts["goals"]:
             handle = self.handles.get(goal.id)
             everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6

@@ -50,7 +50,10 @@ class _Answer(NamedTuple):
 
 
 class Node:
-    """One node; each line of its output is passed to `on_line`. While it is waited for, `run_jobs` is called."""
+    """One node; each line of its output is passed to `on_line`.
+
+    While it is waited for, its calls of services are answered. When it waits itself, what it has sent is handled.
+    """
 
     def __init__(
         self,
@@ -58,7 +61,8 @@ class Node:
         environment: Mapping[str, str],
         folder: Path,
         on_line: Callable[[str], Any],
-        run_jobs: Callable[[], Any],
+        answer_calls: Callable[[], Any],
+        handle_arrived: Callable[[], Any],
         master_port: int,
         now_ns: int,
         clock_ns: int,
@@ -76,7 +80,7 @@ class Node:
         )
         theirs.close()
         self._channel, self._started_ns = mine, now_ns
-        self._run_jobs = run_jobs
+        self._answer_calls, self._handle_arrived = answer_calls, handle_arrived
         self._buffer = b""
         self._sent: Dict[ros_internals.Link, int] = {}  # bytes, as the agent has been told
         self._topics: Dict[str, Any] = {"published": [], "subscribed": []}  # as the agent has told last
@@ -143,7 +147,7 @@ class Node:
         """
         deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid)
         while not done():
-            self._run_jobs()
+            self._answer_calls()
             if stillness.look() >= MOST_STILL or stillness.switches > most_switches:
                 return False
             if time.monotonic() > deadline:
@@ -190,7 +194,7 @@ class Node:
             self.ended = "it stopped answering the grader, which has ended it"
             self.end()
         self._wait(lambda: not ros_internals.hears_others(), SHORTLY)  # what it has sent before its end counts
-        self._run_jobs()
+        self._handle_arrived()
         self._output.pass_on()
 
     # -- messages and connections --
@@ -202,7 +206,7 @@ class Node:
             return not any(-1 < ros_internals.handled(link) < count for link, count in sent)
 
         self._wait(arrived, SHORTLY)
-        self._run_jobs()
+        self._handle_arrived()
         self._output.pass_on()
 
     def join(self) -> None:
@@ -212,7 +216,7 @@ class Node:
         """
         if not self.is_busy:  # else it does nothing until it is to go on
             self._wait(lambda: self._hears() and self._reaches() or self._has_ended(), SOON)
-            self._run_jobs()
+            self._handle_arrived()
 
     def _connect(self) -> bool:
         """Wait until the node is connected with whom it has told the master; whether it was not before."""
@@ -220,7 +224,7 @@ class Node:
         self._has_new_topics = False
         if connects:
             self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
-            self._run_jobs()
+            self._handle_arrived()
         return connects and not self._has_ended()
 
     def _hears(self) -> bool:

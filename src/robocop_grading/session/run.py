@@ -99,6 +99,7 @@ class Run:
             self.job.environment,
             self.job.folder,
             self._on_line,
+            self.stage.answer_calls,
             self.stage.run_jobs,
             int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0),
             self.stage.sim.stamp_ns,

@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from functools import partial
-from typing import Any, Callable, Deque, Optional
+from typing import Any, Callable, Deque, Optional, Tuple
 
 import genpy
 import numpy as np
@@ -71,7 +71,7 @@ class Stage:
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
-        self._arrived: Deque[Callable[[], object]] = deque()
+        self._arrived: Deque[Tuple[str, Callable[[], object]]] = deque()  # topic, and what handles a message
         self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._real_time = True
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
@@ -88,9 +88,9 @@ class Stage:
 
     # -- what arrives --
 
-    def post(self, handler: Callable[[Any], object], payload: Any) -> None:
-        """Have the main thread handle something; may be called from any thread."""
-        self._arrived.append(partial(handler, payload))
+    def post(self, topic: str, handler: Callable[[Any], object], payload: Any) -> None:
+        """Have the main thread handle what has arrived on a topic; may be called from any thread."""
+        self._arrived.append((topic, partial(handler, payload)))
 
     def listen(
         self, topic: str, kind: Any, handler: Callable[[Any], object], of: Callable[[Any], Any] = trimmed
@@ -99,7 +99,7 @@ class Stage:
 
         def receive(message: Any) -> None:
             if len(self._arrived) < MOST_WAITING:  # messages of a flood beyond that are dropped
-                self.post(handler, of(message))
+                self.post(topic, handler, of(message))
 
         return rospy.Subscriber(topic, kind, receive, tcp_nodelay=True)
 
@@ -171,10 +171,15 @@ class Stage:
             self.digest()
 
     def run_jobs(self) -> None:
-        """Handle what has arrived."""
-        while self._arrived:
-            self._arrived.popleft()()
-        self.simulation.jobs.run_queued()  # from services
+        """Handle what has arrived, by topics in the order of their names: which one was first is up to the system."""
+        arrived = [self._arrived.popleft() for _ in range(len(self._arrived))]
+        for _, handle in sorted(arrived, key=lambda topic_and_handle: topic_and_handle[0]):
+            handle()
+        self.answer_calls()
+
+    def answer_calls(self) -> None:
+        """Do what services have been called for."""
+        self.simulation.jobs.run_queued()
 
     def subscriptions(self) -> Subscriptions:
         """The submission's; odometry and transforms always, for the bag; wheel angles if the run is shown."""

@@ -1,0 +1,152 @@
+"""Threads that wait for sockets and other files, and the bytes that are on their way to them.
+
+The thread that answers the grader polls for all of them, and wakes those whose files are ready in one order: that in
+which the grader publishes its topics, then by descriptor.
+"""
+
+import _thread
+import ctypes
+import errno
+import select
+from typing import Any, Dict, List, Optional, Tuple
+
+from . import scheduler
+from .scheduler import Files, Waiter
+
+Link = Tuple[int, int]  # a TCP connection, by this process's port and the other one's
+LAST = 1 << 30  # in the order, all that are no topics
+select_poll = select.poll  # the system's own
+
+reading: Dict[int, Waiter] = {}  # threads that wait
+received: Dict[int, "Traffic"] = {}  # by descriptor
+closed: List["Traffic"] = []  # since the last answer
+expected: Dict[Link, int] = {}  # bytes that the grader has sent
+_order: Dict[Link, int] = {}  # of the connections that it sends by
+
+
+class _PollEntry(ctypes.Structure):
+    """`struct pollfd` of poll(2)."""
+
+    _fields_ = [("fd", ctypes.c_int), ("events", ctypes.c_short), ("revents", ctypes.c_short)]
+
+
+_poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not release the interpreter's lock
+
+
+class Traffic:
+    """What a socket has received and sent."""
+
+    __slots__ = ("link", "received", "sent", "reported")
+
+    def __init__(self, link: Optional[Link]) -> None:
+        self.link = link
+        self.received = self.sent = self.reported = 0  # bytes
+
+
+def expect(link: Link, count: int) -> None:
+    """The grader has sent so many bytes by a connection so far."""
+    expected[link] = count
+    _order.setdefault(link, len(_order))
+
+
+def _ready(files: Files) -> List[int]:
+    """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
+    entries = (_PollEntry * len(files))(*(_PollEntry(file, events) for file, events in files))
+    while _poll_with_gil(entries, len(files), 0) < 0:
+        if ctypes.get_errno() != errno.EINTR:  # a signal
+            raise OSError(ctypes.get_errno(), "poll() of the descriptors that threads wait for")
+    return [entry.revents for entry in entries]
+
+
+def poll(files: Files, timeout: Optional[float] = None) -> bool:
+    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
+    if any(_ready(files)):
+        return True
+    me = _thread.get_ident()
+    if me in scheduler.calling:
+        return _poll(files, None)
+    if not scheduler.active:
+        return _poll(files, timeout)
+    if timeout is not None and timeout <= 0.0:
+        return False
+    waiter = Waiter(me, files)
+    with scheduler.guard:
+        reading[me] = waiter
+        scheduler.park(waiter, scheduler.deadline(timeout))
+    try:
+        scheduler.wait(waiter)
+    finally:
+        reading.pop(me, None)
+    return waiter.granted
+
+
+def _poll(files: Files, timeout: Optional[float]) -> bool:
+    poller = select_poll()
+    for file, events in files:
+        poller.register(file, events)
+    return bool(poller.poll(None if timeout is None else timeout * 1e3))
+
+
+# -- for the thread that answers the grader --
+
+
+def wait_for(descriptor: int, timeout: Optional[float]) -> bool:
+    """Wait for a descriptor of the grader's, or for files that threads wait for; whether it is the former.
+
+    Not for topics of the grader: it sends them before a request.
+    """
+    with scheduler.guard:
+        files = [file for file in _wanted() if not _is_expected(file[0])]
+        files = [file for file, events in zip(files, _ready(files)) if not events & select.POLLNVAL]
+    _poll([(descriptor, select.POLLIN), *files], timeout)
+    return any(_ready([(descriptor, select.POLLIN)]))
+
+
+def wait_for_more(timeout: float) -> None:
+    """Wait for files that threads wait for, for `timeout` [s, wall] at most."""
+    with scheduler.guard:
+        files = _wanted()
+    _poll(files, timeout)
+
+
+def wake(topics: bool = True) -> bool:
+    """Wake the threads whose files are ready, if `topics` also those of the grader's topics; whether there are any."""
+    with scheduler.guard:
+        files = [file for file in _wanted() if topics or not _is_expected(file[0])]
+        ready = {
+            file for (file, _), events in zip(files, _ready(files)) if events not in (0, select.POLLNVAL)
+        }  # a closed one wakes nobody
+        if not ready:
+            return False
+        found = []
+        for waiter in reading.values():
+            places = [_place(file) for file, _ in waiter.files if file in ready]
+            if places and not waiter.awake:
+                found.append((min(places), waiter))
+        for _, waiter in sorted(found, key=lambda place_and_waiter: place_and_waiter[0]):
+            waiter.granted = True
+            scheduler.wake(waiter)
+        return True
+
+
+def more_is_expected() -> bool:
+    """Whether something is on its way to a thread that waits for it."""
+    for file, _ in _wanted():
+        traffic = received.get(file)
+        if traffic is not None and traffic.link in expected and traffic.received < expected[traffic.link]:
+            return True
+    return False
+
+
+def _wanted() -> Files:
+    return [file for waiter in reading.values() if not waiter.awake for file in waiter.files]
+
+
+def _is_expected(file: int) -> bool:
+    traffic: Any = received.get(file)
+    return traffic is not None and traffic.link in expected
+
+
+def _place(file: int) -> Tuple[int, int]:
+    traffic: Any = received.get(file)
+    return _order.get(traffic.link, LAST) if traffic is not None else LAST, file
