@@ -2,7 +2,8 @@
 
     python agent CHANNEL SCRIPT [ARGUMENT...]
 
-    scheduler    which threads run, and for what the others wait; simulated time
+    scheduler    which thread runs, and for what the others wait; simulated time
+    readers      threads that wait for files and sockets, and what is on its way to them
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
     ros          rospy's time; calls to the grader's own ports, whose answers come without simulated time
@@ -23,12 +24,13 @@ def install(descriptor: int, clock_ns: int, ports: Set[int]) -> None:
 
     `clock_ns` is what /clock shows, `ports` are those of the grader's master and node.
     """
-    from . import channel, clock, files, locks, ros, scheduler, threads
+    from . import channel, clock, files, locks, readers, ros, scheduler, threads
 
     sys.setswitchinterval(SWITCH)
     locks.install()
     clock.install()
     files.install()
+    readers.grader_ports.update(ports)
     threads.register_main()
     threads.install()
     ros.install(clock_ns, ports)

@@ -82,8 +82,7 @@ class Channel:
         """Let threads do what others ask of the node meanwhile: the master, or who wants to hear a topic."""
         while not readers.wait_for(self._descriptor, LOOK if scheduler.running else None):
             readers.wake(topics=False)
-            while not (scheduler.wait_until_idle(LOOK) or readers.wait_for(self._descriptor, 0.0)):
-                pass
+            scheduler.wait_until_idle(LOOK)
 
     def _go_on(self, until_ns: int, clock_ns: int) -> bool:
         """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""

@@ -8,7 +8,7 @@ import _thread
 import ctypes
 import errno
 import select
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Set, Tuple
 
 from . import scheduler
 from .scheduler import Files, Waiter
@@ -17,6 +17,7 @@ Link = Tuple[int, int]  # a TCP connection, by this process's port and the other
 LAST = 1 << 30  # in the order, all that are no topics
 select_poll = select.poll  # the system's own
 
+grader_ports: Set[int] = set()
 reading: Dict[int, Waiter] = {}  # threads that wait
 received: Dict[int, "Traffic"] = {}  # by descriptor
 closed: List["Traffic"] = []  # since the last answer
@@ -60,7 +61,7 @@ def _ready(files: Files) -> List[int]:
 
 def poll(files: Files, timeout: Optional[float] = None) -> bool:
     """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
-    if any(_ready(files)):
+    if any(_ready(files)) or any(file < 0 for file, _ in files):  # a closed one fails at once
         return True
     me = _thread.get_ident()
     if me in scheduler.calling:
@@ -96,7 +97,7 @@ def wait_for(descriptor: int, timeout: Optional[float]) -> bool:
     Not for topics of the grader: it sends them before a request.
     """
     with scheduler.guard:
-        files = [file for file in _wanted() if not _is_expected(file[0])]
+        files = [file for file in _wanted() if not _is_topic(file[0])]
         files = [file for file, events in zip(files, _ready(files)) if not events & select.POLLNVAL]
     _poll([(descriptor, select.POLLIN), *files], timeout)
     return any(_ready([(descriptor, select.POLLIN)]))
@@ -112,7 +113,7 @@ def wait_for_more(timeout: float) -> None:
 def wake(topics: bool = True) -> bool:
     """Wake the threads whose files are ready, if `topics` also those of the grader's topics; whether there are any."""
     with scheduler.guard:
-        files = [file for file in _wanted() if topics or not _is_expected(file[0])]
+        files = [file for file in _wanted() if topics or not _is_topic(file[0])]
         ready = {
             file for (file, _), events in zip(files, _ready(files)) if events not in (0, select.POLLNVAL)
         }  # a closed one wakes nobody
@@ -142,9 +143,9 @@ def _wanted() -> Files:
     return [file for waiter in reading.values() if not waiter.awake for file in waiter.files]
 
 
-def _is_expected(file: int) -> bool:
+def _is_topic(file: int) -> bool:
     traffic: Any = received.get(file)
-    return traffic is not None and traffic.link in expected
+    return traffic is not None and traffic.link is not None and traffic.link[1] in grader_ports
 
 
 def _place(file: int) -> Tuple[int, int]:

@@ -1,5 +1,7 @@
 """Programs under the agent live in simulated time, which a stub of the grader's end of the channel lets go on."""
 
+import contextlib
+import itertools
 import os
 import socket
 import subprocess
@@ -30,12 +32,12 @@ class Answer(NamedTuple):
 class Program:
     """A program under the agent."""
 
-    def __init__(self, folder, text):
+    def __init__(self, folder, text, grader_port=1):
         script = folder / "script.py"
         script.write_text("import time\nstart = time.monotonic()\n" + text)
         mine, theirs = socket.socketpair()
         self.process = subprocess.Popen(
-            [sys.executable, AGENT, f"{theirs.fileno()},0,1", str(script), "argument"],
+            [sys.executable, AGENT, f"{theirs.fileno()},0,{grader_port}", str(script), "argument"],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -54,13 +56,14 @@ class Program:
         self.process.stdout.close()
         self._channel.close()
 
-    def go_on(self, until, clock=0):
+    def go_on(self, until, clock=0, sent=()):
         """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended.
 
-        `clock`: what /clock shows then [ns].
+        `clock`: what /clock shows then [ns]; `sent`: of connections the program's port, the other one and bytes.
         """
         try:
-            self._channel.sendall(f"{until} {clock}\n".encode())
+            request = " ".join(map(str, [until, clock, *itertools.chain(*sent)]))
+            self._channel.sendall(f"{request}\n".encode())
             line = self._lines.readline()
         except OSError:
             return None
@@ -71,6 +74,7 @@ class Program:
         """Let it live for this simulated time, or until it ends; what it has printed."""
         for step in range(1, int(seconds * 1e9) // STEP + 1):
             if self.go_on(step * STEP) is None:
+                self.process.wait(PATIENCE)
                 break
         else:
             self.process.kill()
@@ -107,6 +111,7 @@ POLL = (
         (f"{POLL}p.register(s[0], 0); p.modify(s[0], 1); p.poll(2000)", 0.4),
         ("import select, socket; s = socket.socketpair(); e = select.epoll(); e.register(s[0], 1); e.poll(0.3)", 0.3),
         ("import socket; s = socket.socketpair(); s[0].settimeout(0.2)\ntry: s[0].recv(1)\nexcept OSError: pass", 0.2),
+        ("import socket; s = socket.socketpair()[0]; s.close()\ntry: s.recv(1)\nexcept OSError: time.sleep(0.2)", 0.2),
         ("import asyncio; asyncio.run(asyncio.sleep(0.35))", 0.35),
         ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
         ("import sched; s = sched.scheduler(); s.enter(0.8, 1, print); s.run()", 0.8),
@@ -220,6 +225,122 @@ def test_message_that_arrives_wakes_its_reader_before_time_goes_on(tmp_path):
             assert program.process.stdout.readline() == "b'hello' 0.01\n"
 
 
+def test_grader_learns_what_was_sent_by_a_connection_that_has_been_closed_since(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        text = f"""
+import socket
+for data in (b"x", b"xyz"):
+    with socket.create_connection(("127.0.0.1", {port})) as connection:
+        connection.sendall(data)
+time.sleep(1.0)
+"""
+        with Program(tmp_path, text) as program:
+            sent = program.go_on(STEP).sent
+            assert sent[1:3] + sent[4:] == [port, 1, port, 3]
+            assert program.go_on(2 * STEP).sent == []
+
+
+def test_threads_that_have_data_to_read_go_on_in_the_order_in_which_the_grader_publishes(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        text = f"""
+import socket, threading
+def read(connection):
+    print(connection.recv(1).decode(), flush=True)
+    for _ in range(10**5): pass
+    print(connection.recv(1).decode(), flush=True)
+for _ in range(3):
+    connection = socket.create_connection(("127.0.0.1", {port}))
+    threading.Thread(target=read, args=[connection]).start()
+time.sleep(1.0)
+"""
+        with Program(tmp_path, text, port) as program, contextlib.ExitStack() as stack:
+            program.go_on(STEP)
+            connections = [stack.enter_context(server.accept()[0]) for _ in range(3)]
+            links = [(it.getpeername()[1], it.getsockname()[1]) for it in (connections[i] for i in (2, 0, 1))]
+            for step, letters in enumerate(("abc", "def"), 2):
+                for connection, letter in zip(connections, letters):
+                    connection.sendall(letter.encode())
+                program.go_on(step * STEP, sent=[(*link, step - 1) for link in links])
+            assert [program.process.stdout.readline().strip() for _ in range(6)] == list("cabfde")
+
+
+def test_others_get_answers_between_two_requests_also_if_a_thread_waits_in_an_unknown_way(tmp_path):
+    text = """
+import ctypes, socket, socketserver, threading
+threading.Thread(target=ctypes.CDLL(None).sleep, args=[1000], daemon=True).start()
+class Echo(socketserver.BaseRequestHandler):
+    def handle(self): self.request.sendall(self.request.recv(1))
+server = socketserver.ThreadingTCPServer(('127.0.0.1', 0), Echo)
+threading.Thread(target=server.serve_forever, daemon=True).start()
+print(server.server_address[1], flush=True)
+time.sleep(60)
+"""
+    with Program(tmp_path, text) as program:
+        program.go_on(STEP)
+        port = int(program.process.stdout.readline())
+        for letter in (b"a", b"b", b"c"):
+            with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as connection:
+                connection.sendall(letter)
+                assert connection.recv(1) == letter
+
+
+def test_one_thread_runs_at_a_time(tmp_path):
+    text = """
+import sys, threading
+sys.setswitchinterval(1e-6)
+count, begin = 0, threading.Event()
+def plus_one(number): return number + 1
+def add():
+    global count
+    begin.wait()
+    for _ in range(20_000):
+        count = plus_one(count)
+threads = [threading.Thread(target=add) for _ in range(4)]
+for thread in threads: thread.start()
+begin.set()
+for thread in threads: thread.join()
+print(count)
+"""
+    assert printed(tmp_path, text) == ["80000"]
+
+
+def test_thread_that_looks_again_and_again_whether_another_is_done_is_not_waited_for(tmp_path):
+    text = """
+import threading
+done = False
+def end():
+    global done
+    time.sleep(0.1)
+    done = True
+thread = threading.Thread(target=end)
+thread.start()
+time.sleep(0.1)  # it wakes up after the other one has begun to wait, and before that is done
+while not done:
+    pass
+print("done")
+"""
+    assert printed(tmp_path, text) == ["done"]
+
+
+def test_signal_handler_that_ends_a_wait_leaves_the_program_alive(tmp_path):
+    text = """
+import os, signal, threading
+def stop(*_): raise InterruptedError
+signal.signal(signal.SIGUSR1, stop)
+threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGUSR1]).start()
+for wait in (lambda: time.sleep(5.0), lambda: threading.Event().wait(5.0)):
+    try: wait()
+    except InterruptedError: print("interrupted")
+    time.sleep(0.3)
+    print(round(time.monotonic() - start, 3))
+    threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGUSR1]).start()
+"""
+    lines = printed(tmp_path, text, seconds=3.0)
+    assert lines[:4] == ["interrupted", "0.5", "interrupted", "1.0"]
+
+
 # Its main thread sleeps by rospy's clock, and a thread of its own handles what is sent to the port that it prints.
 SLEEPS_BY_THE_CLOCK = """
 import socket, sys, threading, rospy
@@ -239,22 +360,6 @@ rospy.sleep(0.5)
 print(data, round(rospy.get_time(), 3), flush=True)
 time.sleep(60)
 """
-
-
-def test_grader_learns_what_was_sent_by_a_connection_that_has_been_closed_since(tmp_path):
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-        text = f"""
-import socket
-for data in (b"x", b"xyz"):
-    with socket.create_connection(("127.0.0.1", {port})) as connection:
-        connection.sendall(data)
-time.sleep(1.0)
-"""
-        with Program(tmp_path, text) as program:
-            sent = program.go_on(STEP).sent
-            assert sent[1:3] + sent[4:] == [port, 1, port, 3]
-            assert program.go_on(2 * STEP).sent == []
 
 
 def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
