@@ -83,7 +83,7 @@ class Node:
         self._answer_calls, self._handle_arrived = answer_calls, handle_arrived
         self._buffer = b""
         self._sent: Dict[ros_internals.Link, int] = {}  # bytes, as the agent has been told
-        self._topics: Dict[str, Any] = {"published": [], "subscribed": []}  # as the agent has told last
+        self._topics: Dict[str, Any] = {"node": "", "published": [], "subscribed": []}  # as the agent has told last
         self._has_new_topics = False  # it has told of some, which may not be connected yet
         self.next_ns = now_ns  # when the node will do something without having received a message
         self.is_busy = False  # it computes without an end, as a loop without pauses
@@ -193,7 +193,8 @@ class Node:
         if not self._wait(self._has_ended, most_switches=MOST_SWITCHES):
             self.ended = "it stopped answering the grader, which has ended it"
             self.end()
-        self._wait(lambda: not ros_internals.hears_others(), SHORTLY)  # what it has sent before its end counts
+        name = self._topics["node"]
+        self._wait(lambda: not ros_internals.hears_from(name), SHORTLY)  # what it has sent before its end counts
         self._handle_arrived()
         self._output.pass_on()
 

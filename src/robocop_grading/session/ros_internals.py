@@ -60,13 +60,13 @@ def handled(link: Link) -> int:
     return -1 if link[1] == ports()[1] else _handled.get(link, -1)
 
 
-def hears_others() -> bool:
-    """Whether another node's topic is connected, or something that came from it has not had its callbacks yet.
+def hears_from(node: str) -> bool:
+    """Whether a topic of a node's is connected, or something that came from it has not had its callbacks yet.
 
     rospy closes a connection that the other side has ended when it has made use of all that came before.
     """
     return any(
-        connection.socket is not None and connection.callerid_pub != rospy.get_name()
+        connection.socket is not None and connection.callerid_pub == node
         for subscription in list(_topics().subs.values())
         for connection in subscription.connections
     )

@@ -34,9 +34,9 @@ own = rospy.Publisher("own", Int32, queue_size=0)
 rospy.Subscriber("own", Int32, lambda message: None)  # this process's own topic never ends
 publisher = subprocess.Popen([sys.executable, "-c", {PUBLISHER!r}])
 assert publisher.wait() == 0
-assert ros_internals.hears_others()
+assert ros_internals.hears_from("/publisher")
 ended.set()
-while ros_internals.hears_others():
+while ros_internals.hears_from("/publisher"):
     time.sleep(0.001)
 print(len(handled), own.get_num_connections())
 """
