@@ -7,6 +7,7 @@ may have changed. Of each connection: PORT OF THIS PROCESS, PORT OF THE GRADER, 
     DONE [ns] NEXT [ns] BUSY [0 or 1] CONNECTION...
 """
 
+import contextlib
 import ctypes
 import itertools
 import json
@@ -22,7 +23,7 @@ PATIENCE = 0.5  # [s] likewise for what it does at one time ...
 TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
 IMPATIENCE = 0.002  # [s] as long as it goes on, and
 BRIEFLY = 0.2  # [s] once it has come to an end
-TURN = 0.1  # [s] of processor time that other threads leave to one
+TURN = 0.05  # [s] of processor time that other threads leave to one
 MANY = 100  # times that threads are woken between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
@@ -37,6 +38,7 @@ class Channel:
         self._exhausted = 0  # requests in a row at whose end the node still ran
         self._busy = False  # the node still ran at the end of the last request
         self._calls = -1  # to the grader, of which it knows the effects
+        os.register_at_fork(after_in_child=self._leave)
 
     def serve(self) -> None:
         """Until the grader closes its end, which it does only after it has killed this process."""
@@ -44,6 +46,11 @@ class Channel:
             self._serve()
         finally:
             os.close(self._descriptor)  # the grader need not wait for an answer
+
+    def _leave(self) -> None:
+        """In a forked child, which may outlive this process: the grader learns of the latter's end."""
+        with contextlib.suppress(OSError):
+            os.close(self._descriptor)
 
     def _serve(self) -> None:
         for request in self._requests():
@@ -80,9 +87,12 @@ class Channel:
 
     def _wait_for_request(self) -> None:
         """Let threads do what others ask of the node meanwhile: the master, or who wants to hear a topic."""
-        while not readers.wait_for(self._descriptor, LOOK if scheduler.running else None):
+        turn = -1
+        while not readers.wait_for(self._descriptor, LOOK if scheduler.running or scheduler.starting else None):
             readers.wake(topics=False)
-            scheduler.wait_until_idle(LOOK)
+            if not scheduler.wait_until_idle(LOOK) and turn == scheduler.turns:
+                scheduler.wait_for_none_of(set(scheduler.running))  # of a node that is busy
+            turn = scheduler.turns
 
     def _go_on(self, until_ns: int, clock_ns: int) -> bool:
         """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
@@ -118,8 +128,9 @@ class Channel:
         for count in itertools.count(1):
             idle = scheduler.wait_until_idle(look)
             stuck.others.look()
-            is_over = idle or (stuck.all_stuck() and not scheduler.wait_for_none_that_runs())
-            if is_over or scheduler.running <= scheduler.unawaited:
+            asleep = None if idle else stuck.all_asleep()
+            is_over = idle or (asleep is not None and not scheduler.wait_for_none_of(asleep))
+            if is_over or scheduler.is_unawaited():
                 if readers.wake():
                     if count % MANY:
                         continue
@@ -136,9 +147,9 @@ class Channel:
             if turn != scheduler.turns:
                 turn, turn_started = scheduler.turns, used
             if used - turn_started > TURN and (readers.wake() or scheduler.queue):
-                scheduler.wait_for_none_that_runs()
+                scheduler.wait_for_none_of(set(scheduler.running))
             if used - started > self._allowance:
-                scheduler.wait_for_none_that_runs()
+                scheduler.wait_for_none_of(set(scheduler.running))
                 self._exhausted += 1
                 if self._exhausted >= TIMES:
                     self._allowance, self._patience = IMPATIENCE, BRIEFLY

@@ -1,5 +1,6 @@
 """rospy's time, and its calls to the grader (its master, its topics, its services): answered without simulated time."""
 
+import _thread
 import contextlib
 import functools
 import heapq
@@ -146,7 +147,9 @@ def sleeper_is_due() -> bool:
 def wake_sleeper() -> None:
     """Wake the thread whose sleep is over first."""
     with scheduler.guard:
-        scheduler.wake(heapq.heappop(_sleepers)[2])
+        waiter = heapq.heappop(_sleepers)[2]
+        if not waiter.awake:  # by a signal
+            scheduler.wake(waiter)
 
 
 def set_clock(now_ns: int) -> bool:
@@ -176,7 +179,7 @@ def _show_clock() -> bool:
         condition.release()
     elif not _notifies:  # a thread holds it, perhaps while it waits for a time, which must go on
         _notifies = True
-        threading.Thread(target=_notify, args=[condition], daemon=True).start()
+        _thread.start_new_thread(_notify, (condition,))  # does not wait for its begin, as Thread.start() does
     return _notifies
 
 

@@ -152,6 +152,17 @@ def pause(until_ns: int) -> None:
     wait(waiter)
 
 
+def give_way() -> None:
+    """Let the threads run that have been woken up."""
+    waiter = this_thread()
+    with guard:
+        if not queue or waiter.thread in calling:
+            return
+        wake(waiter)
+        leave()
+    wait(waiter)
+
+
 def spend(share: float, pause_s: float) -> None:
     """The calling thread has done this share of what a thread can do at one simulated time; then it waits [s].
 
@@ -182,6 +193,13 @@ def call() -> Iterator[None]:
             del calling[me]
 
 
+def end() -> None:
+    """The calling thread ends."""
+    with guard:
+        _spent.pop(_thread.get_ident(), None)  # the next one may have its number
+        leave()
+
+
 # -- for the thread that answers the grader --
 
 
@@ -196,11 +214,19 @@ def wait_until_idle(timeout: float) -> bool:
         return not running and not starting
 
 
-def wait_for_none_that_runs() -> bool:
-    """Nobody waits any more for the threads that run now; whether another one has its turn by that."""
+def is_unawaited() -> bool:
+    """Whether all threads that run are such that nobody waits for them."""
     with guard:
+        return not starting and running <= unawaited
+
+
+def wait_for_none_of(threads: Set[int]) -> bool:
+    """Nobody waits any more for these threads, if it is they that run; whether another one has its turn."""
+    with guard:
+        if starting or running != threads:
+            return True
         before = turns
-        unawaited.update(running)
+        unawaited.update(threads)
         pass_on()
         return turns != before
 
@@ -244,8 +270,12 @@ def advance(until_ns: int) -> None:
 
 def leave_alone() -> None:
     """In a forked child, which has none of the other threads: everything is as without the agent."""
-    global active, guard
-    active, guard = False, type(guard)()
+    global active, guard, starting
+    active, guard, starting = False, type(guard)(), 0
+    running.clear()
+    unawaited.clear()
+    queue.clear()
+    calling.clear()
 
 
 os.register_at_fork(after_in_child=leave_alone)

@@ -10,7 +10,7 @@ import os
 import re
 import sys
 import time
-from typing import Dict, Iterator, List
+from typing import Dict, Iterator, List, Optional, Set
 
 from . import scheduler
 from .threads import native_ids
@@ -22,17 +22,17 @@ _process_time, _thread_time = time.process_time, time.thread_time
 _asleep: Dict[int, str] = {}  # threads at the previous look, with how often they have run
 
 
-def all_stuck() -> bool:
-    """Whether each thread that counts as running was asleep at this look and the previous one, and did not run."""
+def all_asleep() -> Optional[Set[int]]:
+    """The threads that run, if each was asleep at this look and the previous one, and did not run; else None."""
     global _asleep
     with scheduler.guard:
         threads = set(scheduler.running)
         if scheduler.starting or threads & scheduler.calling.keys():
-            return False
+            return None
     found = {thread: _sleep_of(native_ids.get(thread, 0)) for thread in threads}
     same = all(switches and _asleep.get(thread) == switches for thread, switches in found.items())
     _asleep = found
-    return same
+    return threads if same else None
 
 
 def _sleep_of(native_id: int) -> str:

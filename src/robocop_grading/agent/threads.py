@@ -18,8 +18,7 @@ def _begin(waiter: scheduler.Waiter) -> None:
 
 def _end() -> None:
     native_ids.pop(_thread.get_ident(), None)
-    with scheduler.guard:
-        scheduler.leave()
+    scheduler.end()
 
 
 def register_main() -> None:
@@ -83,6 +82,8 @@ def install() -> None:
 
     @functools.wraps(_thread.start_new_thread)
     def start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
+        if not scheduler.active:
+            return scheduler.start_new_thread(function, arguments, options)
         turn = scheduler.new_thread()
 
         def counted() -> None:
