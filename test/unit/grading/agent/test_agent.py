@@ -401,7 +401,7 @@ while True: pass
         ),
         (
             # A forked child lives without the agent.
-            "import _thread, os, sys\n"
+            "import _thread, os, sys, warnings\nwarnings.simplefilter('ignore')  # Python warns since 3.12\n"
             "child = os.fork()\n"
             "if child == 0:\n"
             "    _thread.start_new_thread(os._exit, (7,))\n"
