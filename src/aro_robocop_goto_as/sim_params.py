@@ -71,7 +71,6 @@ class TimeParams:
 
     real_time_factor: float = parameter(1.0, low=0.0, high=1e6)  # 0: as fast as possible
     start_paused: bool = False
-    reset_time: bool = False  # ~reset sets simulated time back to zero
 
 
 @dataclass(frozen=True)

@@ -138,10 +138,6 @@ class Remote:
         answer = self._ask(f"step {seconds}")
         assert answer["success"], answer
 
-    def reset(self):
-        answer = self._ask("reset")
-        assert answer["success"], answer
-
     def status(self):
         """The next report from now on."""
         return self._ask("status")
@@ -346,30 +342,6 @@ def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again
     topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
     goal = ros.start("rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
     ros.wait(lambda: remote.step(0.5) or "REACHED" in server.log.read_text(), "the goal", (simulator, server, goal))
-
-
-def test_goal_goes_on_in_the_same_way_after_each_time_that_the_clock_is_set_back(ros_of_its_own):
-    ros = ros_of_its_own
-    simulator = ros.simulator(reset_time=True)
-    server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
-    remote = Remote(ros, simulator)
-    trajectory = ros.folder / "trajectory"
-    recorder = ros.script("trajectory.py", trajectory)
-    ros.wait(trajectory.exists, "the recorder listens", (simulator, recorder))
-    remote.step(1.0)
-    remote.wait_for_driver(SERVER, server)
-    topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
-    goal = ros.start("rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 3.0}}}")
-    ros.wait(lambda: "goal accepted" in server.log.read_text(), "the goal", (server, goal))
-    runs, passed = [], 1.0
-    for seconds in (1.0, 0.3, 1.0, 0.4, 0.3, 1.0, 0.5, 1.0):
-        remote.reset()
-        remote.step(seconds)  # at once: the server may not have seen that it is 0 s
-        passed += seconds
-        runs.append(poses_at(ros, trajectory, passed)[-round(30 * seconds) :])
-    assert remote.status()["lockstep_misses"] == 0
-    assert len(set(runs[0])) == 30, "it did not drive"
-    assert [run == runs[0][: len(run)] for run in runs] == [True] * 8
 
 
 @pytest.mark.slow

@@ -32,7 +32,7 @@ class _AnswerRecord:
     passed: int = -1  # newest tick at which the wait for it was given up
     gaps: List[int] = field(default_factory=list)  # ticks from answer to answer, the newest last
     mistaken: bool = False  # its gaps have predicted an answer that did not come
-    stamps: int = 0  # answers that named their tick, since time was last set
+    stamps: int = 0  # answers that named their tick, since the last reset
     period: int = 0  # greatest common divisor of the gaps between these
 
     def next_gap(self) -> Optional[int]:
@@ -151,11 +151,9 @@ class AwaitedAnswers:
     def restart(self, tick: int) -> None:
         """The simulation was reset and runs towards this tick, which stamping controllers still have to answer.
 
-        The period of a plain loop stays known if time continues; it has to be learned again if time was set back.
+        The period of a plain loop stays known.
         """
-        for name, known in self._controllers.items():
+        for known in self._controllers.values():
             if known.stamped:
                 known.last, known.stamps, known.period = tick - 1, 0, 0
-            elif tick < self.tick:
-                self._controllers[name] = _AnswerRecord(tick - 1, awaited=known.awaited)
         self.tick = tick

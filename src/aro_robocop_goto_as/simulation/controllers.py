@@ -43,7 +43,7 @@ class Controllers:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
         tick = round(stamp_ns * self._rate / 1e9)
         if tick > self.tick:
-            return  # sent before a reset set simulated time back
+            return  # simulated time has not been there
         self.answers.answered(controller, tick)
         if twist is not None and self.answers.is_stamped(controller):  # not enrolled yet: it is also on cmd_vel
             self._pending[controller.robot] = controller, twist

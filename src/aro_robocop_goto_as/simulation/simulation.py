@@ -25,7 +25,6 @@ class Change(enum.Enum):
 
     STATUS = "paused, resumed, or reset"
     FRAMES = "map -> odom of a robot has jumped"
-    TIME = "simulated time was set back"
     WORLD = "the world was replaced"
 
 
@@ -42,7 +41,6 @@ class Simulation:
         self.jobs = Jobs(clock, stopped)
         self.time_control = TimeControl(p.time, simulator.rate, clock)
         self.controllers = Controllers(simulator, p.lockstep, clock)
-        self._reset_time = p.time.reset_time
         self._changes: Set[Change] = set()
 
     def take_changes(self) -> Set[Change]:
@@ -59,12 +57,10 @@ class Simulation:
 
     def reset(self, seed: Optional[int] = None) -> None:
         """Robots to their spawn poses, odometry to zero, noise to its start; None keeps the seed."""
-        before = self.simulator.steps
-        self.simulator.reset(seed, restart_time=self._reset_time)
-        self.time_control.shift_span(before - self.simulator.steps)
+        self.simulator.reset(seed)
         self.time_control.pacer.restart(self.simulator.steps)
         self.controllers.restart()
-        self._changes |= {Change.FRAMES, Change.STATUS} | ({Change.TIME} if self._reset_time else set())
+        self._changes |= {Change.FRAMES, Change.STATUS}
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0, *, anywhere: bool = False) -> None:
         """Place a robot elsewhere, at rest.

@@ -49,7 +49,7 @@ class Simulator:
 
     @property
     def stamp_ns(self) -> int:
-        """Simulated time [ns] of the last step. It moves backwards only in a reset that restarts time."""
+        """Simulated time [ns] of the last step."""
         return stamp_ns(self.steps, self.rate)
 
     @property
@@ -217,17 +217,16 @@ class Simulator:
                     f"x {x:.3f} y {y:.3f} is {distance:.3f} m from robot '{other.name}', expected at least {least:g} m"
                 )
 
-    def reset(self, seed: Optional[int] = None, restart_time: bool = False) -> None:
+    def reset(self, seed: Optional[int] = None) -> None:
         """Robots to their spawn poses, odometry to zero, noise to its start, with a new seed if one is given.
 
-        Simulated time continues, unless `restart_time` sets it back to zero.
+        Simulated time continues.
         """
         spawns = [robot.spawn for robot in self.robots]
         self.moving = bool(self.world.moving())
         self.engine.reset(spawns)
         self.engine.update_fleet()
         self.observed.reset(self.seed if seed is None else seed, spawns)
-        self.steps = 0 if restart_time else self.steps
         self._newly_placed = set(range(len(self.robots)))
 
     def close(self) -> None:

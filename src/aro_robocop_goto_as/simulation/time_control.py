@@ -165,8 +165,3 @@ class TimeControl:
         self._span_end, self.paused = 0, self._pause_after_span
         self._span_ended.set_result(step)
         return True
-
-    def shift_span(self, steps: int) -> None:
-        """Move the span's end by as many steps as a reset has set the simulator's count back."""
-        if self._span_end:
-            self._span_end -= steps

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Steps a simulator in lockstep, and more; requests come by standard input: `step SECONDS`, `reset` or `status`.
+"""Steps a simulator in lockstep, and more; requests come by standard input: `step SECONDS` or `status`.
 
 Each answer is a line of JSON. One such node costs less than a `rosservice call` for every step.
 """
@@ -9,19 +9,19 @@ import sys
 
 import rospy
 from aro_robocop_goto_as.msg import SimStatus
-from aro_robocop_goto_as.srv import Reset, Step
+from aro_robocop_goto_as.srv import Step
 from harness import DEADLINE, SIMULATOR, Recorder
 
 
 def main():
     rospy.init_node("remote", disable_rostime=True)
     status = Recorder(f"{SIMULATOR}/status", SimStatus)
-    step, reset = (rospy.ServiceProxy(f"{SIMULATOR}/{kind.__name__.lower()}", kind) for kind in (Step, Reset))
+    step = rospy.ServiceProxy(f"{SIMULATOR}/step", Step)
     step.wait_for_service(DEADLINE)
     for line in sys.stdin:
         request, *arguments = line.split()
-        if request in ("step", "reset"):
-            answer = step(float(arguments[0])) if request == "step" else reset(0)
+        if request == "step":
+            answer = step(float(arguments[0]))
             reply = {"success": answer.success, "message": answer.message}
         else:
             (message,) = status.next()  # the report of a second ends after the request

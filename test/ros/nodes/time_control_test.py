@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Control of simulated time: real-time factor, steps, seeds, and a clock that is set back; and setting poses."""
+"""Control of simulated time: real-time factor, steps, seeds and poses."""
 
 import rospy
 from aro_robocop_goto_as.msg import SimStatus
@@ -7,7 +7,6 @@ from aro_robocop_goto_as.srv import Reset, SetPose, SetPoseRequest, Step
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
 from harness import (
-    BRIDGE,
     SIMULATOR,
     Recorder,
     SystemTest,
@@ -18,9 +17,7 @@ from harness import (
     wait_for_connection,
 )
 from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
-from std_msgs.msg import String
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.ros.convert import to_quaternion
@@ -36,7 +33,6 @@ class TimeControl(SystemTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.status = Recorder(f"{SIMULATOR}/status", SimStatus)
-        cls.clock = Recorder("/clock", Clock)
         cls.step, cls.reset, cls.set_pose = service("step", Step), service("reset", Reset), service("set_pose", SetPose)
 
     def tearDown(self):
@@ -90,17 +86,6 @@ class TimeControl(SystemTest):
         self.assertEqual(first_scan(5), first_scan(5))
         self.assertNotEqual(first_scan(5), first_scan(6))
         self.assertIn("seed -3: expected a positive number", self.reset(-3).message)
-
-    def test_goals_and_reports_continue_after_the_clock_is_set_back(self):
-        self.goals.send(0.3, 0.0).result("REACHED")
-        late = self.clock.newest().clock
-        self.assertTrue(self.reset(0).success)
-        self.clock.wait_for(lambda m: m.clock < late, "an earlier time", len(self.clock) - 1)
-        reports = Recorder(f"{BRIDGE}/status", String)
-        self.goals.send(0.3, 0.1).result("REACHED")
-        self.goals.send(0.5, 0.0).result("REACHED")
-        start = len(reports)
-        wait_for(lambda: len(reports) > start, "another report of the bridge's timer")
 
     def test_set_pose_moves_the_robot_or_names_the_problem(self):
         request = SetPoseRequest()

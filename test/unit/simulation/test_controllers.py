@@ -103,7 +103,7 @@ def test_another_controllers_command_outlives_one_that_disconnects() -> None:
     assert owner.simulator.world_from_footprint().x > 0.0
 
 
-def test_answer_from_before_time_was_set_back_is_ignored() -> None:
+def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
     owner = lockstep(0.35, "/answering")
     controllers = owner.simulation.controllers
     controllers.answers.enroll(ANSWERING)

@@ -76,21 +76,6 @@ def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
     assert owner.clock.time < 102.0
 
 
-def test_span_keeps_its_length_when_a_reset_sets_time_back() -> None:
-    owner = Owner(real_time_factor=0.0, start_paused=True, reset_time=True)
-    time, simulator = owner.simulation.time_control, owner.simulator
-    spans = [time.begin_span(2.0, 0)]
-    owner.is_stopped = lambda: owner.clock.time > 101.0
-    owner.run()
-    assert simulator.steps == 480
-    spans.append(time.begin_span(0.5, simulator.steps))
-    owner.simulation.reset()
-    assert Change.TIME in owner.simulation.take_changes()
-    owner.clock.time = 100.0
-    owner.run()
-    assert [span is not None and span.result(0) for span in spans] == [480, 120]
-
-
 def test_command_moves_the_robot() -> None:
     owner = Owner(1.0)
     owner.simulation.jobs.post(lambda: owner.simulation.controllers.command(NODE, AHEAD))

@@ -335,14 +335,12 @@ def test_reset_restarts_the_noise_sequence(simulator: Make) -> None:
     assert once == again and once != other
 
 
-def test_reset_sets_time_back_only_on_request(simulator: Make) -> None:
+def test_time_continues_after_a_reset(simulator: Make) -> None:
     sim = simulator("empty")
     for _ in range(10):
         sim.step({})
     sim.reset()
     assert sim.steps == 10
-    sim.reset(restart_time=True)
-    assert sim.stamp_ns == 0
 
 
 # Several robots

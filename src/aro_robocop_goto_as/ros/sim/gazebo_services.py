@@ -53,7 +53,7 @@ class GazeboServices:
         self._properties = GazeboProperties(simulation)
         self._serve_empty("pause_physics", lambda: simulation.set_paused(True))
         self._serve_empty("unpause_physics", lambda: simulation.set_paused(False))
-        # Gazebo's reset_simulation also sets time back to zero: here the parameter ~reset_time decides about that.
+        # Gazebo's reset_simulation also sets time back to zero; here time goes on.
         self._serve_empty("reset_simulation", simulation.reset)
         self._serve_empty("reset_world", simulation.reset)
         self._serve_change("spawn_sdf_model", srv.SpawnModel, self._spawn)

@@ -56,7 +56,7 @@ class SimNode:
         """Simulate until shutdown: clock ticks wait for the wall clock, lockstep control ticks for the controllers."""
         simulator, time, controllers = self._simulator, self._simulation.time_control, self._simulation.controllers
         time.pacer.restart(simulator.steps)
-        self._publish(set(Change) - {Change.TIME})
+        self._publish(set(Change))
         self._pace()
         subscriptions = self._topics.subscriptions()
         while not rospy.is_shutdown():
@@ -131,8 +131,6 @@ class SimNode:
         """Publish anew what has changed other than by a step."""
         if not changes:  # in nearly all rounds of the loop
             return
-        if Change.TIME in changes:
-            self._topics.publish_clock(self._simulator.stamp_ns)
         if Change.FRAMES in changes:
             self._topics.publish_static()
         if Change.WORLD in changes:
