@@ -10,13 +10,13 @@ From a velocity command to odometry, scan, tf and clock:
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.observations       measures what is due and subscribed to
-        sensors                   models of odometry, scanner, IMU, magnetometer and camera
+        sensors                   models of odometry, scanner, IMU and camera
     ros.sim.node                  the loop: has the simulator advance, then publishes what it has measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
         ros.sim.sensor_topics     at the start: packed messages, whose fields are bound to the rows of a robot
         ros.batch                 the batch: batch.c copies these rows into the packed messages and sends them
 
-    rospy serializes the other topics (bumper, battery, magnetic field, camera).
+    rospy serializes the other topics (bumper, camera).
 
 From a goal to its result:
 

@@ -15,7 +15,6 @@ from .sensors.scan_profiles import PROFILES, LidarSpec
 
 MODELS_OWN = "the model's value"
 PROFILES_OWN = "the profile's value"
-ANY_RATE = ("imu_rate", "magnetic_field_rate")  # need not divide physics_rate
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,6 @@ class Rates:
     ground_truth_rate: int = parameter(30, low=1)
     imu_rate: int = parameter(200, low=1)
     bumper_rate: int = parameter(30, low=0)
-    battery_state_rate: int = parameter(0, low=0)
-    magnetic_field_rate: int = parameter(0, low=0)
     camera_rate: int = parameter(10, low=0)
 
 
@@ -234,7 +231,7 @@ class SimParams:
         first = {name: others[name] for name in ("clock_rate", "control_rate")}
         rates: Dict[str, int] = {**first, "scan_rate": self.scan.rate, **others}
         for name, rate in rates.items():
-            if name in ANY_RATE:
+            if name == "imu_rate":  # need not divide physics_rate
                 if rate > physics:
                     problems.append(f"{name}: {rate} Hz is above physics_rate {physics} Hz")
             elif rate and physics % rate:

@@ -54,7 +54,7 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
         one.close()
 
 
-SENSORS = ("scan", "odom", "tf", "joints", "imu", "ground_truth", "bumper", "battery", "magnetic_field", "camera")
+SENSORS = ("scan", "odom", "tf", "joints", "imu", "ground_truth", "bumper", "camera")
 
 
 def everything(robots: int) -> Dict[str, Sequence[int]]:

@@ -85,7 +85,7 @@ def test_rates_of_the_kinematic_configuration_are_consistent() -> None:
 @pytest.mark.parametrize(
     "raw, expected",
     [
-        ({"magnetic_field_rate": 300}, "magnetic_field_rate: 300 Hz is above physics_rate 240 Hz"),
+        ({"imu_rate": 300}, "imu_rate: 300 Hz is above physics_rate 240 Hz"),
         ({"scan_rate": 7}, "scan_rate: 7 Hz does not divide physics_rate 240 Hz"),
         ({"scan_profile": "lds01", "physics_rate": 12}, "scan_rate: 5 Hz does not divide physics_rate 12 Hz"),
         ({"map_frame": "odom"}, "map_frame: expected six different frames, got 'odom' 2 times"),

@@ -7,7 +7,7 @@ import numpy as np
 from genpy import Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry as OdometryMsg
-from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
+from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Header
 
 from ..errors import FrameError
@@ -16,9 +16,8 @@ from ..robot.model import WHEEL_JOINTS, Pair
 from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
 from ..simulation.schedule import NANOSECONDS
-from .covariances import ImuCovariances, diagonal
+from .covariances import ImuCovariances
 
-FULL_VOLTAGE, DESIGN_CAPACITY = 12.6, 1.8  # [V], [Ah] of a TurtleBot3's battery, three LiPo cells
 # Of a quaternion's length. A quarter turn typed as z 0.7 w 0.7 has a length of 0.99; what is farther from 1 is an error
 # of its sender, and normalising it would hide that. tf2 refuses transforms from 0.005 on.
 QUATERNION_TOLERANCE = 0.02
@@ -143,27 +142,4 @@ def to_imu(sample: np.ndarray, stamp: Time, frame: str, covariances: ImuCovarian
         rates,
         Vector3(*sample[FORCE].tolist()),
         accelerations,
-    )
-
-
-def to_magnetic_field(field: np.ndarray, stamp: Time, frame: str) -> MagneticField:
-    """A field (3,) [T] with unknown covariance, which is all zeros by the message's definition."""
-    return MagneticField(Header(0, stamp, frame), Vector3(*field.tolist()), diagonal((0.0,) * 3))
-
-
-def to_battery(stamp: Time, frame: str) -> BatteryState:
-    """A TurtleBot3's battery, always full; what is not measured is NaN, by the message's definition."""
-    return BatteryState(
-        header=Header(0, stamp, frame),
-        voltage=FULL_VOLTAGE,
-        temperature=math.nan,
-        current=math.nan,
-        charge=math.nan,
-        capacity=math.nan,
-        design_capacity=DESIGN_CAPACITY,
-        percentage=1.0,
-        present=True,
-        power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
-        power_supply_health=BatteryState.POWER_SUPPLY_HEALTH_GOOD,
-        power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO,
     )

@@ -10,14 +10,14 @@ from ..geometry import Pose2D, compose, compose3, inverse
 from ..physics.engine import Engine
 from ..raycast.scanners import Scanners
 from ..robot.model import BodyState
-from ..sensors import imu, magnetometer
+from ..sensors import imu
 from ..sensors.camera import CameraImage, CameraSpec
 from ..sensors.lidar import Lidar
 from ..sensors.noise_streams import Episode, NoiseStreams
 from ..sensors.odometry import Odometers
 from ..sim_params import SimParams
 from ..world.model import World
-from .rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
+from .rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, JOINTS, ODOM, SCAN
 
 SLIP_STREAM = 2**32  # noise stream of the wheels' slip; the sensors' streams are numbered from 0 up
 
@@ -64,7 +64,6 @@ class Observations:
         self._ranges: Dict[int, np.ndarray] = {}
         self.scans = self.ranges(self.lidar.spec.samples)
         self.bumpers: Mapping[int, bool] = {}  # whether a robot touches anything but the floor
-        self.magnetic_fields: Mapping[int, np.ndarray] = {}  # (3,) [T] in imu_link
         self.images: Mapping[int, CameraImage] = {}
         self.cameras: Sequence[Optional[CameraSpec]] = [  # None: a model without a camera
             None if model.base_from_camera is None else p.camera.spec(model.name) for model in models
@@ -81,7 +80,6 @@ class Observations:
             ODOM: self._update_odometry,
             SCAN: self._scan_with_any_number_of_beams,
             BUMPER: self._read_bumpers,
-            MAGNETIC_FIELD: self._measure_magnetic_fields,
             CAMERA: self._take_images,
         }
 
@@ -137,13 +135,6 @@ class Observations:
 
     def _read_bumpers(self, robots: Robots) -> None:
         self.bumpers = {robot: self._engine.touching(robot) for robot in robots}
-
-    def _measure_magnetic_fields(self, robots: Robots) -> None:
-        self.magnetic_fields = {robot: self._magnetic_field(robot) for robot in robots}
-
-    def _magnetic_field(self, robot: int) -> np.ndarray:
-        world_from_imu = compose3(self._engine.body(robot).world_from_base, self._models[robot].base_from_imu)
-        return magnetometer.measure(world_from_imu.orientation)
 
     def measure_imus(self, robots: Robots, bodies_before: Sequence[BodyState]) -> None:
         """Measure the IMUs of these robots, whose states before the last step are given."""

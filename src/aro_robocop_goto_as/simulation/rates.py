@@ -6,7 +6,7 @@ from ..sim_params import SimParams
 
 CLOCK, CONTROL = "clock", "control"
 SCAN, ODOM, JOINTS, IMU, GROUND_TRUTH = "scan", "odom", "joints", "imu", "ground_truth"
-BUMPER, BATTERY, MAGNETIC_FIELD, CAMERA, TF = "bumper", "battery", "magnetic_field", "camera", "tf"
+BUMPER, CAMERA, TF = "bumper", "camera", "tf"
 
 
 def rates_of(p: SimParams) -> Dict[str, int]:
@@ -21,8 +21,6 @@ def rates_of(p: SimParams) -> Dict[str, int]:
         ODOM: rates.odom_rate,
         SCAN: p.scan.rate,
         BUMPER: rates.bumper_rate,
-        MAGNETIC_FIELD: rates.magnetic_field_rate,
-        BATTERY: rates.battery_state_rate,
         CAMERA: rates.camera_rate,
         TF: rates.odom_rate,
     }

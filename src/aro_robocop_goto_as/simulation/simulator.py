@@ -16,10 +16,10 @@ from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .observations import Due, Observations, Subscriptions
-from .rates import CLOCK, CONTROL, IMU, MAGNETIC_FIELD, rates_of
+from .rates import CLOCK, CONTROL, IMU, rates_of
 from .schedule import Schedule, stamp_ns
 
-DUE_OFTEN = {IMU, MAGNETIC_FIELD}  # due on most steps and seldom subscribed to
+DUE_OFTEN = {IMU}  # due on most steps and seldom subscribed to
 
 
 class Simulator:

@@ -6,7 +6,7 @@ import unittest
 import rospy
 from commands import Commands
 from harness import SIMULATOR, Recorder, Robot, run, wait_for
-from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
+from sensor_msgs.msg import Imu, JointState, LaserScan
 from tf2_msgs.msg import TFMessage
 
 TICK = 0.001533981  # [rad]
@@ -28,12 +28,7 @@ class RealRobot(unittest.TestCase):
         self.assertEqual(len(scan.ranges), 360)
         self.assertTrue(all(r == 0.0 or 0.12 <= r < 3.51 for r in scan.ranges))
 
-    def test_a_burger_has_battery_state_and_magnetic_field_but_no_bumper(self):
-        battery = Recorder("red/battery_state", BatteryState).newest()
-        self.assertTrue(battery.present and 11.0 < battery.voltage < 13.0)
-        field = Recorder("red/magnetic_field", MagneticField).newest()
-        self.assertEqual(field.header.frame_id, "red/imu_link")
-        self.assertGreater(field.magnetic_field.y, 0.0)
+    def test_a_burger_has_no_bumper(self):
         self.assertNotIn("/red/bumper", dict(rospy.get_published_topics()))
 
     def test_joint_positions_are_whole_encoder_ticks(self):

@@ -153,7 +153,7 @@ def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world
 
 def test_observations_of_a_step_carry_its_stamp_and_rates_are_exact_over_one_second(simulator: Make) -> None:
     seen = drive(simulator("stage_1"), STANDSTILL, 1.0, everything(1))
-    expected = dict(scan=10, odom=30, tf=30, joints=30, imu=200, ground_truth=30, bumper=30, magnetic_field=0)
+    expected = dict(scan=10, odom=30, tf=30, joints=30, imu=200, ground_truth=30, bumper=30)
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected
     assert sum(observed.due.clock for observed in seen) == 60 and sum(observed.due.control for observed in seen) == 10
     assert seen[-1].stamp_ns == 1000000000
@@ -161,11 +161,11 @@ def test_observations_of_a_step_carry_its_stamp_and_rates_are_exact_over_one_sec
 
 
 def test_every_rate_parameter_is_kept(simulator: Make) -> None:
-    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10, battery_state=12, magnetic_field=13)
+    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10)
     given = {f"{name}_rate": rate for name, rate in rates.items()}
     sim = simulator("empty", drive="kinematic", physics_rate=600, clock_rate=1, control_rate=2, **given)
     seen = drive(sim, STANDSTILL, 1.0, everything(1))
-    rates.update(joints=rates.pop("joint_state"), battery=rates.pop("battery_state"), tf=rates["odom"])
+    rates.update(joints=rates.pop("joint_state"), tf=rates["odom"])
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in rates} == rates
     assert (sum(observed.due.clock for observed in seen), sum(observed.due.control for observed in seen)) == (1, 2)
 

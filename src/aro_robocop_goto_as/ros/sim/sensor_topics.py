@@ -6,12 +6,12 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan, MagneticField
+from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Bool
 
 from ...geometry import Pose2D
 from ...robot.model import CAMERA_FRAME
-from ...simulation.rates import BATTERY, BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, MAGNETIC_FIELD, ODOM, SCAN
+from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance
@@ -41,8 +41,6 @@ class SensorTopics:
             (IMU, "imu", Imu, True),
             (GROUND_TRUTH, "ground_truth_odom", Odometry, p.topics.ground_truth),
             (BUMPER, "bumper", Bool, p.rates.bumper_rate),
-            (BATTERY, "battery_state", BatteryState, p.rates.battery_state_rate),
-            (MAGNETIC_FIELD, "magnetic_field", MagneticField, p.rates.magnetic_field_rate),
         ):
             if is_offered:
                 self.topics[sensor] = publisher(prefixed(name, relative), kind, on_change=on_change)
@@ -80,15 +78,10 @@ class SensorTopics:
     def publish(self, sensor: str) -> None:
         """Publish the newest measurement of a sensor whose message is not packed."""
         observed, robot, topic = self._simulator.observed, self._robot, self.topics[sensor]
-        stamp = convert.to_time(observed.stamp_ns)
         if sensor == BUMPER:
             topic.publish(observed.bumpers[robot])
-        elif sensor == BATTERY:
-            topic.publish(convert.to_battery(stamp, self.footprint_frame))
-        elif sensor == MAGNETIC_FIELD:
-            topic.publish(convert.to_magnetic_field(observed.magnetic_fields[robot], stamp, self._imu_frame))
         elif robot in observed.images:
-            topic.publish(observed.images[robot], stamp)
+            topic.publish(observed.images[robot], convert.to_time(observed.stamp_ns))
 
     def transforms(self) -> List[Tuple[str, str, np.ndarray]]:
         """Parent, child and parent_from_child (3,): odom -> base; map -> odom if it follows ground truth."""

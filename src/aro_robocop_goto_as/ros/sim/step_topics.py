@@ -14,19 +14,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
 from ...simulation.observations import Due, Observations, Subscriptions
-from ...simulation.rates import (
-    BATTERY,
-    BUMPER,
-    CAMERA,
-    CLOCK,
-    GROUND_TRUTH,
-    IMU,
-    JOINTS,
-    MAGNETIC_FIELD,
-    ODOM,
-    SCAN,
-    TF,
-)
+from ...simulation.rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..batch import Batch, Posted
@@ -35,8 +23,8 @@ from ..publishing import publisher, push
 from ..rospy_internals import set_latched
 from .sensor_topics import SensorTopics
 
-# Of a step's messages. The first four are published by rospy, the others together; /clock follows them.
-ORDER = (BUMPER, MAGNETIC_FIELD, BATTERY, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
+# Of a step's messages. The first two are published by rospy, the others together; /clock follows them.
+ORDER = (BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
 KEPT = 1e-3  # [s, wall] for which a step's messages may wait for those of the next steps
 
 
