@@ -4,13 +4,16 @@ import argparse
 import os
 import sys
 import zlib
+from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping
+from typing import Dict, List, Mapping, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
+from . import packing
 from .grader import grade as grade_submission
+from .hosting import tree
 from .hosting.scratch import scratch_folder
 from .hosting.workspace import exclusive, places
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines
@@ -67,10 +70,21 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
     return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
 
 
+def _unpacked(path: str, folder: Path) -> Tuple[str, List[str]]:
+    """The path of what is graded, in `folder` if it has to be unpacked, and what is not used of it."""
+    given = Path(os.path.realpath(Path(path).expanduser()))
+    if not packing.is_packed(given):
+        return path, []
+    packed = packing.pack(given)
+    tree.remove(folder)
+    packing.unpack(packed.archive, folder)
+    return str(folder / given.name), packed.notes
+
+
 def main() -> None:
     """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__, allow_abbrev=False)
-    parser.add_argument("path", help="a package, a server (robocop_goto_as.py) or a bridge (robocop_rviz_goto_ac.py)")
+    parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
@@ -85,8 +99,8 @@ def main() -> None:
     try:
         state, share = places()
         texts = load_texts(Path(args.texts) if args.texts else None)
-        path = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
-        plan = load(path, args.seed, texts).restricted(args.only)
+        plan_file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
+        plan = load(plan_file, args.seed, texts).restricted(args.only)
         given = make_report_folder(Path(args.report)) if args.report else None
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
@@ -97,7 +111,9 @@ def main() -> None:
         with scratch_folder(), exclusive(folder_in_use):
             if sys.stderr.isatty():
                 _show_progress("package", "build")
-            submission = prepare_submission(args.path, share, state, state / "grade", sandbox)
+            path, notes = _unpacked(args.path, folder_in_use.with_suffix(".files"))
+            submission = prepare_submission(path, share, state, state / "grade", sandbox)
+            submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
             name = submission.name + ("" if plan.is_whole else "-only")

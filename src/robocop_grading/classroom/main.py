@@ -76,7 +76,9 @@ class Class:
 def main() -> None:
     """Exit status 0: everybody is graded; 1: somebody could not be graded; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
-    parser.add_argument("folder", metavar="DIR", help="contains a folder (a package), zip or Python file per hand-in")
+    parser.add_argument(
+        "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
+    )
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--texts", metavar="YAML", help=TEXTS_HELP)
@@ -101,11 +103,11 @@ def main() -> None:
         out = make_report_folder(results_folder)
         if not args.unsafe:
             expect_private(folder)
-        hand_ins, others = collect(folder)
+        hand_ins, others = collect(folder, (CSV, HTML))
         for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
             raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
         for name in others:
-            print(f"ignored: {one_line(name)}, which is not a folder, zip or Python file", flush=True)
+            print(f"ignored: {one_line(name)}, which is no hand-in", flush=True)
         version = ElementTree.parse(share / "package.xml").findtext("version")
         with scratch_folder(), exclusive(out / ".run"):
             seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one

@@ -74,7 +74,8 @@ def work(task: Task) -> Union[Done, NoTimeError]:
                 raise SubmissionError(task.hand_in.problem)
             path = unpack(task.hand_in, top / "hand_in")
             submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
-            submission = dataclasses.replace(submission, name=name)
+            notes = [*submission.notes, *task.hand_in.notes]
+            submission = dataclasses.replace(submission, name=name, notes=notes)
             grade(Runner(task.plan, state, sandbox), submission, folder, scratch=top)
         except NoTimeError as error:
             return error
@@ -84,7 +85,7 @@ def work(task: Task) -> Union[Done, NoTimeError]:
             folder.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
             problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
-            write(Grade(name, (), (problem,)), task.plan, {}, folder)
+            write(Grade(name, (), (problem, *task.hand_in.notes)), task.plan, {}, folder)
         files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
     return Done(
         task.hand_in.name,

@@ -5,7 +5,7 @@ import pytest
 
 @pytest.fixture
 def folder(tmp_path):
-    """Anna handed in a folder, Ben a file; the other entries are not hand-ins."""
+    """Anna handed in a folder, Ben a file; there are a link and a list as well."""
     top = tmp_path / "class"
     (top / "anna" / "scripts").mkdir(parents=True)
     (top / "anna" / "scripts" / "robocop_goto_as.py").write_text("one")

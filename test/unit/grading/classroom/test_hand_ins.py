@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError
-from robocop_grading.classroom import hand_ins
+from robocop_grading import archives
 from robocop_grading.classroom.hand_ins import collect, pack, unpack
 
 
@@ -28,13 +28,23 @@ def only(folder):
 
 def test_folders_and_python_files_are_hand_ins_and_are_unpacked_unchanged(folder, tmp_path):
     hand_ins, others = collect(folder)
-    assert [hand_in.name for hand_in in hand_ins] == ["anna", "ben.py"]
-    assert others == ["link.py", "list.csv"]
-    assert [hand_in.problem for hand_in in hand_ins] == ["", ""]
-    anna, ben = (unpack(pack(hand_in.path), tmp_path / "out") for hand_in in hand_ins)
+    assert [hand_in.name for hand_in in hand_ins if not hand_in.problem] == ["anna", "ben.py"]
+    assert others == []
+    anna, ben = (unpack(pack(folder / name), tmp_path / "out") for name in ("anna", "ben.py"))
     assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
     assert not (anna / "build").exists()
     assert ben.read_text() == "two"
+
+
+def test_whatever_else_is_in_the_folder_has_a_row_with_the_reason(folder):
+    for name in ("eve.rar", "fred.7z", "gina.ipynb", "hana.py.txt", "README", "grades.csv", "submission_metadata.yml"):
+        (folder / name).write_text("")
+    hand_ins, others = collect(folder, ("grades.csv",))
+    problems = {hand_in.name: hand_in.problem.partition(": expected a folder, a zip or tar")[0] for hand_in in hand_ins}
+    kinds = {"eve.rar": ".rar", "fred.7z": ".7z", "gina.ipynb": ".ipynb", "hana.py.txt": ".txt", "list.csv": ".csv"}
+    expected = {name: f"a {kind} file" for name, kind in kinds.items()}
+    assert problems == {**expected, "README": "a nameless file", "link.py": "a link", "anna": "", "ben.py": ""}
+    assert others == ["grades.csv", "submission_metadata.yml"], "this grader's and Gradescope's"
 
 
 def test_digest_depends_on_contents_but_not_on_times(folder):
@@ -49,6 +59,7 @@ def test_digest_depends_on_contents_but_not_on_times(folder):
 def test_a_link_is_packed_as_a_link(tmp_path):
     (tmp_path / "class" / "eve").mkdir(parents=True)
     (tmp_path / "secret").write_text("points")
+    (tmp_path / "class" / "eve" / "run.py").touch()
     (tmp_path / "class" / "eve" / "link").symlink_to(tmp_path / "secret")
     out = unpack(only(tmp_path / "class"), tmp_path / "out")
     assert (out / "link").is_symlink()
@@ -57,26 +68,26 @@ def test_a_link_is_packed_as_a_link(tmp_path):
 
 def test_zip_counts_as_the_folder_that_it_contains(tmp_path):
     (tmp_path / "class" / "eve").mkdir(parents=True)
-    (tmp_path / "class" / "eve" / "run.sh").write_text("one")
-    (tmp_path / "class" / "eve" / "run.sh").chmod(0o755)
+    (tmp_path / "class" / "eve" / "run.py").write_text("one")
+    (tmp_path / "class" / "eve" / "run.py").chmod(0o755)
     eve = only(tmp_path / "class")
     shutil.make_archive(str(tmp_path / "zipped" / "eve"), "zip", tmp_path / "class" / "eve")
     (tmp_path / "moodle" / "eve").mkdir(parents=True)
     shutil.copy(tmp_path / "zipped" / "eve.zip", tmp_path / "moodle" / "eve" / "lab.zip")
-    for folder in ("zipped", "moodle"):
-        again = only(tmp_path / folder)
-        assert again.problem == "" and again.digest == eve.digest
-        script = unpack(again, tmp_path / f"out_{folder}") / "run.sh"
+    again = only(tmp_path / "zipped")
+    assert again.problem == "" and again.digest == eve.digest
+    for folder, path in (("zipped", "run.py"), ("moodle", "lab.zip/run.py")):
+        script = unpack(only(tmp_path / folder), tmp_path / f"out_{folder}") / path
         assert script.read_text() == "one" and os.access(script, os.X_OK)
 
 
 @pytest.mark.parametrize(
     "name, megabytes, problem",
     [
-        ("../../evil.py", 0, "../../evil.py: expected a path within the zip"),
-        ("/etc/evil.py", 0, "/etc/evil.py: expected a path within the zip"),
+        ("../../evil.py", 0, "../../evil.py: expected a path within the archive"),
+        ("/etc/evil.py", 0, "/etc/evil.py: expected a path within the archive"),
         ("bomb.py", 65, "larger than 64 MB"),
-        ("", 0, "can't be read: File is not a zip file"),
+        ("", 0, "neither a zip nor a tar archive"),
     ],
 )
 def test_malicious_or_broken_zip_is_refused(name, megabytes, problem, tmp_path):
@@ -102,7 +113,7 @@ def test_hand_in_that_cannot_be_packed_states_the_reason(tmp_path):
 def test_a_folder_without_hand_ins_is_refused(tmp_path):
     with pytest.raises(GradingError, match="no hand-ins"):
         collect(tmp_path)
-    with pytest.raises(GradingError, match="expected a folder with one folder, zip or Python file"):
+    with pytest.raises(GradingError, match="expected a folder with a folder, a zip or tar archive, or a Python file"):
         collect(tmp_path / "nothing")
 
 
@@ -148,22 +159,22 @@ def test_zip_with_too_many_entries_is_refused_soon(number, name, tmp_path):
         for index in range(number):
             archive.writestr(zipfile.ZipInfo(name.format(index)), b"")
     started = time.monotonic()
-    assert hand_ins.pack(tmp_path / "eve.zip").problem == TOO_MANY
+    assert pack(tmp_path / "eve.zip").problem == TOO_MANY
     assert time.monotonic() - started < PATIENCE
 
 
 def test_folder_with_too_many_entries_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(hand_ins, "MOST_ENTRIES", 3)
+    monkeypatch.setattr(archives, "MAX_ENTRIES", 4)
     (tmp_path / "eve").mkdir()
     for index in range(3):
-        (tmp_path / "eve" / str(index)).touch()
-    assert hand_ins.pack(tmp_path / "eve").problem == ""
+        (tmp_path / "eve" / f"{index}.py").touch()
+    assert pack(tmp_path / "eve").problem == ""
     (tmp_path / "eve" / "4").touch()
-    assert hand_ins.pack(tmp_path / "eve").problem == TOO_MANY
+    assert pack(tmp_path / "eve").problem == TOO_MANY
 
 
 def test_zip_with_as_many_entries_as_a_hand_in_may_have_is_packed(tmp_path):
     with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive:
-        for index in range(5_000):
-            archive.writestr(zipfile.ZipInfo(f"a/{index}"), b"")
-    assert hand_ins.pack(tmp_path / "eve.zip").problem == ""
+        for index in range(4_999):  # and their folder
+            archive.writestr(zipfile.ZipInfo(f"a/{index}.py"), b"")
+    assert pack(tmp_path / "eve.zip").problem == ""

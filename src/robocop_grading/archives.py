@@ -1,0 +1,165 @@
+"""What zip and tar archives contain, read in memory; neither their paths nor their sizes are trusted.
+
+Members are read one by one, and nothing is extracted, so that all Pythons do the same: the filters of
+tarfile.extractall() came with 3.12, and 3.14 changed the default one.
+"""
+
+import bz2
+import gzip
+import io
+import lzma
+import os
+import stat
+import tarfile
+import zipfile
+from pathlib import PurePosixPath
+from typing import IO, Any, Callable, Dict, NamedTuple
+
+from aro_robocop_goto_as.errors import SubmissionError
+
+from .hosting import tree
+from .hosting.package import GENERATED as BUILD_PRODUCTS
+
+MAX_BYTES = 64 * 1024**2  # of a hand-in
+MAX_ENTRIES = 5_000  # files, folders and links of a hand-in
+MAX_TAR_BYTES = 256 * 1024**2  # of a tar archive with what is left out
+MAX_DIRECTORY = 4 * 1024**2  # bytes of a zip's list of its entries, which zipfile reads at once
+TOO_MANY = f"expected at most {MAX_ENTRIES} files and folders"
+TOO_LARGE = f"larger than {MAX_BYTES // 1024**2} MB"
+LEFT_OUT = {*BUILD_PRODUCTS, ".git", ".robocop", "__MACOSX", ".ipynb_checkpoints", ".DS_Store"}
+APPLE_DOUBLE = "._"  # beginning of the files in which macOS keeps attributes of others
+SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
+# By a file's first bytes.
+COMPRESSIONS: Dict[bytes, Callable[..., Any]] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\0": lzma.open}
+DIRECTORY_SIZE = 5  # index in zipfile's record of a zip's end
+UTF_8 = 0x800  # flag of a zip's entry
+LINK, FOLDER = stat.S_IFLNK | 0o777, stat.S_IFDIR | 0o755
+
+
+class Entry(NamedTuple):
+    """A file, folder or link."""
+
+    mode: int  # st_mode
+    content: bytes = b""
+    target: str = ""  # of a link
+
+
+class Contents:
+    """What a hand-in contains: its entries by path, with slashes; SubmissionError if there is too much."""
+
+    def __init__(self) -> None:
+        self.entries: Dict[str, Entry] = {}
+        self._bytes = 0
+
+    def add(self, path: str, entry: Entry) -> None:
+        """Add an entry, or replace the one of that name."""
+        self.take(path)
+        self.entries[path] = entry
+        self._bytes += len(entry.content)
+        if len(self.entries) > MAX_ENTRIES:
+            raise SubmissionError(TOO_MANY)
+
+    def take(self, path: str) -> Entry:
+        """Remove an entry, if it exists, and return it."""
+        entry = self.entries.pop(path, Entry(0))
+        self._bytes -= len(entry.content)
+        return entry
+
+    def read(self, source: "IO[bytes]") -> bytes:
+        """The content of a file for which there is room."""
+        with source:
+            content = source.read(MAX_BYTES - self._bytes + 1)
+        if len(content) > MAX_BYTES - self._bytes:
+            raise SubmissionError(TOO_LARGE)
+        return content
+
+
+def is_archive(name: str) -> bool:
+    """Return whether a file of this name can be unpacked."""
+    return name.lower().endswith(SUFFIXES)
+
+
+def is_left_out(path: PurePosixPath) -> bool:
+    """Return whether a path leads to something that was generated, or that only its owner's desktop uses."""
+    return bool(LEFT_OUT.intersection(path.parts)) or path.name.startswith(APPLE_DOUBLE)
+
+
+def unpack_archive(file: "IO[bytes]", contents: Contents, prefix: str = "") -> None:
+    """Add the files and links of a zip or tar archive, each below `prefix`; SubmissionError if that is not possible."""
+    try:
+        (_unpack_zip if zipfile.is_zipfile(file) else _unpack_tar)(file, contents, prefix)
+    except SubmissionError:
+        raise
+    except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
+        raise SubmissionError(f"can't be unpacked: {error or type(error).__name__}") from error
+    for path in contents.entries:
+        for folder in map(str, PurePosixPath(path).parents):  # what is below a link would be written elsewhere
+            if folder in contents.entries and not stat.S_ISDIR(contents.entries[folder].mode):
+                raise SubmissionError(f"{path}: {folder} is a file or a link, too")
+
+
+def _unpack_zip(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
+    end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # private: nothing public reads only this
+    if end and end[DIRECTORY_SIZE] > MAX_DIRECTORY:
+        raise SubmissionError(TOO_MANY)
+    with zipfile.ZipFile(file) as archive:
+        for info in archive.infolist():
+            mode = info.external_attr >> 16
+            name = _name_in_zip(info).replace("\\", "/")  # Windows' own zips have backslashes
+            if name.endswith("/") or is_left_out(PurePosixPath(name)):
+                continue
+            path, content = _path(name, prefix), contents.read(archive.open(info))
+            if stat.S_ISLNK(mode):
+                contents.add(path, Entry(LINK, target=os.fsdecode(content)))
+            else:
+                contents.add(path, Entry(_file_mode(mode), content))
+
+
+def _name_in_zip(info: zipfile.ZipInfo) -> str:
+    """The name of an entry: without the flag for UTF-8, macOS writes UTF-8, and a Czech Windows code page 852."""
+    if info.flag_bits & UTF_8:
+        return info.filename
+    raw = info.filename.encode("cp437")
+    try:
+        return raw.decode()
+    except UnicodeDecodeError:
+        return raw.decode("cp852")
+
+
+def _unpack_tar(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
+    file.seek(0)
+    begin = file.read(max(map(len, COMPRESSIONS)))
+    file.seek(0)
+    opener = next((opener for magic, opener in COMPRESSIONS.items() if begin.startswith(magic)), None)
+    # In one piece, as tarfile would read more than fits into memory for some headers.
+    plain = (opener(file) if opener else file).read(MAX_TAR_BYTES + 1)
+    if len(plain) > MAX_TAR_BYTES:
+        raise SubmissionError(f"larger than {MAX_TAR_BYTES // 1024**2} MB")
+    try:
+        archive = tarfile.open(fileobj=io.BytesIO(plain), mode="r:")
+    except tarfile.ReadError:
+        raise SubmissionError("neither a zip nor a tar archive") from None
+    for member in archive:
+        if member.isdir() or is_left_out(PurePosixPath(member.name)):
+            continue
+        path = _path(member.name, prefix)
+        if member.issym():
+            contents.add(path, Entry(LINK, target=member.linkname))
+            continue
+        source = archive.extractfile(member)  # of a hard link: the file's that it is another name of
+        if source is None:
+            raise SubmissionError(f"{member.name}: expected a file, folder or link")
+        contents.add(path, Entry(_file_mode(member.mode), contents.read(source)))
+
+
+def _file_mode(mode: int) -> int:
+    return stat.S_IFREG | (0o755 if mode & 0o111 else 0o644)
+
+
+def _path(name: str, prefix: str) -> str:
+    path = PurePosixPath(name)
+    if ".." in path.parts or path.is_absolute() or not path.parts or "\0" in name:
+        raise SubmissionError(f"{name}: expected a path within the archive")
+    if len(path.parts) > tree.DEEPEST:
+        raise SubmissionError(f"expected at most {tree.DEEPEST} nested folders")
+    return str(PurePosixPath(prefix, path))

@@ -1,0 +1,121 @@
+"""Packs what was handed in, on disk or in archives, one inside another, as the platforms of courses export it."""
+
+import hashlib
+import io
+import os
+import re
+import stat
+import tarfile
+from pathlib import Path, PurePosixPath
+from typing import Any, Dict, List, NamedTuple
+
+from aro_robocop_goto_as.errors import SubmissionError
+
+from .archives import FOLDER, LEFT_OUT, Contents, Entry, is_archive, is_left_out, unpack_archive
+from .hosting import tree
+
+MAX_NESTED = 3  # archives, one inside another, in what was handed in
+MAX_NAMED = 10  # files in a message
+# What is graded, also under a browser's name of a second download. Archives beside it stay as they are.
+GRADED = re.compile(r"package\.xml|robocop_(goto_as|rviz_goto_ac).*\.py")
+OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
+TYPES = {stat.S_IFREG: tarfile.REGTYPE, stat.S_IFDIR: tarfile.DIRTYPE, stat.S_IFLNK: tarfile.SYMTYPE}
+
+
+class Packed(NamedTuple):
+    """What was handed in as one tar archive, which has a single file or folder."""
+
+    archive: bytes
+    digest: str  # of the content
+    notes: List[str]  # about archives that were not unpacked
+
+
+def pack(path: Path) -> Packed:
+    """Pack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
+    contents = Contents()
+    if is_archive(path.name) and path.is_file():
+        contents.add("", Entry(FOLDER))
+        with open(path, "rb") as file:
+            unpack_archive(file, contents)
+    else:
+        _add_from_disk(path, contents)
+    _unpack_nested(contents)
+    return _packed(path.name, contents.entries, _notes(contents.entries))
+
+
+def is_packed(path: Path) -> bool:
+    """Return whether a path is an archive, or a folder with archives and nothing to grade outside of them."""
+    if not path.is_dir():
+        return path.is_file() and is_archive(path.name)
+    names = [name for _, _, files in tree.walk(path, LEFT_OUT) for name in files]
+    return any(map(is_archive, names)) and not any(map(GRADED.fullmatch, names))
+
+
+def _add_from_disk(path: Path, contents: Contents) -> None:
+    """A file or folder and everything below it; links are not followed."""
+    below = (folder / name for folder, folders, files in tree.walk(path, LEFT_OUT) for name in [*folders, *files])
+    for inner in (path, *below):
+        name, mode = "" if inner == path else inner.relative_to(path).as_posix(), os.lstat(inner).st_mode
+        if stat.S_IFMT(mode) not in TYPES:
+            raise SubmissionError(f"{name}: expected a file, folder or link")
+        if not is_left_out(PurePosixPath(name)):
+            content = contents.read(open(inner, "rb")) if stat.S_ISREG(mode) else b""
+            contents.add(name, Entry(mode, content, os.readlink(inner) if stat.S_ISLNK(mode) else ""))
+
+
+def _unpack_nested(contents: Contents) -> None:
+    """Replace archives by folders of their names, as long as there is nothing to grade outside of them."""
+    for _ in range(MAX_NESTED):
+        archives = [path for path in _files(contents.entries) if is_archive(path)]
+        if _has_something_to_grade(contents.entries):
+            return
+        for path in archives:
+            try:
+                unpack_archive(io.BytesIO(contents.take(path).content), contents, path)
+            except SubmissionError as error:
+                raise SubmissionError(f"{path}: {error}") from error
+
+
+def _files(entries: Dict[str, Entry]) -> List[str]:
+    return [path for path in sorted(entries) if path and stat.S_ISREG(entries[path].mode)]
+
+
+def _has_something_to_grade(entries: Dict[str, Entry]) -> bool:
+    return any(GRADED.fullmatch(PurePosixPath(path).name) for path in entries)
+
+
+def _notes(entries: Dict[str, Entry]) -> List[str]:
+    """What to say about archives that were not unpacked; SubmissionError if there is nothing that could be graded."""
+    files = _files(entries)
+    reason = "what is graded is outside of it" if _has_something_to_grade(entries) else "more than three in one another"
+    notes = [f"{path} was not unpacked: {reason}" for path in files if is_archive(path)]
+    others = [path for path in files if path.lower().endswith(OTHER_ARCHIVES) and not is_archive(path)]
+    notes += [f"{path} was not unpacked: expected zip or tar" for path in others]
+    if stat.S_ISDIR(entries[""].mode) and not any(path.endswith((".py", "package.xml")) for path in files):
+        found = ", ".join(files[:MAX_NAMED]) + (" ..." if len(files) > MAX_NAMED else "")
+        problem = f"no package and no Python file in it, only {found}" if files else "it contains no file"
+        raise SubmissionError("; ".join([problem, *notes]))
+    return notes
+
+
+def _packed(name: str, entries: Dict[str, Entry], notes: List[str]) -> Packed:
+    sums, buffer = hashlib.sha256(), io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w") as archive:
+        for path, (mode, content, target) in sorted(entries.items()):
+            info = tarfile.TarInfo(f"{name}/{path}" if path else name)
+            info.mode, info.size, info.linkname = stat.S_IMODE(mode), len(content), target
+            info.type = TYPES[stat.S_IFMT(mode)]
+            archive.addfile(info, io.BytesIO(content))
+            sums.update(repr((path, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
+    return Packed(buffer.getvalue(), sums.hexdigest(), notes)
+
+
+def unpack(packed: bytes, folder: Path) -> None:
+    """Unpack to an empty folder; SubmissionError if that is not possible."""
+    # From checked names. Python 3.14's default would refuse some links and change modes.
+    options: Dict[str, Any] = {"filter": "fully_trusted"} if hasattr(tarfile, "data_filter") else {}
+    try:
+        with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
+            archive.extractall(folder, **options)
+    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
+        raise SubmissionError(f"can't be unpacked: {error}") from error

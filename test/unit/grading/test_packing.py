@@ -1,0 +1,237 @@
+"""What is in archives is found, as platforms and systems make them; nothing is written outside of its folder."""
+
+import io
+import stat
+import tarfile
+import zipfile
+
+import pytest
+
+from aro_robocop_goto_as.errors import SubmissionError
+from robocop_grading import archives, packing
+
+SERVER = "robocop_goto_as.py"
+
+
+def zipped(files, flags=0):
+    """A zip with these files; `flags` as Windows or macOS set them."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            info = zipfile.ZipInfo(name)
+            info.flag_bits |= flags
+            archive.writestr(info, content, zipfile.ZIP_DEFLATED)
+    return buffer.getvalue()
+
+
+def tarred(files, compression=""):
+    """A tar archive with these files; a TarInfo as content stands for itself."""
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode=f"w:{compression}") as archive:
+        for name, content in files.items():
+            info = content if isinstance(content, tarfile.TarInfo) else tarfile.TarInfo(name)
+            if info is not content:
+                info.size = len(content)
+            archive.addfile(info, io.BytesIO(b"" if info is content else content))
+    return buffer.getvalue()
+
+
+def link(name, target, kind=tarfile.SYMTYPE):
+    """A link in a tar archive."""
+    info = tarfile.TarInfo(name)
+    info.type, info.linkname = kind, target
+    return info
+
+
+@pytest.fixture
+def unpacked(tmp_path):
+    """Write a folder of files, pack it, unpack it; then the paths of files and links below it."""
+
+    def run(files, name="anna"):
+        top, out = tmp_path / "class" / name, tmp_path / "out"
+        for path, content in files.items():
+            (top / path).parent.mkdir(parents=True, exist_ok=True)
+            (top / path).write_bytes(content)
+        packing.unpack(packing.pack(top).archive, out)
+        return sorted(str(path.relative_to(out / name)) for path in (out / name).rglob("*") if not path.is_dir())
+
+    return run
+
+
+ONE = {f"lab/{SERVER}": b"pass"}
+
+
+@pytest.mark.parametrize(
+    "name, make",
+    [
+        ("lab.zip", lambda: zipped(ONE)),
+        ("LAB.ZIP", lambda: zipped(ONE)),
+        ("lab.tar", lambda: tarred(ONE)),
+        ("lab.tar.gz", lambda: tarred(ONE, "gz")),
+        ("lab.tgz", lambda: tarred(ONE, "gz")),
+        ("lab.tar.bz2", lambda: tarred(ONE, "bz2")),
+        ("lab.tar.xz", lambda: tarred(ONE, "xz")),
+        ("wrongly_named.zip", lambda: tarred(ONE, "gz")),
+        ("wrongly_named.tar.gz", lambda: tarred(ONE)),
+        ("in/a/folder (1).zip", lambda: zipped(ONE)),
+    ],
+)
+def test_archive_beside_other_files_is_unpacked(name, make, unpacked):
+    assert unpacked({name: make(), "report.pdf": b""}) == sorted([f"{name}/lab/{SERVER}", "report.pdf"])
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: zipped({"in.zip": zipped(ONE)}),
+        lambda: zipped({"a/in.tgz": tarred(ONE, "gz")}),
+        lambda: tarred({"in.zip": zipped(ONE)}),
+    ],
+)
+def test_archive_in_an_archive_is_unpacked(make, tmp_path):
+    (tmp_path / "eve.zip").write_bytes(make())
+    packed = packing.pack(tmp_path / "eve.zip")
+    assert packed.notes == []
+    packing.unpack(packed.archive, tmp_path / "out")
+    assert [path.name for path in (tmp_path / "out").rglob("*.py")] == [SERVER]
+
+
+@pytest.mark.parametrize(
+    "beside",
+    [{SERVER: b""}, {"scripts/robocop_goto_as (1).py": b""}, {"package.xml": b""}, {"robocop_rviz_goto_ac-1.py": b""}],
+)
+def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_path):
+    (tmp_path / "eve.zip").write_bytes(zipped({**beside, "old/backup.zip": zipped(ONE), "old.rar": b""}))
+    packed = packing.pack(tmp_path / "eve.zip")
+    assert packed.notes == [
+        "old/backup.zip was not unpacked: what is graded is outside of it",
+        "old.rar was not unpacked: expected zip or tar",
+    ]
+
+
+@pytest.mark.parametrize(
+    "files, problem",
+    [
+        ({}, "it contains no file"),
+        ({"report.pdf": b""}, "no package and no Python file in it, only report.pdf"),
+        (
+            {"lab.rar": b"", "a.txt": b""},
+            "no package and no Python file in it, only a.txt, lab.rar; lab.rar was not unpacked",
+        ),
+        ({"lab.ipynb": b"", ".DS_Store": b"", ".ipynb_checkpoints/x.py": b""}, "only lab.ipynb"),
+        ({"a.zip": b"no zip"}, "a.zip: neither a zip nor a tar archive"),
+        ({"a.tar.gz": lambda: tarred(ONE, "gz")[:-20]}, "a.tar.gz: can't be unpacked: Compressed file ended"),
+        ({"a.zip": lambda: zipped({SERVER: bytes(10_001)})}, "a.zip: larger than 64 MB"),
+        ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 64 MB"),
+        ({"a.tgz": lambda: tarred({"build/x": bytes(1024**2)}, "gz")}, "a.tgz: larger than 1 MB"),
+        (
+            {"a.tgz": lambda: tarred(dict.fromkeys(map(str, range(21)), b""), "gz")},
+            "a.tgz: expected at most 5000 files",
+        ),
+    ],
+)
+def test_what_can_not_be_graded_states_what_was_found(files, problem, tmp_path, monkeypatch):
+    monkeypatch.setattr(archives, "MAX_BYTES", 10_000)
+    monkeypatch.setattr(archives, "MAX_TAR_BYTES", 1024**2)
+    monkeypatch.setattr(archives, "MAX_ENTRIES", 20)
+    (tmp_path / "eve").mkdir()
+    for name, content in files.items():
+        (tmp_path / "eve" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "eve" / name).write_bytes(content() if callable(content) else content)
+    with pytest.raises(SubmissionError) as error:
+        packing.pack(tmp_path / "eve")
+    assert problem in str(error.value)
+
+
+def test_archives_one_in_another_are_unpacked_to_a_sensible_depth(tmp_path):
+    content = zipped(ONE)
+    for _ in range(packing.MAX_NESTED + 1):
+        content = zipped({"in.zip": content})
+    (tmp_path / "eve.zip").write_bytes(content)
+    with pytest.raises(SubmissionError, match="only in.zip/in.zip/in.zip/in.zip; .* more than three in one another"):
+        packing.pack(tmp_path / "eve.zip")
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"../evil.py": b""},
+        {"/tmp/evil.py": b""},
+        {"link": link("link", "/tmp"), "link/evil.py": b""},
+        {"link/evil.py": b"", "link": link("link", "/tmp")},
+        {"pipe": link("pipe", "", tarfile.FIFOTYPE)},
+        {"hard": link("hard", "/etc/passwd", tarfile.LNKTYPE)},
+    ],
+)
+def test_tar_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
+    (tmp_path / "eve.tar").write_bytes(tarred(files))
+    with pytest.raises(SubmissionError):
+        packing.pack(tmp_path / "eve.tar")
+
+
+def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path):
+    buffer, target = io.BytesIO(), tmp_path / "target"
+    with tarfile.open(fileobj=buffer, mode="w") as archive:
+        archive.addfile(link(SERVER, str(target)))
+        archive.addfile(tarfile.TarInfo(SERVER))
+    (tmp_path / "eve.tar").write_bytes(buffer.getvalue())
+    packing.unpack(packing.pack(tmp_path / "eve.tar").archive, tmp_path / "out")
+    assert (tmp_path / "out" / "eve.tar" / SERVER).is_file() and not target.exists()
+
+
+def test_links_of_archives_stay_links_and_hard_links_become_files(tmp_path):
+    files = {"src/CMakeLists.txt": link("src/CMakeLists.txt", "/opt/ros/toplevel.cmake"), SERVER: b"pass"}
+    (tmp_path / "eve.tar").write_bytes(tarred({**files, "copy.py": link("copy.py", SERVER, tarfile.LNKTYPE)}))
+    info = zipfile.ZipInfo("link.py")
+    info.external_attr = (stat.S_IFLNK | 0o777) << 16
+    with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive:
+        archive.writestr(info, SERVER)
+        archive.writestr(SERVER, "pass")
+    for name in ("eve.tar", "eve.zip"):
+        packing.unpack(packing.pack(tmp_path / name).archive, tmp_path / "out")
+    out = tmp_path / "out"
+    assert (out / "eve.tar" / "src" / "CMakeLists.txt").is_symlink() and (out / "eve.tar" / "copy.py").is_file()
+    assert (out / "eve.zip" / "link.py").is_symlink() and (out / "eve.zip" / "link.py").read_text() == "pass"
+
+
+@pytest.mark.parametrize(
+    "encoding, name",
+    [
+        ("utf-8", "řízení.py"),  # as macOS' and Linux' zips may have it, without a flag
+        ("cp852", "řízení.py"),
+        ("ascii", "lab\\scripts\\a.py"),
+    ],
+)
+def test_names_in_zips_are_those_that_their_authors_saw(encoding, name, unpacked):
+    encoded = name.encode(encoding)
+    raw = zipped({"x" * len(encoded): b"pass"}).replace(b"x" * len(encoded), encoded)
+    assert unpacked({"lab.zip": raw}) == ["lab.zip/" + name.replace("\\", "/")]
+
+
+def test_what_a_desktop_adds_is_left_out(unpacked):
+    junk = dict.fromkeys(
+        ["__MACOSX/lab/._a.py", "lab/._a.py", "lab/.DS_Store", "lab/.ipynb_checkpoints/a-checkpoint.py", "lab\\b\\"],
+        b"",
+    )
+    assert unpacked({"lab.zip": zipped({**junk, "lab/a.py": b""})}) == ["lab.zip/lab/a.py"]
+    assert unpacked({"lab.tar": tarred({"lab/._a.py": b"", "lab/a.py": b""})}, "ben") == ["lab.tar/lab/a.py"]
+
+
+def test_zip_that_is_encrypted_says_so(tmp_path):
+    raw = bytearray(zipped({SERVER: b"pass"}))
+    directory = raw.index(b"PK\1\2")
+    raw[6] |= 1
+    raw[directory + 8] |= 1
+    (tmp_path / "eve.zip").write_bytes(bytes(raw))
+    with pytest.raises(SubmissionError, match="encrypted, password required"):
+        packing.pack(tmp_path / "eve.zip")
+
+
+def test_archives_share_one_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr(archives, "MAX_BYTES", 1000)
+    (tmp_path / "eve").mkdir()
+    for name in ("a", "b"):
+        with zipfile.ZipFile(tmp_path / "eve" / f"{name}.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr(f"{name}.py", bytes(600))
+    with pytest.raises(SubmissionError, match="b.zip: larger than"):
+        packing.pack(tmp_path / "eve")
