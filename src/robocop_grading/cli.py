@@ -6,7 +6,7 @@ import sys
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Tuple
+from typing import Dict, List, Mapping, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
@@ -16,8 +16,8 @@ from .grader import grade as grade_submission
 from .hosting import tree
 from .hosting.scratch import scratch_folder
 from .hosting.workspace import exclusive, places
-from .judge import CheckResult, Grade, Outcome, printable, printable_lines
-from .plan import MIDDLE, load
+from .judge import CheckResult, Grade, Outcome, printable, printable_lines, total
+from .plan import MIDDLE, Plan, load
 from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
@@ -34,12 +34,24 @@ MOST_SHOWN = 1_000  # characters of an error
 LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
-def _show_progress(part: str, scenario: str) -> None:
-    reraise_if_interrupted()
+class Progress:
+    """Tells which scenario has begun, and its number among those of these parts."""
+
+    def __init__(self, plan: Plan, parts: Sequence[str]) -> None:
+        self._order = [(part, name) for part in parts if plan.examines(part) for name in plan.scenarios_of(part)]
+
+    def begin(self, part: str, scenario: str) -> None:
+        """One scenario begins."""
+        reraise_if_interrupted()
+        _show(f"{self._order.index((part, scenario)) + 1}/{len(self._order)} {part}: {scenario}")
+
+
+def _show(text: str) -> None:
+    """Progress: on a terminal in place of what was shown before."""
     if sys.stderr.isatty():
-        print(f"\r\033[K{part}: {scenario} ...", end="", file=sys.stderr, flush=True)
+        print(f"\r\033[K{text} ...", end="", file=sys.stderr, flush=True)
     else:
-        print(f"{part}: {scenario}", file=sys.stderr, flush=True)
+        print(text, file=sys.stderr, flush=True)
 
 
 def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
@@ -50,24 +62,31 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
         if result.outcome is Outcome.NOT_REACHED:
             not_reached.setdefault(result.why, []).append(result)
             continue
-        extra = " (extra)" if result.extra else ""
-        points = f"{result.points:4g} / {result.points_available:<4g}"
-        lines.append(f"{LABELS[result.outcome]:11}  {points}  {result.sentence}{extra}")
+        lines.append(f"{LABELS[result.outcome]:11}  {_points([result])}  {_marked(result.sentence, result)}")
         lines.append(f"{'':11}  {result.words}")
     for why, results in not_reached.items():
-        points = f"{0:4g} / {sum(result.points_available for result in results):<4g}"
-        names = ", ".join(result.name for result in results)
-        lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {points}  {names}: {why}")
+        names = ", ".join(_marked(result.name, result) for result in results)
+        lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {_points(results)}  {names}: {why}")
     if passed:
-        points = f"{sum(check.points for check in passed):4g} / {sum(check.points_available for check in passed):<4g}"
-        names = "every check" if len(passed) == len(grade.checks) else ", ".join(check.name for check in passed)
-        lines.append(f"{LABELS[Outcome.PASSED]:11}  {points}  {names}")
+        every = len(passed) == len(grade.checks)
+        names = "every check" if every else ", ".join(_marked(check.name, check) for check in passed)
+        lines.append(f"{LABELS[Outcome.PASSED]:11}  {_points(passed)}  {names}")
     lines += [f"problem: {problem}" for problem in grade.problems]
     lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
     unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}
     lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
-    lines.append(f"{grade.name}: {grade.points:g} of {grade.points_available:g} points")
+    lines.append(f"{grade.name}: {grade.words}")
     return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
+
+
+def _points(checks: Sequence[CheckResult]) -> str:
+    """The points of checks, without extra ones unless all of them are."""
+    counted = [check for check in checks if not check.extra] or checks
+    return f"{total(it.points for it in counted):4g} / {total(it.points_available for it in counted):<4g}"
+
+
+def _marked(text: str, check: CheckResult) -> str:
+    return f"{text} (extra)" if check.extra else text
 
 
 def _unpacked(path: str, folder: Path) -> Tuple[str, List[str]]:
@@ -110,7 +129,7 @@ def main() -> None:
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
             if sys.stderr.isatty():
-                _show_progress("package", "build")
+                _show("package: build")
             path, notes = _unpacked(args.path, folder_in_use.with_suffix(".files"))
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
@@ -118,7 +137,8 @@ def main() -> None:
                 raise GradingError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
             name = submission.name + ("" if plan.is_whole else "-only")
             folder = given or make_report_folder(state / "reports" / name)
-            runner = Runner(plan, state, sandbox, viewer=viewer, on_progress=_show_progress)
+            progress = Progress(plan, [script.part for script in submission.scripts])
+            runner = Runner(plan, state, sandbox, viewer=viewer, on_progress=progress.begin)
             grade = grade_submission(runner, submission, folder, keep=True)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)

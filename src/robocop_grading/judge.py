@@ -3,7 +3,7 @@
 import enum
 import re
 from dataclasses import dataclass, replace
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Verdict
 from .plan import CheckPlan, Plan
@@ -44,12 +44,19 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A failure that does not follow from another one, the points it costs, and how many checks it fails and blocks."""
+    """A failure that does not follow from another one, what it costs, and how many checks it fails and blocks."""
 
     check: CheckResult
     points: float
+    extra: float
     followers: int
     blocked: int
+
+    @property
+    def cost(self) -> str:
+        """The points in words."""
+        words = [f"{self.points:g} point{'' if self.points == 1 else 's'}"] if self.points or not self.extra else []
+        return " and ".join([*words, *([f"{self.extra:g} extra"] if self.extra else [])])
 
     @property
     def sentence(self) -> str:
@@ -67,13 +74,28 @@ class Grade:
 
     @property
     def points(self) -> float:
-        """Points scored, extra ones included."""
-        return round(sum(check.points for check in self.checks), 6)
+        """Points scored, without extra ones."""
+        return total(check.points for check in self.checks if not check.extra)
 
     @property
     def points_available(self) -> float:
-        """Points available, extra ones excluded."""
-        return round(sum(check.points_available for check in self.checks if not check.extra), 6)
+        """Points available, without extra ones."""
+        return total(check.points_available for check in self.checks if not check.extra)
+
+    @property
+    def extra(self) -> float:
+        """Extra points scored."""
+        return total(check.points for check in self.checks if check.extra)
+
+    @property
+    def extra_available(self) -> float:
+        """Extra points available."""
+        return total(check.points_available for check in self.checks if check.extra)
+
+    @property
+    def words(self) -> str:
+        """The points scored, as in "7.5 of 8 points, 1 of 1 extra"."""
+        return points_in_words(self.points, self.points_available, self.extra, self.extra_available)
 
     @property
     def all_right(self) -> bool:
@@ -87,10 +109,11 @@ class Grade:
         for check in self.checks:
             if check.outcome is Outcome.FAILED and not check.follows:
                 lost = [other for other in self.checks if other.follows == check.name]
-                points = check.points_available + sum(other.points_available for other in lost)
+                points = total(it.points_available for it in [check, *lost] if not it.extra)
+                extra = total(it.points_available for it in [check, *lost] if it.extra)
                 failed = sum(other.outcome is Outcome.FAILED for other in lost)
-                found.append(Mistake(check, round(points, 6), failed, len(lost) - failed))
-        return sorted(found, key=lambda mistake: -mistake.points)
+                found.append(Mistake(check, points, extra, failed, len(lost) - failed))
+        return sorted(found, key=lambda mistake: (-mistake.points, -mistake.extra))
 
     @property
     def failures_first(self) -> List[CheckResult]:
@@ -104,6 +127,18 @@ class Grade:
     def failed(self) -> List[str]:
         """Names of the failed checks."""
         return [check.name for check in self.checks if check.outcome is Outcome.FAILED]
+
+
+def total(points: Iterable[float]) -> float:
+    """The sum of points without rounding errors."""
+    return round(sum(points), 6)
+
+
+def points_in_words(points: float, available: float, extra: float, extra_available: float) -> str:
+    """Points of those available, and extra ones apart from them: nothing where none are available."""
+    words = [f"{points:g} of {available:g} points"] if available else []
+    words += [f"{extra:g} of {extra_available:g} extra"] if extra_available else []
+    return ", ".join(words) or "nothing was judged"
 
 
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record

@@ -121,6 +121,11 @@ class Plan:
         """The points of all checks that are not extra."""
         return round(sum(check.points for check in self.checks if not check.extra), 6)
 
+    @property
+    def extra(self) -> float:
+        """The points of all checks that are extra."""
+        return round(sum(check.points for check in self.checks if check.extra), 6)
+
     def contract(self, check: str) -> str:
         """What a check tests, in the language of the texts."""
         return self.texts.told(CHECKS[check].contract)
@@ -131,6 +136,13 @@ class Plan:
             check.part == part and scenario in ("", *check.scenarios, *(CHECKS[check.name].retried or ())[:1])
             for check in self.checks
         )
+
+    def scenarios_of(self, part: str) -> List[str]:
+        """The scenarios that are run for a part, in their order."""
+        if part == "server":
+            return [START, *(it.name for it in self.scenarios if self.examines(part, it.name))]
+        examined = [number for number, name in enumerate(BRIDGE_SCENARIOS, 1) if self.examines(part, name)]
+        return list(BRIDGE_SCENARIOS[: max(examined, default=0)])
 
     def restricted(self, names: Sequence[str]) -> "Plan":
         """The plan with these checks only, if there are any; PlanError for a name that it does not have."""

@@ -15,7 +15,7 @@ import jinja2
 from aro_robocop_goto_as.errors import GradingSetupError
 
 from ..checks import CHECKS
-from ..judge import CheckResult, Grade, Outcome, Records, printable, printable_lines
+from ..judge import CheckResult, Grade, Outcome, Records, printable, printable_lines, total
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
 from .plots import svg
@@ -53,6 +53,9 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool =
         kept=kept,
         reached=[check for check in grade.failures_first if check.outcome is not Outcome.NOT_REACHED],
         not_reached=[check for check in grade.checks if check.outcome is Outcome.NOT_REACHED],
+        not_reached_points=total(
+            it.points_available for it in grade.checks if it.outcome is Outcome.NOT_REACHED and not it.extra
+        ),
         scenarios=sorted(scenarios, key=lambda scenario: not scenario["failed"]),
         anchors={name: panel["anchor"] for it in scenarios for panel in it["panels"] for name in panel["names"]},
     )
@@ -66,6 +69,8 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
         "seed": plan.seed,
         "points": grade.points,
         "of": grade.points_available,
+        "extra": grade.extra,
+        "extra_of": grade.extra_available,
         "problems": list(grade.problems),
         "checks": [_check_as_json(check) for check in grade.checks],
     }
@@ -106,10 +111,14 @@ def as_classroom(grade: Grade) -> Dict[str, object]:
     }
 
 
+def _name(check: CheckResult) -> str:
+    return check.sentence + (" (extra)" if check.extra else "")
+
+
 def _github_test(check: CheckResult) -> Dict[str, object]:
     passed = check.outcome is Outcome.PASSED
     return {
-        "name": check.sentence,
+        "name": _name(check),
         "status": "pass" if passed else "fail",
         "score": check.points,
         "message": "" if passed else printable(check.words),
@@ -126,7 +135,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
     for check in grade.checks:
         passed = check.outcome is Outcome.PASSED
         test: Dict[str, object] = {
-            "name": printable_lines(check.sentence) + (" (extra)" if check.extra else ""),
+            "name": printable_lines(_name(check)),
             "number": f"{check.part}.{check.name}",
             "output": printable_lines(check.words),
         }
@@ -135,7 +144,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
             test["status"] = "passed" if passed else "failed"
         tests.append(test)
     output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
-    return {"score": grade.points, "output": "\n".join(output), "tests": tests}
+    return {"score": grade.points + grade.extra, "output": "\n".join(output), "tests": tests}
 
 
 # -- report.html --

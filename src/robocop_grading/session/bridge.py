@@ -21,7 +21,6 @@ from aro_robocop_goto_as.ros import graph
 
 from .. import record as rec
 from ..handout import ACTION, CLICKS
-from ..plan import BRIDGE_SCENARIOS
 from ..runner import Job
 from .ros_internals import goal_senders, has_client
 from .run import TICK, Run
@@ -82,8 +81,7 @@ class BridgeRun(Run):
 
     def scenarios(self) -> None:
         """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
-        wanted = [name for name in BRIDGE_SCENARIOS if self.plan.examines(self.job.part, name)]
-        for name in BRIDGE_SCENARIOS[: BRIDGE_SCENARIOS.index(wanted[-1]) + 1]:
+        for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
             self.announce(name, scenario.__doc__)
             scenario()

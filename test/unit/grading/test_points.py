@@ -1,0 +1,104 @@
+"""Points are counted in one way: what is scored of what is available, and extra points apart from it, everywhere."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from support import ROOT
+
+from robocop_grading.checks import Failed
+from robocop_grading.cli import Progress, as_text
+from robocop_grading.judge import CheckResult, Grade, Outcome
+from robocop_grading.plan import BRIDGE_SCENARIOS, Plan, load
+from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
+
+PLAN = load(Path(ROOT, "config", "grading.yaml"))
+MISTAKE = Failed("a goal", "none", 1.0, "No goal was sent.")
+FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", Outcome.PASSED, 2.0, 2.0, False)
+FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", Outcome.PASSED, 1.0, 1.0, True)
+
+
+def failed(check: CheckResult) -> CheckResult:
+    """The check, failed."""
+    return replace(check, outcome=Outcome.FAILED, points=0.0, failure=MISTAKE, words="failed")
+
+
+def blocked(check: CheckResult, by: CheckResult) -> CheckResult:
+    """The check, not reached because another one failed."""
+    return replace(check, outcome=Outcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal", words="not reached")
+
+
+@pytest.mark.parametrize(
+    "checks, words",
+    [
+        ((FORWARDS, FRAME), "2 of 2 points, 1 of 1 extra"),
+        ((FORWARDS, failed(FRAME)), "2 of 2 points, 0 of 1 extra"),
+        ((failed(FORWARDS), FRAME), "0 of 2 points, 1 of 1 extra"),
+        ((FORWARDS,), "2 of 2 points"),
+        ((FRAME,), "1 of 1 extra"),
+        ((), "nothing was judged"),
+    ],
+)
+def test_extra_points_are_told_apart_from_the_others(checks, words, tmp_path) -> None:
+    grade = Grade("anna", checks)
+    assert grade.words == words
+    assert as_text(grade, {}).splitlines()[-1] == f"anna: {words}"
+    write(grade, PLAN, {}, tmp_path)
+    for page in ("report.html", "summary.md"):
+        assert words in (tmp_path / page).read_text()
+    values = as_json(grade, PLAN)
+    points, extra = sum(it.points for it in checks if not it.extra), sum(it.points for it in checks if it.extra)
+    assert (values["points"], values["extra"]) == (points, extra)
+    assert as_gradescope(grade, PLAN)["score"] == points + extra, "Gradescope adds extra credit to the score"
+
+
+@pytest.mark.parametrize(
+    "checks, cost",
+    [
+        ((failed(FORWARDS), blocked(FRAME, FORWARDS)), "2 points and 1 extra"),
+        ((failed(FORWARDS), FRAME), "2 points"),
+        ((FORWARDS, failed(FRAME)), "1 extra"),
+        ((failed(replace(FORWARDS, points_available=1.0)),), "1 point"),
+        ((failed(replace(FORWARDS, points_available=0.0)),), "0 points"),
+    ],
+)
+def test_cost_of_a_mistake_names_extra_points_apart(checks, cost, tmp_path) -> None:
+    grade = Grade("anna", checks)
+    assert [mistake.cost for mistake in grade.mistakes] == [cost]
+    write(grade, PLAN, {}, tmp_path)
+    assert re.search(f"costs {cost}[;<\n]", (tmp_path / "report.html").read_text())
+
+
+def test_mistake_that_costs_only_an_extra_point_is_fixed_last() -> None:
+    grade = Grade("anna", (failed(replace(FRAME, points_available=3.0)), failed(FORWARDS)))
+    assert [mistake.check.name for mistake in grade.mistakes] == ["forwards_goal", "goal_frame"]
+
+
+def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
+    text = as_text(
+        Grade("anna", (failed(FORWARDS), blocked(replace(FORWARDS, name="b"), FORWARDS), blocked(FRAME, FORWARDS))), {}
+    )
+    assert "not reached     0 / 2     b, goal_frame (extra): no goal" in text
+    assert "passed          2 / 2     b, goal_frame (extra)" in as_text(
+        Grade("anna", (failed(FORWARDS), replace(FORWARDS, name="b"), FRAME)), {}
+    )
+    assert "FAILED          0 / 1     Frames are transformed. (extra)" in as_text(Grade("anna", (failed(FRAME),)), {})
+    for listed in (as_classroom(Grade("anna", (FRAME,))), as_gradescope(Grade("anna", (FRAME,)), PLAN)):
+        assert "Frames are transformed. (extra)" in str(listed)
+
+
+def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys) -> None:
+    def told(plan: Plan, *parts: str) -> str:
+        progress = Progress(plan, parts)
+        for part in parts:
+            progress.begin(part, plan.scenarios_of(part)[-1])
+        return capsys.readouterr().err
+
+    servers, bridges = len(PLAN.scenarios) + 1, len(BRIDGE_SCENARIOS)
+    both = servers + bridges
+    assert told(PLAN, "server", "bridge") == (
+        f"{servers}/{both} server: {PLAN.scenarios[-1].name}\n{both}/{both} bridge: no_pending\n"
+    )
+    assert told(PLAN, "bridge") == f"{bridges}/{bridges} bridge: no_pending\n"
+    assert told(PLAN.restricted(["waits_for_server"]), "bridge") == "2/2 bridge: click\n"
