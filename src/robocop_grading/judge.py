@@ -131,7 +131,7 @@ class Grade:
 
 def total(points: Iterable[float]) -> float:
     """The sum of points without rounding errors."""
-    return round(sum(points), 6)
+    return round(sum(points, 0.0), 6)
 
 
 def points_in_words(points: float, available: float, extra: float, extra_available: float) -> str:

@@ -21,6 +21,7 @@ def graded_report(right):
                 "outcome": "passed" if right else "failed",
                 "points": check.points if right else 0.0,
                 "failure": None if right else failure,
+                "extra": check.extra,
             }
             for check in load(PLAN).checks
         ]

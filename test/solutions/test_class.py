@@ -124,7 +124,7 @@ def expect_everybody_once(folder, count, output):
     printed = collections.Counter(line.split("] ")[1].split(":")[0] for line in output.splitlines() if line[:1] == "[")
     assert set(printed.values()) == {1}, output
     html = (folder.parent / "results" / "index.html").read_text()
-    assert f"{count} of {count} graded" in html and "refresh" not in html
+    assert f"{count} judged, 0 not gradable" in html and "refresh" not in html
     assert all(html.count(f"{name}/report.html") == 1 for name in names)
 
 

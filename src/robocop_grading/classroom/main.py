@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import difflib
 import hashlib
 import os
 import random
@@ -9,7 +10,7 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Optional, Union
+from typing import Collection, Dict, Iterable, List, Optional, Sequence, Set, Union
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import GradingSetupError, NoTimeError, RobocopError
@@ -20,33 +21,57 @@ from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal,
 from ..cli import INTERRUPTED, TEXTS_HELP
 from ..hosting.scratch import scratch_folder
 from ..hosting.workspace import exclusive, places
-from ..judge import printable_lines
+from ..judge import points_in_words, printable_lines
 from ..plan import LARGEST_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private
 from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack
-from .results import Result, Results, one_line, page, seed_of, table, write_atomically
+from .results import Result, Results, one_line, page, seed_of, summary, table, write_atomically
+from .summary import Summary, pace
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"
 WORKERS_LOG = ".workers.log"  # in the folder of the results
 WRITING = 0.05  # share of the time in which the table and the overview are written while a class is graded
+MAX_LINE = 300  # characters of a hand-in's problems on the terminal
+AGAIN = "also grade these hand-ins, or all, if no name follows, that have a result"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
 class Class:
     """The hand-ins of one folder and the results so far."""
 
-    def __init__(self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: bool) -> None:
+    def __init__(
+        self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: Collection[str]
+    ) -> None:
         self.title, self.plan, self._results = folder.name, plan, results
         self.count = len(hand_ins)
         self.done: Dict[str, Result] = {
-            hand_in.name: results.read(hand_in.name) for hand_in in hand_ins if not again and results.has(hand_in)
+            it.name: results.read(it.name) for it in hand_ins if it.name not in again and results.has(it)
         }
-        self.waiting = {hand_in.name: hand_in for hand_in in hand_ins if hand_in.name not in self.done}
+        left = [it for it in hand_ins if it.name not in self.done]
+        self.waiting = {it.name: it for it in sorted(left, key=lambda it: it.name not in again)}
         self.problems: Dict[str, str] = {}
+        self._started, self._before = time.monotonic(), len(self.done)
         self._next_write = 0.0  # [s, wall]
+
+    @property
+    def figures(self) -> Summary:
+        """How many are judged so far, and their points."""
+        return summary(list(self.done.values()), self.plan, self.problems)
+
+    @property
+    def pace(self) -> str:
+        """How fast it goes on, and how long it takes still, in words."""
+        done = len(self.done) - self._before + len(self.problems)
+        return pace(done, len(self.waiting) - len(self.problems), time.monotonic() - self._started)
+
+    def summary_lines(self) -> List[str]:
+        """The figures for the terminal, and who is not gradable for which reason."""
+        reasons = {name: " | ".join(it.problems) for name, it in sorted(self.done.items()) if not it.is_judged}
+        reasons.update(self.problems)
+        return self.figures.lines() + [one_line(f"not gradable: {it}: {why}")[:MAX_LINE] for it, why in reasons.items()]
 
     def add(self, name: str, outcome: Union[Done, str]) -> str:
         """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
@@ -58,9 +83,11 @@ class Class:
         self.waiting.pop(name, None)
         if time.monotonic() >= self._next_write:
             self.write(running=True)
-        problems = f" ({' | '.join(result.problems)})"[:200] if result.problems else ""
-        counter = f"[{len(self.done)}/{self.count}]"
-        return one_line(f"{counter} {name}: {result.points:g} points, {result.seconds:.0f} s{problems}")
+        problems = f" ({' | '.join(result.problems)})"[:MAX_LINE] if result.problems else ""
+        points = points_in_words(result.points, self.plan.points, result.extra, self.plan.extra)
+        words = f"{points if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
+        left = f"; {self.pace}" if self.pace else ""
+        return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
@@ -68,13 +95,13 @@ class Class:
         results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems))
         waiting = {name: self.problems.get(name, "waiting") for name in self.waiting}
-        write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running))
+        write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running, self.figures, self.pace))
         finished = time.monotonic()
         self._next_write = finished + (finished - started) / WRITING
 
 
 def main() -> None:
-    """Exit status 0: everybody is graded; 1: somebody could not be graded; 130: interrupted."""
+    """Exit status 0: everybody is judged; 1: somebody was not gradable; 130: interrupted."""
     parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
@@ -86,7 +113,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: at most one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
     parser.add_argument("--credentials", default="", metavar="PEM", help="key and certificate of that scheduler")
-    parser.add_argument("--again", action="store_true", help="also grade hand-ins that have a result")
+    parser.add_argument("--again", nargs="*", metavar="NAME", help=AGAIN)
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     args = parser.parse_args()
     interrupt_on_signal()
@@ -113,7 +140,7 @@ def main() -> None:
             seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
             plan = load(plan.path, seed, texts)
             results = Results(out, {"plan": digest, "seed": seed, "grader": version})
-            group = Class(folder, results, plan, hand_ins, args.again)
+            group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             print(f"scenarios: seed {seed}", flush=True)
             # Packed when it is their turn, from what is there then.
@@ -132,8 +159,19 @@ def main() -> None:
         os._exit(INTERRUPTED)  # dask's handlers at exit would wait for workers that had not started, and print why not
     finally:
         ignore_all()
-    print(f"table: {out / CSV}\noverview: {out / HTML}")
-    sys.exit(1 if group.problems else 0)
+    print("\n".join([*group.summary_lines(), f"table: {out / CSV}", f"overview: {out / HTML}"]))
+    sys.exit(1 if group.figures.not_judged else 0)
+
+
+def chosen(again: Optional[Sequence[str]], hand_ins: Sequence[HandIn]) -> Set[str]:
+    """The names of the hand-ins to be graded again, all if none is given; GradingSetupError for one that is unknown."""
+    known = [hand_in.name for hand_in in hand_ins]
+    names = known if again is not None and not again else [Path(name).name for name in again or ()]
+    for name in {*names} - {*known}:
+        close = difflib.get_close_matches(name, known, 1)
+        advice = f"; did you mean {close[0]}?" if close else ""
+        raise GradingSetupError(f"--again {name}: no hand-in of this name{advice}")
+    return {*names}
 
 
 def class_seed(given: Optional[int], results: Path) -> int:

@@ -14,10 +14,11 @@ from types import MappingProxyType
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..hosting import tree
-from ..judge import alike, printable
+from ..judge import alike, printable, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .hand_ins import HandIn
+from .summary import Summary
 from .worker import Done
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
@@ -42,6 +43,7 @@ class Check:
     outcome: str  # passed, failed, not reached
     points: float
     cause: str = ""
+    extra: bool = False
 
 
 _without_cause = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
@@ -57,19 +59,29 @@ class Result:
     seconds: float
 
     @property
+    def is_judged(self) -> bool:
+        """Return whether anything of it was judged; otherwise its problems say why not."""
+        return bool(self.checks)
+
+    @property
     def points(self) -> float:
-        """Points scored, extra ones included."""
-        return round(sum(check.points for check in self.checks), 6)
+        """Points scored, without extra ones."""
+        return total(check.points for check in self.checks if not check.extra)
+
+    @property
+    def extra(self) -> float:
+        """Extra points scored."""
+        return total(check.points for check in self.checks if check.extra)
 
     def points_of(self, part: str) -> Optional[float]:
-        """Points of the server or the bridge; None if it was not handed in."""
-        points = [check.points for check in self.checks if check.part == part]
-        return round(sum(points), 6) if points else None
+        """Points of the server or the bridge, without extra ones; None if it was not handed in."""
+        checks = [check for check in self.checks if check.part == part]
+        return total(check.points for check in checks if not check.extra) if checks else None
 
     def outcomes(self, plan: Plan) -> List[str]:
-        """For each check of the plan: passed, failed, not reached, or not handed in."""
+        """For each check of the plan: passed, failed, not reached, not handed in, or nothing if nothing was judged."""
         known = {check.name: check.outcome for check in self.checks}
-        return [known.get(check.name, NOT_HANDED_IN) for check in plan.checks]
+        return [known.get(check.name, NOT_HANDED_IN if self.is_judged else "") for check in plan.checks]
 
 
 def seed_of(folder: Path) -> Optional[int]:
@@ -117,40 +129,47 @@ class Results:
         """The result that is stored for a hand-in."""
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
-        checks = [
-            Check(check["name"], check["part"], check["outcome"], check["points"], check["failure"]["cause"])
-            if check["failure"]
-            else _without_cause(check["name"], check["part"], check["outcome"], check["points"])
-            for check in raw["checks"]
-        ]
+        checks = [_check(it) for it in raw["checks"]]
         return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
+
+
+def _check(raw: Mapping[str, Any]) -> Check:
+    cause = raw["failure"]["cause"] if raw["failure"] else ""
+    values = raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"]
+    return Check(*values) if cause else _without_cause(*values)
 
 
 def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
     """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
 
-    `problems` maps the names that could not be graded to the reason: rows without points.
+    `problems` maps the names that have no result to the reason. Where nothing was judged, there are no points.
     """
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     text.write(BYTE_ORDER_MARK)
-    rows.writerow(["name", "points", "of", *PARTS, "problem", *(check.name for check in plan.checks)])
+    rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
     for result in results:
+        if not result.is_judged:
+            rows.writerow(_without_points(result.name, " | ".join(result.problems), plan))
+            continue
         points = [result.points_of(part) for part in PARTS]
         rows.writerow(
             [
                 _plain(result.name),
                 result.points,
                 plan.points,
+                result.extra,
                 *(NOT_HANDED_IN if number is None else number for number in points),
                 _plain(" | ".join(result.problems)),
                 *result.outcomes(plan),
             ]
         )
-    for name, problem in sorted(problems.items()):
-        empty = [""] * (1 + len(PARTS))
-        rows.writerow([_plain(name), *empty[:1], plan.points, *empty[1:], _plain(problem)])
+    rows.writerows(_without_points(name, problem, plan) for name, problem in sorted(problems.items()))
     return text.getvalue()
+
+
+def _without_points(name: str, problem: str, plan: Plan) -> List[Any]:
+    return [_plain(name), "", plan.points, *[""] * (1 + len(PARTS)), _plain(problem), *[""] * len(plan.checks)]
 
 
 def one_line(text: str) -> str:
@@ -171,8 +190,25 @@ def write_atomically(path: Path, text: str) -> None:
     os.replace(new, path)
 
 
-def page(title: str, results: Sequence[Result], plan: Plan, waiting: Mapping[str, str], running: bool) -> str:
-    """The overview; `waiting` maps the names that have no result yet to the reason."""
+def summary(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> Summary:
+    """The class in a few figures; `problems` has the names that have no result."""
+    judged = [result.points for result in results if result.is_judged]
+    return Summary(judged, len(results) - len(judged) + len(problems), plan.points)
+
+
+def page(
+    title: str,
+    results: Sequence[Result],
+    plan: Plan,
+    waiting: Mapping[str, str],
+    running: bool,
+    figures: Optional[Summary] = None,
+    pace: str = "",
+) -> str:
+    """The overview; `waiting` maps the names that have no result yet to the reason, `pace` says how fast it goes on.
+
+    Without `figures` they are those of the results.
+    """
     return render(
         "overview.html",
         title=title,
@@ -181,10 +217,12 @@ def page(title: str, results: Sequence[Result], plan: Plan, waiting: Mapping[str
         parts=PARTS,
         waiting=waiting,
         running=running,
+        figures=figures or summary(results, plan),
+        pace=pace,
         refresh=round(REFRESH + REFRESH_EACH * len(results)),
         shown=SHOWN,
         symbols=SYMBOLS,
-        cells={outcome: f"<td class={outcome.split()[0]}>{symbol}" for outcome, symbol in SYMBOLS.items()},
+        cells={"": "<td>", **{it: f"<td class={it.split()[0]}>{symbol}" for it, symbol in SYMBOLS.items()}},
         checks=list(_checks(results, plan)),
     )
 
@@ -198,7 +236,7 @@ def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
             if line.cause:
                 causes[line.name][line.cause] += 1
     for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
-        tried = len(results) - outcomes[NOT_HANDED_IN]
+        tried = len(results) - outcomes[NOT_HANDED_IN] - outcomes[""]
         yield {"name": check.name, "outcomes": outcomes, "tried": tried, "causes": _most_frequent(causes[check.name])}
 
 

@@ -1,14 +1,19 @@
-"""The seed of a class, also when it is graded twice at a time."""
+"""The seed of a class, also when it is graded twice at a time; who is graded again; what is told meanwhile."""
 
+import json
 import subprocess
 import sys
+import time
 
 import pytest
-from class_records import report
+from class_records import PLAN, report
 
+from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.classroom import main as classroom
-from robocop_grading.classroom.main import class_seed
+from robocop_grading.classroom.hand_ins import HandIn
+from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
+from robocop_grading.classroom.worker import Done
 from robocop_grading.hosting.workspace import exclusive
 from robocop_grading.plan import LARGEST_SEED
 
@@ -39,3 +44,50 @@ def test_gradings_of_a_new_class_at_the_same_time_share_a_seed(tmp_path):
 
 def test_new_class_gets_a_seed_that_draws(tmp_path):
     assert 1 <= class_seed(None, tmp_path / "not there yet") <= LARGEST_SEED
+
+
+@pytest.fixture
+def group(tmp_path):
+    """A class of four: Anna is judged, Ben is not gradable, the others have no result yet."""
+    hand_ins = [HandIn(name, digest=f"digest of {name}") for name in ("anna", "ben", "carl.zip", "řehoř")]
+    results = Results(tmp_path, {})
+    results.keep(report("anna", 0.5))
+    empty = json.dumps({"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]}).encode()
+    results.keep(Done("ben", "digest of ben", {"report.json": empty}))
+
+    def make(again=()):
+        return Class(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
+
+    return make
+
+
+def test_hand_in_is_graded_again_by_its_name_and_is_the_first_one(group):
+    assert list(group().waiting) == ["carl.zip", "řehoř"]
+    assert list(group(["anna"]).waiting) == ["anna", "carl.zip", "řehoř"]
+    assert list(group(["class/řehoř/"]).waiting) == ["řehoř", "carl.zip"], "as a shell completes it"
+    assert list(group([]).waiting) == ["anna", "ben", "carl.zip", "řehoř"]
+    assert list(group(None).waiting) == ["carl.zip", "řehoř"]
+
+
+@pytest.mark.parametrize(
+    "name, advice", [("ana", "; did you mean anna?"), ("carl", "; did you mean carl.zip?"), ("x", "")]
+)
+def test_unknown_name_is_refused(name, advice, group):
+    with pytest.raises(GradingSetupError) as error:
+        group([name])
+    assert str(error.value) == f"--again {name}: no hand-in of this name{advice}"
+
+
+def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkeypatch):
+    made = group()
+    monkeypatch.setattr(made, "_started", time.monotonic() - 60.0)
+    line = made.add("carl.zip", report("carl.zip", 8.0))
+    assert line == "[3/4] carl.zip: 8 of 8 points, 0 of 1 extra, 3 s; 1.0 a minute, about 2 min left"
+    assert made.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
+    lines = made.summary_lines()
+    assert lines[:2] == ["2 judged, 2 not gradable", "mean 4.25, median 4.25 of 8 points"]
+    assert lines[-2:] == [
+        "not gradable: ben: ben.rar: a .rar file",
+        "not gradable: řehoř: no grade: the machine had no time",
+    ]
+    assert made.figures.not_judged == 2

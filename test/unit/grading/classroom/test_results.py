@@ -44,12 +44,12 @@ def read(text):
 def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
     rows = read(table(RESULTS, PLAN))
     assert [row["name"] for row in rows] == ["'=anna", "ben", "carl"]
-    assert [row["points"] for row in rows] == ["0.5", "0.0", "0"]
+    assert [(row["points"], row["extra"]) for row in rows] == [("0.5", "1.0"), ("0.0", "0.0"), ("", "")]
     assert {row["of"] for row in rows} == {"8.0"}
-    assert [row["server"] for row in rows] == ["0.5", "0.0", "not handed in"]
-    assert {row["bridge"] for row in rows} == {"not handed in"}
-    assert [row["cancel"] for row in rows] == ["failed", "failed", "not handed in"]
-    assert rows[1]["problem"] == "'=cmd"
+    assert [row["server"] for row in rows] == ["0.5", "0.0", ""]
+    assert [row["bridge"] for row in rows] == ["0.0", "not handed in", ""], "without the extra point"
+    assert [row["cancel"] for row in rows] == ["failed", "failed", ""]
+    assert [row["problem"] for row in rows] == ["", "'=cmd", "nothing to grade"]
 
 
 @given(st.text(), st.text())
@@ -70,8 +70,9 @@ def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
 
 
 def test_the_overview_counts_checks_and_causes_and_escapes_them():
-    html = page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True)
-    assert "3 of 4 graded, in progress" in html and "http-equiv='refresh'" in html
+    html = page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True, pace="2 a minute")
+    assert "2 judged, 1 not gradable, 3 of 4 done, in progress: 2 a minute;" in html and "http-equiv='refresh'" in html
+    assert "Mean 0.25, median 0.25 of 8 points" in html
     assert "2 × &lt;cause&gt; at 1.5" in html and "<cause>" not in html and "<1>" not in html
     assert "0 of 2" in html, "of the two that handed in a server"
     assert "dora" in html
