@@ -119,11 +119,13 @@ def _name_in_zip(info: zipfile.ZipInfo) -> str:
     """The name of an entry: without the flag for UTF-8, macOS writes UTF-8, and a Czech Windows code page 852."""
     if info.flag_bits & UTF_8:
         return info.filename
-    raw = info.filename.encode("cp437")
     try:
+        raw = info.filename.encode("cp437")  # as zipfile has decoded it
         return raw.decode()
     except UnicodeDecodeError:
         return raw.decode("cp852")
+    except UnicodeEncodeError:  # newer zipfile: from a field that some zips have beside the name
+        return info.filename
 
 
 def _unpack_tar(file: "IO[bytes]", contents: Contents, prefix: str) -> None:

@@ -89,9 +89,11 @@ def _marked(text: str, check: CheckResult) -> str:
     return f"{text} (extra)" if check.extra else text
 
 
-def _unpacked(path: str, folder: Path) -> Tuple[str, List[str]]:
+def unpacked_path(path: str, folder: Path) -> Tuple[str, List[str]]:
     """The path of what is graded, in `folder` if it has to be unpacked, and what is not used of it."""
     given = Path(os.path.realpath(Path(path).expanduser()))
+    if given.is_file() and given.suffix.lower() in packing.OTHER_ARCHIVES and not packing.is_packed(given):
+        raise GradingError(f"{path}: can't be unpacked: expected zip or tar")
     if not packing.is_packed(given):
         return path, []
     packed = packing.pack(given)
@@ -130,7 +132,7 @@ def main() -> None:
         with scratch_folder(), exclusive(folder_in_use):
             if sys.stderr.isatty():
                 _show("package: build")
-            path, notes = _unpacked(args.path, folder_in_use.with_suffix(".files"))
+            path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"))
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):

@@ -4,11 +4,13 @@ import io
 import stat
 import tarfile
 import zipfile
+from pathlib import Path
 
 import pytest
 
-from aro_robocop_goto_as.errors import SubmissionError
+from aro_robocop_goto_as.errors import GradingError, SubmissionError
 from robocop_grading import archives, packing
+from robocop_grading.cli import unpacked_path
 
 SERVER = "robocop_goto_as.py"
 
@@ -235,3 +237,39 @@ def test_archives_share_one_limit(tmp_path, monkeypatch):
             archive.writestr(f"{name}.py", bytes(600))
     with pytest.raises(SubmissionError, match="b.zip: larger than"):
         packing.pack(tmp_path / "eve")
+
+
+def test_script_is_found_whatever_its_neighbours_are_called(unpacked):
+    name = "zpráva_řč.txt"
+    raw = zipped({**ONE, "x" * len(name): b""}).replace(b"x" * len(name), name.encode("cp1250"))
+    assert f"lab.zip/lab/{SERVER}" in unpacked({"lab.zip": raw})
+
+
+@pytest.mark.parametrize(
+    "files, is_packed",
+    [
+        ({"lab.zip": b""}, True),
+        ({"a/b/lab.tgz": b"", "report.pdf": b""}, True),
+        ({"lab.zip": b"", SERVER: b""}, False),
+        ({"lab.zip": b"", "ws/src/lab/package.xml": b""}, False),
+        ({"server.py": b""}, False),
+    ],
+)
+def test_only_a_folder_without_anything_to_grade_outside_of_its_archives_is_unpacked(files, is_packed, tmp_path):
+    for name, content in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    assert packing.is_packed(tmp_path) is is_packed
+
+
+def test_single_archive_is_graded_as_what_it_contains(tmp_path):
+    folder, out = tmp_path / "class", tmp_path / "out"
+    folder.mkdir()
+    (folder / "lab.zip").write_bytes(zipped({**ONE, "lab/old.7z": b""}))
+    path, notes = unpacked_path(str(folder / "lab.zip"), out)
+    assert (Path(path) / "lab" / SERVER).read_text() == "pass"
+    assert notes == ["lab/old.7z was not unpacked: expected zip or tar"]
+    assert unpacked_path(str(folder), out)[0] == str(out / "class")
+    (folder / "lab.rar").touch()
+    with pytest.raises(GradingError, match="lab.rar: can't be unpacked: expected zip or tar"):
+        unpacked_path(str(folder / "lab.rar"), out)
