@@ -2,6 +2,7 @@
 
 Data flows in this order; only session/ and agent/ use ROS:
 
+    packing           archives, and folders with archives -> a folder of what was handed in
     submission        path -> the scripts to grade, built in a sandbox (sandbox/)
     plan              config/grading.yaml -> scenarios, limits, points
     session/          runs the scenarios with the hand-in's node, in the ordinary simulation -> records
