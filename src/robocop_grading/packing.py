@@ -93,7 +93,9 @@ def _notes(entries: Dict[str, Entry]) -> List[str]:
     notes += [f"{path} was not unpacked: expected zip or tar" for path in others]
     if stat.S_ISDIR(entries[""].mode) and not any(path.endswith((".py", "package.xml")) for path in files):
         found = ", ".join(files[:MAX_NAMED]) + (" ..." if len(files) > MAX_NAMED else "")
-        problem = f"no package and no Python file in it, only {found}" if files else "it contains no file"
+        problem = (
+            f"no package and no Python file in it, only {found}" if files else "no file in it, but for build products"
+        )
         raise SubmissionError("; ".join([problem, *notes]))
     return notes
 

@@ -224,6 +224,28 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     assert all(stamps(group)[name] == done[name] for name in done)
 
 
+def test_what_can_not_be_graded_has_a_row_with_the_reason_and_the_exit_status_tells(tmp_path, start):
+    folder = tmp_path / "class"
+    for name in ("anna/lab.ipynb", "ben/lab.rar", "carl.7z", "dora.txt", "eve.zip"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("no archive")
+    (tmp_path / "plan.yaml").write_text(PLAN)
+    grading = grade_class(start, folder)
+    output, _ = grading.communicate(timeout=PATIENCE)
+    assert grading.returncode == 1, output
+    assert "0 judged, 5 not gradable" in output
+    reasons = {
+        "anna": "no package and no Python file in it, only lab.ipynb",
+        "ben": "no package and no Python file in it, only lab.rar",
+        "carl.7z": "a .7z file: expected a folder, a zip or tar archive, or a Python file",
+        "dora.txt": "a .txt file: expected a folder, a zip or tar archive, or a Python file",
+        "eve.zip": "neither a zip nor a tar archive",
+    }
+    assert {row["name"]: row["points"] for row in rows(folder)} == dict.fromkeys(reasons, "")
+    assert all(row["problem"].startswith(reasons[row["name"]]) for row in rows(folder)), rows(folder)
+    assert all(f"not gradable: {name}: {reason}" in output for name, reason in reasons.items())
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("processes", range(2, 7))
 def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceback(

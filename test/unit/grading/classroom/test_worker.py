@@ -46,8 +46,10 @@ def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, mo
     monkeypatch.setattr(worker, "ended_if_it_hangs", guard)
     monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
     monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
+    (folder / "anna" / "old.rar").touch()
     anna = pack(folder / "anna")
     done = worker.work(worker.Task(anna, PLAN))
     guard.assert_called_once_with(worker.LONGEST)
     report = json.loads(done.files["report.json"])
     assert report["checks"] == [] and type(error).__name__ in report["problems"][0]
+    assert report["problems"][1:] == ["old.rar was not unpacked: expected zip or tar"], "it may be what was meant"
