@@ -27,8 +27,9 @@ from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private
 from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack
-from .results import Result, Results, one_line, page, seed_of, summary, table, write_atomically
+from .results import Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
+from .table import one_line, table
 from .worker import Done, Place, Task
 
 CSV, HTML = "grades.csv", "index.html"

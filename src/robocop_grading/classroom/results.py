@@ -1,10 +1,8 @@
-"""The results of a class: a folder per hand-in, so that an interrupted run can be continued, a table, an overview."""
+"""The results of a class: a folder per hand-in, so that an interrupted run can be continued, and an overview."""
 
 import collections
 import contextlib
-import csv
 import functools
-import io
 import json
 import os
 import tempfile
@@ -14,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..hosting import tree
-from ..judge import alike, printable, total
+from ..judge import alike, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .hand_ins import HandIn
@@ -22,10 +20,6 @@ from .summary import Summary
 from .worker import Done
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
-# A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
-FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-MOST_CELL = 2_000  # characters of a cell
-BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
 NOT_HANDED_IN = "not handed in"
 REFRESH = 5.0  # [s] while grading is in progress ...
 REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
@@ -137,50 +131,6 @@ def _check(raw: Mapping[str, Any]) -> Check:
     cause = raw["failure"]["cause"] if raw["failure"] else ""
     values = raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"]
     return Check(*values) if cause else _without_cause(*values)
-
-
-def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
-    """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
-
-    `problems` maps the names that have no result to the reason. Where nothing was judged, there are no points.
-    """
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    text.write(BYTE_ORDER_MARK)
-    rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
-    for result in results:
-        if not result.is_judged:
-            rows.writerow(_without_points(result.name, " | ".join(result.problems), plan))
-            continue
-        points = [result.points_of(part) for part in PARTS]
-        rows.writerow(
-            [
-                _plain(result.name),
-                result.points,
-                plan.points,
-                result.extra,
-                *(NOT_HANDED_IN if number is None else number for number in points),
-                _plain(" | ".join(result.problems)),
-                *result.outcomes(plan),
-            ]
-        )
-    rows.writerows(_without_points(name, problem, plan) for name, problem in sorted(problems.items()))
-    return text.getvalue()
-
-
-def _without_points(name: str, problem: str, plan: Plan) -> List[Any]:
-    return [_plain(name), "", plan.points, *[""] * (1 + len(PARTS)), _plain(problem), *[""] * len(plan.checks)]
-
-
-def one_line(text: str) -> str:
-    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
-    return printable(text.encode("utf-8", "replace").decode())
-
-
-def _plain(text: str) -> str:
-    """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
-    text = one_line(text)[:MOST_CELL].replace(";", ",")
-    return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text
 
 
 def write_atomically(path: Path, text: str) -> None:

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robocop_grading.classroom.hand_ins import HandIn
-from robocop_grading.classroom.results import Result, Results, page, table
+from robocop_grading.classroom.results import Result, Results, page
+from robocop_grading.classroom.table import table
 
 
 def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):

@@ -1,0 +1,59 @@
+"""The results of a class as a table in CSV, which spreadsheets read."""
+
+import csv
+import io
+from types import MappingProxyType
+from typing import Any, List, Mapping, Sequence
+
+from ..judge import printable
+from ..plan import PARTS, Plan
+from .results import NOT_HANDED_IN, Result
+
+# A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
+FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+MOST_CELL = 2_000  # characters of a cell
+BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
+
+
+def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
+    """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
+
+    `problems` maps the names that have no result to the reason. Where nothing was judged, there are no points.
+    """
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    text.write(BYTE_ORDER_MARK)
+    rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
+    for result in results:
+        if not result.is_judged:
+            rows.writerow(_without_points(result.name, " | ".join(result.problems), plan))
+            continue
+        points = [result.points_of(part) for part in PARTS]
+        rows.writerow(
+            [
+                _plain(result.name),
+                result.points,
+                plan.points,
+                result.extra,
+                *(NOT_HANDED_IN if number is None else number for number in points),
+                _plain(" | ".join(result.problems)),
+                *result.outcomes(plan),
+            ]
+        )
+    rows.writerows(_without_points(name, problem, plan) for name, problem in sorted(problems.items()))
+    return text.getvalue()
+
+
+def _without_points(name: str, problem: str, plan: Plan) -> List[Any]:
+    return [_plain(name), "", plan.points, *[""] * (1 + len(PARTS)), _plain(problem), *[""] * len(plan.checks)]
+
+
+def one_line(text: str) -> str:
+    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
+    return printable(text.encode("utf-8", "replace").decode())
+
+
+def _plain(text: str) -> str:
+    """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
+    text = one_line(text)[:MOST_CELL].replace(";", ",")
+    return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text
