@@ -71,6 +71,7 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
         every = len(passed) == len(grade.checks)
         names = "every check" if every else ", ".join(_marked(check.name, check) for check in passed)
         lines.append(f"{LABELS[Outcome.PASSED]:11}  {_points(passed)}  {names}")
+    lines += [f"graded: {file}" for file in grade.files]
     lines += [f"problem: {problem}" for problem in grade.problems]
     lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
     unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}

@@ -38,7 +38,7 @@ def grade(
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
         judged = judge.judge(submission.name, plan, records, problems)
-        judged = replace(judged, problems=(*judged.problems, *notes))
+        judged = replace(judged, files=tuple(submission.files), problems=(*judged.problems, *notes))
         folder.mkdir(parents=True, exist_ok=True)
         failed = {f"{check.part}-{check.scenario}" for check in judged.checks if check.failure is not None}
         for bag in sorted(Path(work).glob("*/*.bag")):

@@ -71,6 +71,7 @@ class Grade:
     name: str
     checks: Tuple[CheckResult, ...]
     problems: Tuple[str, ...] = ()
+    files: Tuple[str, ...] = ()  # which ones were graded, in words
 
     @property
     def points(self) -> float:

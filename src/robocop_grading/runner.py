@@ -80,6 +80,7 @@ class Runner:
         command = script.command()
         node_environment = {
             **public(submission.environment),
+            **script.variables,
             "ROS_HOME": str(home),
             # An existing directory: rospy would chown a new one, which the sandboxed user may not, and log nothing.
             "ROS_LOG_DIR": str(home),

@@ -3,6 +3,7 @@
 CHANNEL, by commas: a descriptor, the time on /clock [ns], and the grader's ports.
 """
 
+import ctypes
 import importlib.util
 import os
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 NAME = "robocop_agent"
+FILE_INPUT, CLOSES = 257, 1  # Py_file_input; whether the file is closed
 
 
 def load() -> Any:
@@ -26,14 +28,20 @@ def load() -> Any:
 
 
 def run(script: str) -> None:
-    """Run the script as the main module."""
+    """Run the script as the main module, read as python3 reads it: by compile() it would take other sources, too."""
     module: Any = types.ModuleType("__main__")
-    module.__file__, module.__builtins__ = script, __builtins__
+    module.__file__, module.__cached__, module.__builtins__ = script, None, __builtins__
     sys.modules["__main__"] = module
     sys.path[0] = os.path.dirname(os.path.realpath(script))
-    with open(script, "rb") as file:
-        source = file.read()
-    exec(compile(source, script, "exec"), module.__dict__)
+    c_library, python, name = ctypes.CDLL(None, use_errno=True), ctypes.pythonapi, os.fsencode(script)
+    c_library.fopen.restype = ctypes.c_void_p
+    # https://docs.python.org/3/c-api/veryhigh.html
+    python.PyRun_FileExFlags.restype = ctypes.py_object
+    file = ctypes.c_void_p(c_library.fopen(name, b"rb"))
+    if not file:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()), script)
+    names = ctypes.py_object(module.__dict__)
+    python.PyRun_FileExFlags(file, name, FILE_INPUT, names, names, CLOSES, None)
 
 
 def main() -> None:
@@ -49,7 +57,7 @@ def main() -> None:
     except Exception as error:
         trace = error.__traceback__
         for _ in range(2):  # main() and run()
-            trace = trace.tb_next if trace is not None and trace.tb_next is not None else trace
+            trace = trace and trace.tb_next
         sys.excepthook(type(error), error.with_traceback(trace), trace)
         status = 1
     else:

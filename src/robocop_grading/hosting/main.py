@@ -5,7 +5,6 @@ import os
 import shlex
 import signal
 import sys
-import zlib
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
@@ -15,35 +14,58 @@ import rospkg
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
-from . import tree
-from .package import Package, arguments_of, find_package
+from .package import Package, Started, arguments_of, find_package, started
 from .scratch import scratch_folder
-from .workspace import Environment, build, compat_environment, places
+from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
+from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
-def host(package: Package, share: Path, state: Path) -> Tuple[Path, Environment]:
-    """Build a package in `state`/with/...; that folder, and the environment to run the package in."""
-    folder = state / "with" / f"{package.path.name}-{zlib.crc32(os.fsencode(package.path)):08x}"
+def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) -> Tuple[Path, Environment, Started]:
+    """Build a package in `state`/with/...; that folder, the environment to run it in, and what its launch file starts.
+
+    HostingError if roslaunch can't start one of its scripts, with the reason.
+    """
+    folder = state / "with" / workspace_name(package.path)
     environment = build({package.name: package.path}, folder, compat_environment(share, state))
-    for script, _ in package.nodes:
-        for copy in tree.find(folder / "src" / package.name, script):
-            if not os.access(copy, os.X_OK):
-                print(
-                    f"robocop sim: {copy.relative_to(folder / 'src')} is not executable, so roslaunch could not start "
-                    "it. The copy that runs here is made executable; fix the original with: chmod +x",
-                    file=sys.stderr,
-                    flush=True,
-                )
-                copy.chmod(0o755)
+    words = [f"{name}:={value}" for name, value in arguments.items()]
+    found = started(package, folder, environment, run_plain, words)
+    for choice in found.choices.values():
+        if not choice.is_installed and (choice.node is not None or package.launch_file is None):
+            _make_startable(choice, folder / "src")
     # This package's log handlers are not found where a package of the same name is hosted.
     ros_logging = {"ROS_PYTHON_LOG_CONFIG_FILE": os.path.join(rospkg.get_etc_ros_dir(), "python_logging.conf")}
-    return folder, {**environment, **ros_logging, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}
+    return folder, {**environment, **ros_logging, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
 
 
-def launch_file(package: Package, folder: Path, arguments: Dict[str, str]) -> Path:
-    """A launch file that starts the package and the simulator, written into `folder`."""
+def _make_startable(choice: Choice, source: Path) -> None:
+    """Have roslaunch start this script, and no other one of its name."""
+    name = choice.path.relative_to(source)
+    if not os.access(choice.path, os.X_OK):
+        _tell(
+            f"{name} is not executable, so roslaunch could not start it. The copy that runs here is made executable; "
+            "fix the original with: chmod +x"
+        )
+        choice.path.chmod(0o755)
+    for problem, remedy in obstacles(choice.path):
+        raise HostingError(f"{name} {problem}, so roslaunch can't start it: {remedy}")
+    if interpreter(choice.path):
+        _tell(f"{name} is started by {interpreter(choice.path)!r}, which the lab may not have: make {FIRST_LINE} its first line")
+    for other in choice.others:
+        if other.name == choice.path.name and not other.is_symlink():
+            other.chmod(0o644)
+
+
+def _tell(words: str) -> None:
+    print(f"robocop sim: {words}", file=sys.stderr, flush=True)
+
+
+def launch_file(package: Package, folder: Path, arguments: Dict[str, str], scripts: Dict[str, str]) -> Path:
+    """A launch file that starts the package and the simulator, written into `folder`.
+
+    `scripts`: node -> script, for a package without a launch file.
+    """
     parts = []
     if not package.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
@@ -55,8 +77,8 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str]) -> Pa
         parts.append(f"  <include file={quoteattr(str(copy))}>{values}\n  </include>")
     else:
         parts += [
-            f'  <node pkg="{package.name}" type="{script}" name="{node}" output="screen"/>'
-            for script, node in package.nodes
+            f'  <node pkg="{package.name}" type={quoteattr(script)} name="{node}" output="screen"/>'
+            for node, script in scripts.items()
         ]
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
@@ -102,13 +124,14 @@ def main() -> None:
     try:
         state, share = places()
         package = find_package(args.path, args.launch)
-        print(f"robocop sim: building {package.name} from {package.path}", flush=True)
-        with scratch_folder():
-            folder, environment = host(package, share, state)
         for_package, for_simulator = sort_arguments(
             package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch")
         )
-        path = launch_file(package, folder, for_package)
+        print(f"robocop sim: building {package.name} from {package.path}", flush=True)
+        with scratch_folder():
+            folder, environment, found = host(package, share, state, for_package)
+        scripts = {NODE_NAMES[part]: choice.path.name for part, choice in found.choices.items()}
+        path = launch_file(package, folder, for_package, scripts)
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)

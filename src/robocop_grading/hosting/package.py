@@ -4,20 +4,22 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import HostingError
-from aro_robocop_goto_as.ros.names import BRIDGE, SERVER
+from aro_robocop_goto_as.ros.names import PACKAGE
 
 from . import tree
-from .tree import read_xml
+from .launch_file import LaunchNode, read
+from .scripts import ASIDE, LEFT_OUT, PARTS, Choice, best_place, choose, files_below
+from .tree import read_bytes, read_xml
+from .workspace import Environment, Run
 
-NODES = (
-    ("robocop_goto_as.py", SERVER),  # the handout's scripts and their node names
-    ("robocop_rviz_goto_ac.py", BRIDGE),
-)
 LAUNCH_FILE = "robocop_goto_as.launch"
-GENERATED = {"build", "devel", "install", "logs", "__pycache__"}  # folders of a workspace
+GENERATED = {*LEFT_OUT}  # folders
+NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
+MOST_NAMED = 10  # scripts in a message
+SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", "aro_sim"}  # packages that nothing depends on
 SIMULATOR = re.compile(r"aro_sim|robocop_sim")
 
 
@@ -28,7 +30,7 @@ class Package:
     name: str
     path: Path
     launch_file: Optional[Path]  # None: its nodes are started directly
-    nodes: Tuple[Tuple[str, str], ...]  # script, node name: of the handout's nodes, those present
+    launch_files: Sequence[Path] = ()  # all of them, this one first
 
     @property
     def starts_simulator(self) -> bool:
@@ -67,26 +69,30 @@ def find_package(path: str, launch: str = "") -> Package:
     if not manifests:
         raise HostingError(f"{path}: no package.xml in it or below it; expected the folder of a catkin package")
     named = [(_name(manifest), manifest.parent) for manifest in manifests]
-    chosen = named if len(named) == 1 else [entry for entry in named if entry[0] == "aro_robocop_goto_as"]
+    chosen = named if len(named) == 1 else [entry for entry in named if entry[0] == PACKAGE]
+    if len(chosen) > 1:
+        chosen = [entry for entry in chosen if not ASIDE.search(str(entry[1].relative_to(top.resolve())))] or chosen
     if len(chosen) != 1:
         raise HostingError(
             f"{path}: {len(named)} packages found, give the path of one: "
             + ", ".join(str(folder) for _, folder in named)
         )
     name, folder = chosen[0]
-    nodes = tuple((script, node) for script, node in NODES if tree.find(folder, script))
-    launch_file = _launch_file(folder, launch)
-    if launch_file is None and not nodes:
+    if not NAME.fullmatch(name):
+        raise HostingError(f"{folder}/package.xml: expected a <name> of letters, digits, _ and -, got {name!r}")
+    launch_file, launch_files = _launch_file(folder, launch)
+    if launch_file is None and not choose(folder):
+        scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
         raise HostingError(
-            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called "
-            + " or ".join(script for script, _ in NODES)
+            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
+            f"or one that makes an action server; found: {', '.join(scripts[:MOST_NAMED]) or 'no Python script'}"
         )
-    return Package(name, folder, launch_file, nodes)
+    return Package(name, folder, launch_file, launch_files)
 
 
 def _manifests(top: Path) -> Iterator[Path]:
     """Every package.xml in a folder or below it, except inside another package."""
-    for folder, folders, files in tree.walk(top, GENERATED):
+    for folder, folders, files in tree.walk(top, LEFT_OUT):
         if "package.xml" in files:
             yield folder / "package.xml"
             folders.clear()
@@ -100,16 +106,74 @@ def _name(manifest: Path) -> str:
     return name.strip()
 
 
-def _launch_file(folder: Path, wanted: str) -> Optional[Path]:
-    launch_files = sorted(
-        path
-        for path in tree.find(folder, "*.launch")
-        if not any(part.startswith(".") for part in path.relative_to(folder).parts)
-    )
-    matching = [path for path in launch_files if path.name == (wanted or LAUNCH_FILE)]
+def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]:
+    """The launch file to start, and all of them; HostingError if there are several with its name, which differ."""
+    files = [path for path in files_below(folder) if path.suffix == ".launch"]
+    files.sort(key=lambda path: (best_place(path, folder, "launch"), path))
+    matching = [path for path in files if path.name == (wanted or LAUNCH_FILE)]
     if wanted and not matching:
-        known = ", ".join(path.name for path in launch_files) or "none"
+        known = ", ".join(sorted(path.name for path in files)) or "none"
         raise HostingError(f"{folder}: no launch file {wanted!r}; available: {known}")
-    if matching:
-        return matching[0]
-    return launch_files[0] if len(launch_files) == 1 else None
+    for path in matching[1:]:
+        equal = best_place(path, folder, "launch") == best_place(matching[0], folder, "launch")
+        if equal and read_bytes(path) != read_bytes(matching[0]):
+            names = " and ".join(str(it.relative_to(folder)) for it in (matching[0], path))
+            raise HostingError(f"{names}: nothing says which of them is to be started: remove one")
+    if matching or len(files) == 1:
+        chosen = (matching or files)[0]
+        return chosen, [chosen, *(path for path in files if path != chosen)]
+    return None, files
+
+
+@dataclass(frozen=True)
+class Started:
+    """What roslaunch would start of a package, by part, the parameters it would set, and what of it is not done."""
+
+    choices: Mapping[str, Choice]
+    parameters: Mapping[str, Any]
+    notes: Sequence[str]
+
+
+def started(
+    package: Package, folder: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()
+) -> Started:
+    """Read the launch files of a package that is built in the workspace at `folder`: the package's own one, then others
+    until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
+    """
+    copy = folder / "src" / package.name
+    relays = [path for path in tree.find(folder / "devel" / "lib" / package.name, "*") if path.is_file()]
+    nodes: List[LaunchNode] = []
+    parameters: Dict[str, Any] = {}
+    notes: List[str] = []
+    choices = choose(copy, nodes, relays) if package.launch_file is None else {}
+    for path in package.launch_files:
+        is_main = path == package.launch_file
+        try:
+            file = read(copy / path.relative_to(package.path), copy, environment, run, arguments if is_main else ())
+        except HostingError:
+            if is_main:
+                raise
+            continue  # it may need packages that only another machine has
+        choices = choose(copy, [*nodes, *file.nodes], relays)
+        if is_main or any(choice.node in file.nodes for choice in choices.values()):
+            nodes += file.nodes
+            parameters = {**file.parameters, **parameters}
+            notes += [*file.warnings, *_not_done(package, file.nodes, choices)]
+        if all(part in choices and choices[part].node is not None for part in PARTS.values()):
+            break
+    return Started(choices, parameters, notes)
+
+
+def _not_done(package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice]) -> Iterator[str]:
+    """What launch files of the package ask for beside the start of its server and its bridge."""
+    graded = [choice.node for choice in choices.values()]
+    for node in (node for node in nodes if node.is_own):
+        if node not in graded and node.package not in SHOWN_BY:
+            yield (
+                f"{node.place}: node {node.name} ({node.package} {node.type}) is not started: server and bridge are "
+                "graded one at a time, each alone"
+            )
+        elif node in graded and node.package != package.name:
+            yield f"{node.place}: pkg={node.package!r} is not this package, whose name is {package.name!r}"
+        for attribute in node.not_done if node in graded else ():
+            yield f"{node.place}: {attribute} has no effect in a grading"

@@ -45,6 +45,11 @@ def output_of(run: Run, command: Sequence[str], environment: Environment, limit:
         return status, output.read(limit), errors.read(limit).decode(errors="replace")
 
 
+def workspace_name(path: Path) -> str:
+    """The name of the folder in which the package at a path is built: make, CMake and genmsg don't take all names."""
+    return f"package-{zlib.crc32(os.fsencode(path)):08x}"
+
+
 def base_environment() -> Environment:
     """This process's environment without any workspace, and with the ROS of ROBOCOP_BASE_SETUP, if that is set."""
     environment = {name: value for name, value in os.environ.items() if name not in CHAINED}

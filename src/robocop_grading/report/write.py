@@ -71,6 +71,7 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
         "of": grade.points_available,
         "extra": grade.extra,
         "extra_of": grade.extra_available,
+        "files": list(grade.files),
         "problems": list(grade.problems),
         "checks": [_check_as_json(check) for check in grade.checks],
     }
@@ -143,7 +144,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
             test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available
             test["status"] = "passed" if passed else "failed"
         tests.append(test)
-    output = [*map(printable_lines, grade.problems), f"scenarios: seed {plan.seed}"]
+    output = [*map(printable_lines, (*grade.files, *grade.problems)), f"scenarios: seed {plan.seed}"]
     return {"score": grade.points + grade.extra, "output": "\n".join(output), "tests": tests}
 
 

@@ -45,19 +45,20 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], m
     wrapped = sandbox.build_command
 
     def run(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
+        name = Path(command[0]).name
         visible = {**public(environment), "HOME": "/tmp", "ROS_HOME": "/tmp", "ROS_LOG_DIR": "/tmp"}
         change_owner(folder, user())
         inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
         guard = Guard(process.pid, folder, processor_time=most)
         try:
-            status = _wait(process, command[0])
+            status = _wait(process, name)
         finally:
             child.end(process, None, 0.0)
             guard.stop()
             change_owner(folder, 0)
         if guard.reason:
-            raise GradingError(f"{command[0]} was ended: {guard.reason}")
+            raise GradingError(f"{name} was ended: {guard.reason}")
         return status
 
     return run

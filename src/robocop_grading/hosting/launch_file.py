@@ -1,0 +1,139 @@
+"""A launch file -> the nodes and parameters that roslaunch would start and set."""
+
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Sequence
+
+import yaml
+
+from aro_robocop_goto_as.errors import HostingError
+
+from .tree import read_bytes
+from .workspace import Environment, Run, output_of
+
+READER = Path(__file__).resolve().with_name("roslaunch_reader.py")
+DEEPEST = 20  # nested lists and mappings of a parameter
+MOST_SHOWN = 200  # characters of a parameter or an error in a message
+TYPES = "expected a boolean, a 32-bit number, a string, or a list or mapping of these"
+MAX_OUTPUT = 200_000  # bytes of nodes and parameters
+VARIABLE = re.compile(r"[A-Za-z_]\w*")
+WHILE = re.compile(r"while processing (.*):\n")  # an included file
+
+
+@dataclass(frozen=True)
+class LaunchNode:
+    """A <node> with all that roslaunch has resolved: arguments, namespaces, remappings, conditions, includes."""
+
+    package: str
+    type: str
+    name: str
+    place: str  # file and line
+    namespace: str = "/"
+    arguments: List[str] = field(default_factory=list)  # remappings included
+    environment: Mapping[str, str] = field(default_factory=dict)
+    not_done: List[str] = field(default_factory=list)  # attributes that have no effect in a grading
+    is_own: bool = True  # in a file of the package, not in one that it includes from another one
+
+    @property
+    def variables(self) -> Environment:
+        """Environment variables that roslaunch sets for it."""
+        namespace = self.namespace.rstrip("/")
+        return {**self.environment, **({"ROS_NAMESPACE": namespace} if namespace else {})}
+
+
+@dataclass(frozen=True)
+class LaunchFile:
+    """What a launch file starts and sets."""
+
+    nodes: List[LaunchNode]
+    parameters: Mapping[str, Any]
+    warnings: List[str]  # of roslaunch
+
+
+class _PlainLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no types
+    """YAML without aliases: a few lines with them can expand to more than fits into memory."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise HostingError("its parameters refer to one another (YAML aliases), which is not supported")
+        return super().compose_node(parent, index)
+
+
+def read(path: Path, top: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()) -> LaunchFile:
+    """What roslaunch makes of a launch file of the package at `top`; `run` is the sandbox, as it may run commands.
+
+    `arguments`: NAME:=VALUE. HostingError with roslaunch's reason and the line if it can't be loaded.
+    """
+    read_bytes(path, top)  # an ordinary file
+    name = str(path.relative_to(top))
+    command = [sys.executable, str(READER), str(path), *arguments]
+    status, output, errors = output_of(run, command, environment, MAX_OUTPUT)
+    if status != 0 or len(output) == MAX_OUTPUT:
+        reason = f"more than {MAX_OUTPUT // 1000} kB" if len(output) == MAX_OUTPUT else _last_line(errors)
+        raise HostingError(f"{name}: roslaunch can't read it: {reason}")
+    try:
+        values = yaml.load(output.decode(errors="replace"), _PlainLoader)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that does not exist
+        raise HostingError(f"{name}: its parameters can't be read: {str(error)[:MOST_SHOWN]}") from error
+    try:
+        if "error" in values:
+            raise HostingError(_failure(values, name, top))
+        nodes = [_node(entry, top) for entry in values["nodes"]]
+        return LaunchFile(nodes, _settable(values["parameters"], name), [f"{name}: {it}" for it in values["warnings"]])
+    except (AttributeError, KeyError, TypeError) as error:  # not the reader's: a hand-in's code has printed it
+        raise HostingError(f"{name}: roslaunch can't read it: {error!r}"[:MOST_SHOWN]) from error
+
+
+def _last_line(errors: str) -> str:
+    lines = [line for line in re.sub("\x1b[^m]*m", "", errors).splitlines() if line.strip()]  # without colours
+    return (lines or ["no reason given"])[-1][:MOST_SHOWN]
+
+
+def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
+    """Why roslaunch can't load the file, with the place, which may be in an included file."""
+    words, place = str(values["error"]), _place(str(values["file"] or name), int(values["line"]), top)
+    included = WHILE.findall(words)
+    reason = " ".join(re.split(r"\n\s*\w+ xml is|\nXML is|\. Node xml is|\n *ROS path", WHILE.sub("", words))[0].split())
+    reason = re.sub(r"^(XmlParse|Load)?Exception: ", "", reason)
+    reason = re.sub(r"^ResourceNotFound: (\S+)$", r"package \1 not found", reason)
+    within = f" (in {_place(included[-1], 0, top)})" if included else ""
+    return f"{place}: roslaunch can't read it: {reason[:MOST_SHOWN]}{within}"
+
+
+def _place(file: str, line: int, top: Path) -> str:
+    path = Path(file)
+    shown = path.relative_to(top) if top in path.parents else path
+    return f"{shown}, line {line}" if line else str(shown)
+
+
+def _node(values: Mapping[str, Any], top: Path) -> LaunchNode:
+    package, kind, name, namespace = (str(values[key]) for key in ("package", "type", "name", "namespace"))
+    place, arguments = _place(str(values["file"]), int(values["line"]), top), list(map(str, values["arguments"]))
+    environment: Dict[str, str] = {str(name): str(value) for name, value in values["environment"].items()}
+    for variable, value in environment.items():
+        if not VARIABLE.fullmatch(variable) or "\0" in value:
+            raise HostingError(f"{place}: <env name={variable[:MOST_SHOWN]!r}>: expected the name of a variable")
+    is_own = top in Path(str(values["file"])).parents
+    return LaunchNode(package, kind, name, place, namespace, arguments, environment, values["not_done"], is_own)
+
+
+def _settable(parameters: Any, name: str) -> Mapping[str, Any]:
+    """The parameters without the simulator's own; HostingError for one that can't be set."""
+    for key, value in parameters.items():
+        if not isinstance(key, str) or not _is_settable(value):
+            words = str(value)[:MOST_SHOWN]
+            raise HostingError(f"{name}: {str(key)[:MOST_SHOWN]}: {words} can't be a parameter: {TYPES}")
+    return {key: value for key, value in parameters.items() if key != "/use_sim_time"}
+
+
+def _is_settable(value: Any, depth: int = 0) -> bool:
+    """Whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
+    if isinstance(value, list):
+        return depth < DEEPEST and all(_is_settable(it, depth + 1) for it in value)
+    if isinstance(value, dict):
+        return depth < DEEPEST and all(isinstance(k, str) and _is_settable(v, depth + 1) for k, v in value.items())
+    if isinstance(value, int):  # includes bool
+        return -(2**31) <= value < 2**31
+    return isinstance(value, (float, str))
