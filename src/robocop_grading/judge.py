@@ -12,6 +12,7 @@ from .texts import Texts, sentences, text
 
 INCOMPLETE = "an incomplete one"
 FIRST = "action_server"  # the check without which no other one of a server is reached
+ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
@@ -162,6 +163,9 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
         checks += [_told(check, plan.texts) for check in _with_reasons(own, by_name)]
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
+    found += [
+        f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _end_of(part, by_name, plan)
+    ]
     if any(check.outcome is not Outcome.PASSED for check in checks):
         found += [f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _unpublished(by_name)]
     return Grade(name, tuple(checks), tuple(found))
@@ -192,6 +196,14 @@ def _unpublished(records: Mapping[str, Record]) -> List[str]:
         for topic in record.unpublished
         if topic.rpartition("/")[0] not in record.servers
     ]
+
+
+def _end_of(part: str, records: Mapping[str, Record], plan: Plan) -> List[str]:
+    """Why a server did not start, or ended, if none of the plan's checks examines that."""
+    if part != "server" or {FIRST, ALIVE}.intersection(check.name for check in plan.checks):
+        return []
+    verdicts = [CHECKS[name](record, plan.limits) for record in records.values() for name in (FIRST, ALIVE)]
+    return [sentences(verdict.cause) for verdict in verdicts if isinstance(verdict, Failed)][:1]
 
 
 def alike(text: str) -> str:

@@ -5,12 +5,12 @@ import sys
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
+from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
 
 from .advice import advice, next_todo
-from .hosting import tree, workspace
+from .hosting import workspace
 from .hosting.launch_file import READER
 from .hosting.package import MOST_NAMED, Package, find_package, started
 from .hosting.scripts import (

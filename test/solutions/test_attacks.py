@@ -154,9 +154,10 @@ def test_link_to_a_device_is_refused_without_blocking(name, package, tmp_path):
 
 
 def test_named_pipe_created_by_the_build_is_refused_without_blocking(package, tmp_path):
+    launch = "${CMAKE_CURRENT_SOURCE_DIR}/launch/robocop_goto_as.launch"
     with open(package / "CMakeLists.txt", "a") as text:
-        text.write("execute_process(COMMAND mkfifo ${CMAKE_CURRENT_SOURCE_DIR}/launch/zz.launch)\n")
-    with pytest.raises(RobocopError, match="zz.launch: expected an ordinary file"):
+        text.write(f"execute_process(COMMAND rm {launch})\nexecute_process(COMMAND mkfifo {launch})\n")
+    with pytest.raises(RobocopError, match="robocop_goto_as.launch: expected an ordinary file"):
         prepared(package, tmp_path / "workshop")
 
 
@@ -217,7 +218,7 @@ def test_endless_line_of_a_build_is_cut(package, tmp_path):
 def test_parameter_that_the_parameter_server_does_not_take_is_named(parameter, reason, package, tmp_path):
     launch = package / "launch" / "robocop_goto_as.launch"
     launch.write_text(f'<launch><param name="day" {parameter}/></launch>')
-    with pytest.raises(GradingError, match=reason):
+    with pytest.raises(RobocopError, match=reason):
         prepared(package, tmp_path / "workshop")
 
 
@@ -228,6 +229,31 @@ def test_what_keeps_a_script_from_being_started_in_the_lab_is_noted(package, tmp
     assert [note.partition(",")[0] for note in prepared(package, tmp_path / "workshop").notes] == [
         "server: robocop_goto_as.py is not executable",
         "server: robocop_goto_as.py has Windows line endings (CRLF)",
+    ]
+
+
+@pytest.mark.parametrize("name", ["lab (1)", "O'Neil", "a & b", "lab#3", 'say "$HOME"', "$(touch x)", b"\xf8\xe9zen"])
+def test_package_in_a_folder_of_any_name_is_built(name, package, tmp_path):
+    odd = package.rename(tmp_path / os.fsdecode(name))
+    assert [script.part for script in prepared(odd, tmp_path / "workshop").scripts] == ["server", "bridge"]
+
+
+def test_grade_says_which_scripts_are_started_and_what_the_launch_file_asks_for_in_vain(package, tmp_path):
+    (package / "backup").mkdir()
+    (package / "backup" / "robocop_goto_as.py").write_text("unfinished")
+    launch = package / "launch" / "robocop_goto_as.launch"
+    helper = '<node pkg="tf2_ros" type="static_transform_publisher" name="map" args="0 0 0 0 0 0 map odom"/>\n</launch>'
+    launch.write_text(launch.read_text().replace("</launch>", helper).replace("output=", "respawn='true' output=", 1))
+    submission = prepared(package, tmp_path / "workshop")
+    file = "launch/robocop_goto_as.launch, line"
+    assert submission.files == [
+        f"server: scripts/robocop_goto_as.py, started by {file} 8; not graded: backup/robocop_goto_as.py",
+        f"bridge: scripts/robocop_rviz_goto_ac.py, started by {file} 9",
+    ]
+    assert [note for note in submission.notes if note.startswith(file)] == [
+        f"{file} 8: respawn='true' has no effect in a grading",
+        f"{file} 10: node map (tf2_ros static_transform_publisher) is not started: server and bridge are graded one "
+        "at a time, each alone",
     ]
 
 

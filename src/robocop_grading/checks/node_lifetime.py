@@ -6,7 +6,7 @@ from typing import Sequence
 from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
 from ..texts import text
-from .output import UNCAUGHT, last_error
+from .output import TRACEBACK, UNCAUGHT, first_error, last_error
 from .verdict import After, Failed, NotReached, Verdict, check
 
 START = After("action_server", lambda record, *_: record.name == "start")
@@ -54,9 +54,10 @@ def _died(cause: str, death: Death, record: Record) -> Failed:
 @check("states", after=(START,))
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
-    for line in record.lines:
+    for number, line in enumerate(record.lines):
         if UNCAUGHT.search(line.text):
-            return Failed("no exception", line.text[:120].splitlines()[0], line.time, last_error(record))
+            error = first_error([it.text for it in record.lines[number : number + TRACEBACK]])
+            return Failed("no exception", error, line.time, last_error(record))
     return None
 
 

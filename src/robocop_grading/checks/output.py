@@ -2,7 +2,7 @@
 
 import os
 import re
-from typing import Pattern, Sequence
+from typing import Iterator, Pattern, Sequence
 
 from ..record import Record
 
@@ -24,6 +24,7 @@ UNCAUGHT = re.compile(
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
 # The path of a file that is not the node's: of a library, or of the agent under which it runs.
 LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop_grading/agent/")
+FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
 TRACEBACK = 40  # lines before the error in which its place is looked for
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 
@@ -38,15 +39,39 @@ def last_error(record: Record) -> str:
 
     A place in a library is named only if no traceback has a place outside of libraries.
     """
-    lines = [text.strip() for line in record.lines for text in line.text.splitlines() if text.strip()]
-    errors = [number for number, line in enumerate(lines) if "Error" in line.split(":")[0] or "Exception:" in line]
+    unstripped = [text for line in record.lines for text in line.text.splitlines() if text.strip()]
+    lines, ends = [text.strip() for text in unstripped], set(_ends(unstripped))
+    errors = [
+        number
+        for number, line in enumerate(lines)
+        if number in ends or "Error" in line.split(":")[0] or "Exception:" in line
+    ]
     for only_own in (True, False):
         for number in reversed(errors):
             place = _place(lines[max(0, number - TRACEBACK) : number], only_own)
             if place or not only_own:
-                return lines[number][:200] + place
+                return FOLDER.sub(r"\1", lines[number])[:200] + place
     others = [line for line in lines if not INFORMATION.match(line)]
     return (others or ["its output names no error"])[-1][:200]
+
+
+def first_error(lines: Sequence[str]) -> str:
+    """Type and message of the first exception in lines that begin with it; the first line if it has no traceback."""
+    texts = [text for line in lines for text in line.splitlines() if text.strip()]
+    ends = [texts[number].strip() for number in _ends(texts)]
+    begins_with_one = any("Traceback" in text for text in texts[:2])
+    return FOLDER.sub(r"\1", ends[0] if ends and begins_with_one else texts[0])[:200]
+
+
+def _ends(lines: Sequence[str]) -> Iterator[int]:
+    """Where tracebacks end: the first line after each one's beginning that is not indented."""
+    within = False
+    for number, line in enumerate(lines):
+        if "Traceback (most recent call last):" in line:
+            within = True
+        elif within and not line[0].isspace():
+            within = False
+            yield number
 
 
 def _place(lines: Sequence[str], only_own: bool) -> str:

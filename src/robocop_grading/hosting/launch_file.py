@@ -95,7 +95,9 @@ def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
     """Why roslaunch can't load the file, with the place, which may be in an included file."""
     words, place = str(values["error"]), _place(str(values["file"] or name), int(values["line"]), top)
     included = WHILE.findall(words)
-    reason = " ".join(re.split(r"\n\s*\w+ xml is|\nXML is|\. Node xml is|\n *ROS path", WHILE.sub("", words))[0].split())
+    reason = " ".join(
+        re.split(r"\n\s*\w+ xml is|\nXML is|\. Node xml is|\n *ROS path", WHILE.sub("", words))[0].split()
+    )
     reason = re.sub(r"^(XmlParse|Load)?Exception: ", "", reason)
     reason = re.sub(r"^ResourceNotFound: (\S+)$", r"package \1 not found", reason)
     within = f" (in {_place(included[-1], 0, top)})" if included else ""

@@ -33,13 +33,13 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     found = started(package, folder, environment, run_plain, words)
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
-            _make_startable(choice, folder / "src")
+            make_startable(choice, folder / "src")
     # This package's log handlers are not found where a package of the same name is hosted.
     ros_logging = {"ROS_PYTHON_LOG_CONFIG_FILE": os.path.join(rospkg.get_etc_ros_dir(), "python_logging.conf")}
     return folder, {**environment, **ros_logging, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
 
 
-def _make_startable(choice: Choice, source: Path) -> None:
+def make_startable(choice: Choice, source: Path) -> None:
     """Have roslaunch start this script, and no other one of its name."""
     name = choice.path.relative_to(source)
     if not os.access(choice.path, os.X_OK):
@@ -50,8 +50,9 @@ def _make_startable(choice: Choice, source: Path) -> None:
         choice.path.chmod(0o755)
     for problem, remedy in obstacles(choice.path):
         raise HostingError(f"{name} {problem}, so roslaunch can't start it: {remedy}")
-    if interpreter(choice.path):
-        _tell(f"{name} is started by {interpreter(choice.path)!r}, which the lab may not have: make {FIRST_LINE} its first line")
+    program = interpreter(choice.path)
+    if program:
+        _tell(f"{name} is started by {program!r}, which the lab may not have: make {FIRST_LINE} its first line")
     for other in choice.others:
         if other.name == choice.path.name and not other.is_symlink():
             other.chmod(0o644)

@@ -1,4 +1,4 @@
-"""Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's own loader makes of a launch file, as YAML.
+"""Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's loader makes of a launch file, as YAML.
 
 It is a program of its own, as launch files can run commands. It imports nothing of the grader's.
 """

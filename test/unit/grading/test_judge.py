@@ -115,6 +115,15 @@ def test_only_submitted_parts_are_graded() -> None:
     assert not grade.all_right
 
 
+def test_reason_why_the_server_ended_is_told_where_no_check_examines_that() -> None:
+    lines = ("Traceback (most recent call last):", "NameError: name 'x' is not defined")
+    start = replace(RIGHT, name="start", up=False, deaths=(rec.Death(0.1, 1),))
+    start = replace(start, lines=tuple(rec.Line(0.1, line) for line in lines))
+    reason = "server: The node ended while starting: NameError: name 'x' is not defined."
+    assert judge("x", load(PLAN).restricted(["reaches_goal"]), {"server": {"start": start}}, {}).problems == (reason,)
+    assert judge("x", load(PLAN), {"server": {"start": start}}, {}).problems == ()
+
+
 def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
     plan = load(PLAN)
     grade = _grade(plan, start=replace(RIGHT, name="start"), left=replace(RIGHT, name="left"))

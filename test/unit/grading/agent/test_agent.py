@@ -602,3 +602,37 @@ def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):
     lines = printed(tmp_path, text)
     assert lines[0] == "__main__ ['argument'] True"
     assert lines[1] == "Traceback (most recent call last):" and "script.py" in lines[2] and lines[-1] == "ValueError: 3"
+
+
+SOURCES = {
+    "cp1250 without a coding line": b"x = 1\n# \xf8\n",
+    "cp1250 with a coding line": b"# coding: cp1250\nprint('\xf8')\n",
+    "UTF-16": "print(1)\n".encode("utf-16"),
+    "UTF-16 without a byte-order mark": "print(1)\n".encode("utf-16-le"),
+    "UTF-8 with a byte-order mark": b"\xef\xbb\xbfprint(1)\n",
+    "a null byte": b"x = 1\n\0y\n",
+    "tabs and spaces": b"if 1:\n\tx = 1\n        y = 2\n",
+    "an unknown coding": b"# coding: nothing\n",
+    "Windows line endings": b"print(1)\r\nprint(2)\r\n",
+    "Python 2": b"print 1\n",
+    "an exception": b"def f():\n    raise ValueError(1)\nf()\n",
+    "an exit status": b"raise SystemExit(3)\n",
+}
+
+
+@pytest.mark.parametrize("content", SOURCES.values(), ids=SOURCES)
+def test_source_is_read_as_by_python3_itself(content, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_bytes(content)
+    (tmp_path / "run.py").write_text(
+        f"import sys\nsys.path.insert(0, {os.path.dirname(AGENT)!r})\nfrom agent import __main__ as agent\n"
+        "class Nothing:\n    def install(self, *_): pass\n"
+        f"agent.load = Nothing\nsys.argv = ['', '2,0', {str(script)!r}]\nagent.main()\n"
+    )
+    expected, got = (
+        subprocess.run([sys.executable, str(path)], capture_output=True, timeout=PATIENCE, cwd=tmp_path)
+        for path in (script, tmp_path / "run.py")
+    )
+    own = got.stderr.split(b"line 8, in <module>\n")[-1]  # without run.py's own frame
+    assert (got.stdout, got.returncode) == (expected.stdout, expected.returncode)
+    assert own == expected.stderr

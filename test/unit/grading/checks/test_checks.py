@@ -124,6 +124,9 @@ def test_error_is_named_with_its_file_and_line() -> None:
         "[INFO] shutting down",
     )
     record = changed(deaths=(rec.Death(4.0, 1),), lines=tuple(rec.Line(3.0, line) for line in traceback))
+    exception = CHECKS["no_exception"](record, LIMITS)
+    assert isinstance(exception, Failed)
+    assert exception.seen == "TypeError: cannot unpack non-iterable NoneType object"
     verdict = CHECKS["stays_alive"](record, LIMITS)
     assert isinstance(verdict, Failed)
     assert verdict.cause == (
@@ -146,6 +149,26 @@ def test_exception_in_a_library_is_given_the_place_in_the_node() -> None:
     verdict = CHECKS["stays_alive"](record, LIMITS)
     assert isinstance(verdict, Failed)
     assert verdict.cause.endswith("norm. (robocop_goto_as.py, line 51: position_error = np.linalg.norm(dx, dy))")
+
+
+def test_exception_of_the_nodes_own_is_named_in_a_line_of_the_log() -> None:
+    text = (
+        "[ERROR] bad callback: <function moved>\nTraceback (most recent call last):\n"
+        '  File "/tmp/robocop_goto_as.py", line 5, in moved\n    raise Stop(1)\n__main__.Stop: 1'
+    )
+    verdict = CHECKS["no_exception"](changed(lines=(rec.Line(3.0, text), rec.Line(3.1, "[WARN] on"))), LIMITS)
+    assert isinstance(verdict, Failed)
+    assert (verdict.seen, verdict.cause) == (
+        "__main__.Stop: 1",
+        "__main__.Stop: 1 (robocop_goto_as.py, line 5: raise Stop(1))",
+    )
+
+
+def test_place_of_a_source_that_python_refuses_is_named_without_its_folder() -> None:
+    line = "SyntaxError: Non-UTF-8 code starting with '\\xf8' in file /tmp/a b/robocop_goto_as.py on line 3, but no"
+    verdict = CHECKS["no_exception"](changed(lines=(rec.Line(0.0, line),)), LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.seen == verdict.cause == line.replace("/tmp/a b/", "")
 
 
 def test_check_that_was_not_reached_states_the_reason() -> None:

@@ -1,4 +1,4 @@
-"""Hosted packages: launched with the right arguments."""
+"""Hosted packages: launched with the right arguments, and from scripts that can be started."""
 
 from pathlib import Path
 
@@ -6,8 +6,9 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.hosting.main import launch_file, parsed, sort_arguments
+from robocop_grading.hosting.main import launch_file, make_startable, parsed, sort_arguments
 from robocop_grading.hosting.package import find_package
+from robocop_grading.hosting.scripts import Choice
 
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 
@@ -30,7 +31,7 @@ def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(
 def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, text: str, starts: bool) -> None:
     package = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": text})))
     assert package.starts_simulator == starts
-    assert ("aro_sim" in launch_file(package, tmp_path, {}).read_text()) != starts
+    assert ("aro_sim" in launch_file(package, tmp_path, {}, {}).read_text()) != starts
 
 
 @pytest.mark.parametrize(
@@ -53,3 +54,20 @@ def test_only_the_chosen_launch_file_and_what_it_includes_decide_who_starts_the_
     assert not find_package(str(tmp_path)).starts_simulator
     assert find_package(str(tmp_path), "lab.launch").starts_simulator
     assert find_package(str(tmp_path), "both.launch").starts_simulator
+
+
+def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_the_reason(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tree(
+        tmp_path, {"lab/a.py": "#!/usr/bin/env python\n", "lab/b.py": "\n#!/usr/bin/env python3\n", "lab/old/a.py": ""}
+    )
+    script, other = tmp_path / "lab" / "a.py", tmp_path / "lab" / "old" / "a.py"
+    other.chmod(0o755)
+    make_startable(Choice(script, None, False, [other]), tmp_path)
+    assert (script.stat().st_mode & 0o777, other.stat().st_mode & 0o777) == (0o755, 0o644)
+    told = capsys.readouterr().err
+    assert "lab/a.py is not executable" in told
+    assert "lab/a.py is started by '/usr/bin/env python', which the lab may not have" in told
+    with pytest.raises(HostingError, match="lab/b.py has its #! line below other lines, so roslaunch can't start it"):
+        make_startable(Choice(tmp_path / "lab" / "b.py", None, False, []), tmp_path)

@@ -16,7 +16,6 @@ def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> No
     for path in ("", "src", f"src/{LAB}"):
         package = find_package(str(tmp_path / path))
         assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
-        assert package.nodes == (("robocop_goto_as.py", "aro_robocop_goto_as_node"),)
 
 
 @pytest.mark.parametrize(
@@ -30,6 +29,16 @@ def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> No
             "2 packages found, give the",
         ),
         ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
+        ({"package.xml": MANIFEST.format(LAB), "src/move.py": "print(1)"}, "action server; found: src/move.py"),
+        ({"package.xml": MANIFEST.format("../../up")}, "expected a <name> of letters, digits, _ and -, got '../../up'"),
+        (
+            {
+                "package.xml": MANIFEST.format(LAB),
+                "a/robocop_goto_as.launch": "<launch/>",
+                "b/robocop_goto_as.launch": "<launch></launch>",
+            },
+            "a/robocop_goto_as.launch and b/robocop_goto_as.launch: nothing says which",
+        ),
     ],
 )
 def test_folder_without_a_package_to_start_is_refused(tmp_path: Path, files: Dict[str, str], expected: str) -> None:
@@ -53,3 +62,13 @@ def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path: 
     assert find_package(str(tmp_path), "a.launch").launch_file == tmp_path / "a.launch"
     with pytest.raises(HostingError, match="no launch file 'b.launch'; available: a.launch, robocop_goto_as.launch"):
         find_package(str(tmp_path), "b.launch")
+
+
+@pytest.mark.parametrize("folder", ["backup", "OLD", "lab - Copy", "__MACOSX", ".ipynb_checkpoints"])
+def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path, folder: str) -> None:
+    lab = {"package.xml": MANIFEST.format(LAB), "launch/robocop_goto_as.launch": "<launch/>"}
+    other = {f"{folder}/{name}": text.replace("/>", "></launch>") for name, text in lab.items()}
+    beside = tree(tmp_path / "beside", {**{f"my_lab/{name}": text for name, text in lab.items()}, **other})
+    inside = tree(tmp_path / "inside", {**lab, f"{folder}/launch/robocop_goto_as.launch": "<launch></launch>"})
+    assert find_package(str(beside)).path == beside / "my_lab"
+    assert find_package(str(inside)).launch_file == inside / "launch" / "robocop_goto_as.launch"
