@@ -24,7 +24,8 @@ PROSE = (
 PROSE_FOLDERS = ("action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
-MAY_IMPORT_ROS = ("ros", "bench", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.hosting.main")
+READER = f"{GRADER}.hosting.roslaunch_reader"
+MAY_IMPORT_ROS = ("ros", "bench", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.hosting.main", READER)
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
 ORDER = {
