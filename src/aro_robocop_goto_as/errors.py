@@ -49,6 +49,10 @@ class ShutdownError(RobocopError):
     """The simulation ended before a request was carried out."""
 
 
+class ClockError(RobocopError):
+    """Simulated time was set back, and a node can't go on."""
+
+
 class InstallationError(RobocopError):
     """A part of this package is missing or of another version; the message says what to run."""
 

@@ -123,14 +123,6 @@ def message_definition(kind: Any) -> Tuple[str, str]:
     return kind._type, kind._full_text
 
 
-def clock_condition() -> Optional[threading.Condition]:
-    """The condition that rospy notifies at each /clock message; None on wall-clock time.
-
-    rospy.sleep and rospy.Rate wait on it as well, but neither can be interrupted while /clock is paused.
-    """
-    return None if rospy.rostime.is_wallclock() else rospy.rostime.get_rostime_cond()
-
-
 def shutdown_has_begun() -> bool:
     """Whether shutdown was requested; rospy.is_shutdown() turns true only after the on_shutdown hooks."""
     return bool(rospy.core.is_shutdown_requested())
@@ -163,17 +155,3 @@ def log_without_the_master() -> None:
     """
     name = "/rosout_disable_topics_generation"
     rospy.impl.paramserver.get_param_server_cache().set(name, rospy.get_param(name, False))
-
-
-def lengthen_queue(publisher: rospy.Publisher, count: int) -> None:
-    """Keep at least this many messages for a slow subscriber; each older one is lost for good.
-
-    The length is otherwise an argument of the constructor, which a library that makes the publisher may not offer.
-    """
-    topic = publisher.impl
-    if topic.queue_size == 0 or topic.queue_size > count:  # 0: all
-        return
-    with topic.c_lock:
-        topic.set_queue_size(count)
-        for connection in topic.connections:  # of subscribers that came before
-            connection._queue_size = count

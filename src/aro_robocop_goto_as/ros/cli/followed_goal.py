@@ -3,6 +3,7 @@
 import argparse
 import math
 import sys
+import threading
 import time
 from typing import Callable, List, Optional
 
@@ -11,14 +12,14 @@ import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
 
 from ...errors import FrameError
 from ...process import signals
 from .. import log_handlers
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
-from ..client.sent_goal import SentGoal
+from ..client.goal_states import STATES
 from ..names import ACTION, absolute_if_named, place, prefixed
 from ..rospy_internals import start_quickly
 from ..ticker import wait_until
@@ -96,8 +97,8 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
     odom = _frame(args.robot, "odom")
     transformer = GoalTransformer(odom, odom, SERVER_PATIENCE, lambda: latest[0])
     action = absolute_if_named(args.robot, ACTION)
-    client = actionlib.ActionClient(action, GoToPositionAction)
-    missing = discovery.wait_or_explain(client, action, patience, ended)
+    client = actionlib.SimpleActionClient(action, GoToPositionAction)
+    missing = _wait_or_explain(client, action, patience, ended)
     signals.reraise_if_interrupted()  # rospy may have swallowed it
     if missing:
         complain(missing)
@@ -117,17 +118,42 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
         return NOT_REACHED
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
-    return _follow(client, position, given)
+    return _follow(client, position)
 
 
-def _follow(client: actionlib.ActionClient, position: Point, where: str) -> int:
-    """Send a position in odom, which is called `where`, show feedback, cancel on Ctrl-C."""
-    progress, pause = _ProgressLine(), _PauseNotice()
-    goal: Optional[SentGoal] = None
+def _wait_or_explain(
+    client: actionlib.SimpleActionClient, action: str, timeout: float, ended: Callable[[], bool]
+) -> str:
+    """Wait up to `timeout` [s, wall] for the server, or until its system has ended.
+
+    An empty string, or why it may be missing and what to do.
+    """
+    started = time.monotonic()
+    wait_until(lambda: discovery.is_up(client) or ended(), timeout)
+    if discovery.is_up(client) and not ended():
+        return ""
+    if not rospy.get_rostime():
+        return PAUSED
+    unknown = "; the terminal in which the system was started shows why its server ended, if it did"
+    return f"no answer from {action} for {time.monotonic() - started:.0f} s{discovery.hint(action) or unknown}"
+
+
+def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
+    """Send a position in odom, show feedback, cancel on Ctrl-C."""
+    progress, pause, done = _ProgressLine(), _PauseNotice(), threading.Event()
+    ending, is_reached, is_sent = "no answer from the server", False, False
+
+    def on_done(state: int, result: Optional[GoToPositionResult]) -> None:
+        nonlocal ending, is_reached
+        ending = f"{STATES[state]}: {result.message}" if result is not None and result.message else STATES[state]
+        is_reached = result is not None and result.success
+        done.set()
+
     try:
         with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
-            goal = SentGoal(client, position, where, on_feedback=progress.show)
-        while not goal.done.wait(0.1):
+            client.send_goal(GoToPositionGoal(position), on_done, feedback_cb=progress.show)
+            is_sent = True
+        while not done.wait(0.1):
             signals.reraise_if_interrupted()
             pause.poll()
             if not discovery.is_up(client):
@@ -135,10 +161,10 @@ def _follow(client: actionlib.ActionClient, position: Point, where: str) -> int:
                 complain("the server is gone")
                 return NOT_REACHED
     except KeyboardInterrupt:
-        if goal is None:
+        if not is_sent:
             raise
-        goal.cancel()
-        wait_until(goal.done.is_set, SERVER_PATIENCE)
+        client.cancel_goal()
+        done.wait(SERVER_PATIENCE)
     progress.close()
-    print(goal.ending or "no answer from the server")
-    return REACHED if goal.result is not None and goal.result.success else NOT_REACHED
+    print(ending)
+    return REACHED if is_reached else NOT_REACHED

@@ -2,7 +2,6 @@
 
 import threading
 import time
-import traceback
 from typing import Callable, Optional
 
 import actionlib
@@ -11,16 +10,20 @@ from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from aro_robocop_goto_as.msg import GoToPositionAction
+from aro_robocop_goto_as.msg import (
+    GoToPositionAction,
+    GoToPositionFeedback,
+    GoToPositionGoal,
+    GoToPositionResult,
+)
 
 from ...bridge_params import BridgeParams
 from ...errors import FrameError
 from ..names import ACTION, BRIDGE, place
 from ..node_main import load_params, node
-from ..ticker import start_timer, wait_until
 from . import discovery
 from .goal_frame import GoalTransformer
-from .sent_goal import SentGoal
+from .goal_states import STATES, UNFINISHED
 
 ADVICE_AFTER = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
@@ -32,51 +35,49 @@ class Bridge:
     def __init__(self, p: BridgeParams) -> None:
         self.p = p
         self.odom: Optional[Odometry] = None
-        self.click: Optional[PoseStamped] = None
-        self.clicked = threading.Condition()
-        self.sent: Optional[SentGoal] = None
+        self.click = PoseStamped()
+        self.clicked = threading.Event()  # there is a click that is not served yet
+        self.where = ""  # the place of the current goal as it was clicked
+        self.feedback: Optional[GoToPositionFeedback] = None  # of the current goal
+        self.ending = ""  # of the last goal: state and message
+        self.has_ended = threading.Event()  # the goal that was sent last
         self.last_status = ""
         self.last_seen = time.monotonic()  # when the server was up
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
-        self.client = actionlib.ActionClient(ACTION, GoToPositionAction)
+        self.client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
-        rospy.Subscriber("odom", Odometry, self._on_odom, queue_size=1)
-        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_click, queue_size=10)
-        self.timer = start_timer(p.status_period, self._report)
+        rospy.Subscriber("odom", Odometry, self.on_odom, queue_size=1)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self.on_click, queue_size=10)
+        rospy.Timer(rospy.Duration.from_sec(p.status_period), self.report, reset=True)
 
-    def _on_odom(self, message: Odometry) -> None:
+    def on_odom(self, message: Odometry) -> None:
+        """Store odometry; a callback."""
         self.odom = message
 
-    def _on_click(self, message: PoseStamped) -> None:
-        with self.clicked:
-            self.click = message
-            self.clicked.notify()
+    def on_click(self, message: PoseStamped) -> None:
+        """Store a click; a callback."""
+        self.click = message
+        self.clicked.set()
 
     # -- clicks, in the main thread --
 
     def run(self) -> None:
         """Forward clicks until shutdown."""
         while not rospy.is_shutdown():
-            click = self._next_click()
-            if click is None:
+            if not self.clicked.wait(IDLE_POLL):
                 continue
+            self.clicked.clear()
+            click = self.click
             try:
-                self._replace_goal(self._resolve(click), click)
+                position = self.resolve(click)
             except FrameError as error:
                 rospy.logerr("goal refused, an earlier goal continues: %s", error)
-                self._publish_status(f"goal refused: {error}", rospy.loginfo)
-            except Exception:  # the click's outermost level: the next one is served nevertheless
-                if not rospy.is_shutdown():
-                    rospy.logerr("goal not sent:\n%s", traceback.format_exc())
+                self.publish_status(f"goal refused: {error}", rospy.loginfo)
+            else:
+                self.replace_goal(position, click)
 
-    def _next_click(self) -> Optional[PoseStamped]:
-        with self.clicked:
-            if self.click is None:
-                self.clicked.wait(IDLE_POLL)
-            click, self.click = self.click, None
-            return click
-
-    def _resolve(self, click: PoseStamped) -> Point:
+    def resolve(self, click: PoseStamped) -> Point:
+        """The clicked position in the server's frame; FrameError if it is not known there."""
         if not self.p.ignore_goal_frame:
             return self.transformer.resolve(click)
         rospy.logwarn_once(
@@ -86,61 +87,80 @@ class Bridge:
         )
         return click.pose.position
 
-    def _replace_goal(self, position: Point, click: PoseStamped) -> None:
+    def replace_goal(self, position: Point, click: PoseStamped) -> None:
         """Cancel the earlier goal, wait for its end, then send this one, unless a newer click arrives meanwhile.
 
         Reports name the place that was clicked, as the view shows it.
         """
-        if not self._wait_for_server():
-            return
-        earlier = self.sent
-        if earlier is not None and not earlier.done.is_set():
-            earlier.cancel()
-            ended = earlier.done.is_set
-            if not wait_until(lambda: ended() or self.click is not None, self.p.cancel_timeout):
-                rospy.logwarn(
-                    "the earlier goal did not end within %g s of its cancel; sending the new goal preempts it",
-                    self.p.cancel_timeout,
-                )
-        if self.click is not None:
+        if not discovery.is_up(self.client):
+            rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
+            self.client.wait_for_server()
+        self.cancel_goal()
+        if self.clicked.is_set() or rospy.is_shutdown():
             return
         clicked = click.pose.position
-        where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
-        self.sent = SentGoal(self.client, position, where, lambda ending: rospy.loginfo("goal ended, %s", ending))
-        rospy.loginfo("goal sent: %s, for the server %s", where, place(position.x, position.y, self.p.goal_frame))
-        self._report()
+        self.where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
+        self.feedback = None
+        self.has_ended.clear()
+        self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
+        rospy.loginfo("goal sent: %s, for the server %s", self.where, place(position.x, position.y, self.p.goal_frame))
+        self.report()
 
-    def _wait_for_server(self) -> bool:
-        """Wait for the server; False when a newer click or shutdown ends the wait."""
-        if discovery.is_up(self.client):
-            return True
-        rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
-        wait_until(lambda: discovery.is_up(self.client) or self.click is not None, float("inf"))
-        return self.click is None and not rospy.is_shutdown()
+    def cancel_goal(self) -> None:
+        """Cancel the current goal, if there is one, and wait for its end."""
+        if not self.where or self.has_ended.is_set():
+            return
+        self.client.cancel_goal()
+        if self.has_ended.wait(self.p.cancel_timeout):
+            self.client.wait_for_result()  # actionlib calls on_done before its own state changes
+        else:
+            rospy.logwarn(
+                "the earlier goal did not end within %g s of its cancel; sending the new goal preempts it",
+                self.p.cancel_timeout,
+            )
+
+    def on_feedback(self, feedback: GoToPositionFeedback) -> None:
+        """Store feedback; a callback."""
+        self.feedback = feedback
+
+    def on_done(self, state: int, result: Optional[GoToPositionResult]) -> None:
+        """Store how the goal ended; a callback."""
+        self.ending = f"{STATES[state]}: {result.message}" if result is not None and result.message else STATES[state]
+        rospy.loginfo("goal ended, %s", self.ending)
+        self.has_ended.set()
 
     # -- status report --
 
-    def _report(self) -> None:
+    def report(self, _event: Optional[rospy.timer.TimerEvent] = None) -> None:
         """Publish the state of the server, and of the last goal as this client knows it."""
         log = rospy.loginfo
         if not discovery.is_up(self.client):
             text = discovery.absence(ACTION)
             if time.monotonic() - self.last_seen > ADVICE_AFTER:
                 text, log = f"{text}; {discovery.advice()}", rospy.logwarn
-            return self._publish_status(text, log)
+            return self.publish_status(text, log)
         self.last_seen = time.monotonic()
-        sent = self.sent
-        if sent is not None and not sent.done.is_set():
-            return self._publish_status(str(sent), log)
-        last = "no goal yet" if sent is None else f"last goal {sent.ending}"
-        self._publish_status(f"{ACTION} is ready, {last}", log)
+        if self.where and not self.has_ended.is_set():
+            return self.publish_status(self.progress(), log)
+        last = f"last goal {self.ending}" if self.where else "no goal yet"
+        self.publish_status(f"{ACTION} is ready, {last}", log)
 
-    def _publish_status(self, text: str, log: Callable[..., None]) -> None:
+    def progress(self) -> str:
+        """The current goal's state and feedback in words."""
+        state, feedback = STATES[self.client.get_state()], self.feedback
+        if state not in UNFINISHED:
+            return f"goal {self.where} has ended ({state}), waiting for its result"
+        if feedback is None:
+            return f"goal {self.where} is {state}"
+        errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
+        return f"goal {self.where} is {state}: {feedback.message} ({errors})"
+
+    def publish_status(self, text: str, log: Callable[..., None]) -> None:
         """Publish a status, and log it if it has changed."""
         if text != self.last_status:
             log("%s", text)
         self.last_status = text
-        self.status.publish(String(text))
+        self.status.publish(text)
 
 
 def main() -> None:

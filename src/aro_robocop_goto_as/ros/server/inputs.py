@@ -4,7 +4,7 @@ import math
 import threading
 import time
 from dataclasses import dataclass
-from typing import Any, Callable, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 import rospy
 from nav_msgs.msg import Odometry
@@ -14,16 +14,12 @@ from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
 from ...goto import Outcome
 from ...obstacle_ahead import clearance_ahead
-from ...process.peer import await_others, others_want_to_run
 from .. import convert
 from .tuning import Tuning
 
-# [s, wall] for the first message on a topic after a goal was accepted. The connection to a publisher that has just
-# started takes up to a second on a busy machine; at full speed data_timeout passes meanwhile.
-FIRST_MESSAGE = 3.0
-LATE_DATA = 0.2  # [s, wall] that a message may arrive after the clock tick it was published before
-# [s, wall and processor] for messages that a simulator in lockstep has already published
-LOCKSTEP_PATIENCE = 1.0
+# [s, wall] for a topic's first message after a goal was accepted: its publisher may be connecting
+FIRST_MESSAGE_TIMEOUT = 3.0
+TICK_TIMEOUT = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
 
 
 @dataclass(frozen=True)
@@ -34,121 +30,72 @@ class Received:
     at: float
     wall: float
     stamp_ns: int
-    period_ns: float = math.inf  # the shortest so far
+    period_ns: float  # the shortest so far
+
+    def age(self) -> float:
+        """ROS time [s] since its arrival."""
+        return rospy.get_rostime().to_sec() - self.at
 
 
-def _ros_time() -> float:
-    return rospy.get_rostime().to_sec()
+def _received(message: Any, previous: Optional[Received]) -> Received:
+    stamp_ns, period_ns = convert.to_ns(message.header.stamp), math.inf
+    if previous is not None and stamp_ns > previous.stamp_ns:
+        period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
+    return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns)
 
 
 class Inputs:
     """Callbacks store the newest messages; the control loop reads what they mean."""
 
-    def __init__(
-        self,
-        tuning: Tuning,
-        ros_time: Callable[[], float] = _ros_time,
-        wall: Callable[[], float] = time.monotonic,
-        processor_time: Callable[[], float] = time.process_time,
-        callbacks_want_to_run: Callable[[], bool] = others_want_to_run,
-    ) -> None:
-        """The first three are clocks [s]; the last tells whether a callback may wait for a processor."""
+    def __init__(self, tuning: Tuning) -> None:
         self._tuning = tuning
-        self._ros_time, self._wall, self._processor_time = ros_time, wall, processor_time
-        self._callbacks_want_to_run = callbacks_want_to_run
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
         self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by clearance_ahead
-        self._tick_ns = 0  # the newest one that was awaited
         self._arrived = threading.Condition()
 
     def on_odom(self, message: Odometry) -> None:
         """Store odometry; a callback."""
         with self._arrived:
-            self.odom = self._received(message, self.odom)
+            self.odom = _received(message, self.odom)
             self._arrived.notify_all()
 
     def on_scan(self, message: LaserScan) -> None:
         """Store a scan; a callback."""
-        received = self._received(message, self.scan)
         clearance = self._clearance_in(message)
         with self._arrived:
+            self.scan = _received(message, self.scan)
             if clearance is None or not math.isnan(clearance):
-                self.valid_scan = received
-            self.scan = received
+                self.valid_scan = self.scan
             self._arrived.notify_all()
 
-    def _received(self, message: Any, previous: Optional[Received]) -> Received:
-        stamp_ns, period_ns = convert.to_ns(message.header.stamp), math.inf
-        if previous is not None and stamp_ns > previous.stamp_ns:  # false after the clock was set back
-            period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
-        return Received(message, self._ros_time(), self._wall(), stamp_ns, period_ns)
-
-    def await_tick(self, tick_ns: int) -> None:
+    def wait_for_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick.
 
-        A topic's period tells whether one is due; before that is known, whether callbacks want to run.
+        A topic's period tells whether one is due; until two messages have told the period, none is.
         """
 
         def complete() -> bool:
-            newest = [topic for topic in (self.odom, self.scan) if topic is not None]
-            return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in newest)
-
-        is_set_back, self._tick_ns = tick_ns <= self._tick_ns, tick_ns
-        self._forget_earlier_run(is_set_back)
-        if not self._knows_periods():
-            self._await(self._knows_periods, 0.0, LOCKSTEP_PATIENCE)
-            self._forget_earlier_run(is_set_back)
-        if self.odom is not None:  # otherwise the other node may be no simulator
-            self._await(complete, LOCKSTEP_PATIENCE, LOCKSTEP_PATIENCE)
-
-    def _knows_periods(self) -> bool:
-        return all(topic is not None and math.isfinite(topic.period_ns) for topic in (self.odom, self.scan))
-
-    def _forget_earlier_run(self, is_set_back: bool) -> None:
-        """Forget messages from before the clock was set back, at that tick also those whose callbacks came later.
-
-        These are told by their stamps, with a margin, as a message may be handled before the clock that follows it.
-        """
-        latest_ns = (self._ros_time() + 1.0 / self._tuning.params.control_rate) * 1e9 if is_set_back else math.inf
-
-        def kept(topic: Optional[Received]) -> Optional[Received]:
-            return topic if topic is not None and self.is_of_this_run(topic) and topic.stamp_ns <= latest_ns else None
+            known = [topic for topic in (self.odom, self.scan) if topic is not None]
+            return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in known)
 
         with self._arrived:
-            self.odom, self.scan, self.valid_scan = kept(self.odom), kept(self.scan), kept(self.valid_scan)
-
-    def is_of_this_run(self, topic: Received) -> bool:
-        """False for a message that was received before the clock was set back: later than it is now."""
-        return topic.at <= self._ros_time()
-
-    def _await(self, complete: Callable[[], bool], wall: float, processor: float) -> bool:
-        """Wait for messages until `complete`, by await_others(); returns whether it is."""
-
-        def wait(timeout: float) -> bool:
-            with self._arrived:
-                return self._arrived.wait_for(complete, timeout)
-
-        return await_others(wait, wall, processor, self._processor_time, self._callbacks_want_to_run)
+            if not self._arrived.wait_for(complete, TICK_TIMEOUT):
+                rospy.logwarn_throttle(10.0, f"no odometry or scan of {tick_ns / 1e9:.3f} s within {TICK_TIMEOUT:g} s")
 
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.
 
-        They must be missing on the wall clock, too: a topic without any message since the goal was accepted, at the
-        wall time `accepted`, may just be connecting, and a message published before a clock tick may arrive after it.
+        A topic without any message since the goal was accepted, at the wall time `accepted`, may just be connecting.
         """
         for name, outcome, newest, valid in (
             ("odom", Outcome.NO_ODOM, self.odom, self.odom),
             ("scan", Outcome.NO_SCAN, self.scan, self.valid_scan),
         ):
-            last = started
-            if valid is not None and self.is_of_this_run(valid):  # one later than `now` may be
-                last = max(started, valid.at)
-            overdue = now - last > self._tuning.params.data_timeout
-            connecting = newest is None or newest.wall < accepted
-            if connecting and self._wall() - accepted < FIRST_MESSAGE:
-                continue
-            if overdue and not self._await(self._has_data, LATE_DATA, LATE_DATA):
+            last = started if valid is None else max(started, valid.at)
+            is_silent = newest is None or newest.wall < accepted
+            is_connecting = is_silent and time.monotonic() - accepted < FIRST_MESSAGE_TIMEOUT
+            if now - last > self._tuning.params.data_timeout and not is_connecting:
                 return outcome, self._absence(name, valid, now)
         return None
 
@@ -159,12 +106,7 @@ class Inputs:
         return f"no {what} on {rospy.resolve_name(name)} {since} (limit {self._tuning.params.data_timeout:g} s)"
 
     def _is_recent(self, received: Optional[Received]) -> bool:
-        age = -1.0 if received is None else self._ros_time() - received.at
-        return 0.0 <= age <= self._tuning.params.data_timeout
-
-    def _has_data(self) -> bool:
-        """Whether both odometry and a valid scan are recent enough to move the robot."""
-        return self._is_recent(self.odom) and self._is_recent(self.valid_scan)
+        return received is not None and received.age() <= self._tuning.params.data_timeout
 
     def read(self) -> Optional[Tuple[Pose2D, float]]:
         """Pose in odom and clearance ahead [m]; None without recent messages.
@@ -172,7 +114,7 @@ class Inputs:
         RobocopError when a message is unusable: an impossible pose, a scan without a beam ahead.
         """
         odom, scan = self.odom, self.valid_scan
-        if odom is None or scan is None or not self._has_data():
+        if odom is None or scan is None or not (self._is_recent(odom) and self._is_recent(scan)):
             return None
         try:
             pose = convert.from_pose_msg(odom.message.pose.pose)

@@ -1,8 +1,9 @@
-"""Server state -> RViz markers: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
+"""What RViz shows of the server: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
 
 import textwrap
 from typing import Optional, Sequence
 
+import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
@@ -10,13 +11,17 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...geometry import Vector3
 from ...goto import Outcome
 from ...goto_params import GotoParams
+from ...simulation.schedule import NANOSECONDS
+from ...trail import Trail
 from .. import markers
 from .goal_execution import GoalExecution
 from .inputs import Inputs
+from .tuning import Tuning
 
 FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
 TEXT_WIDTH = 26  # characters per line
+MARKER_PERIOD = 0.1  # [s]
 NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the obstacle distance
 
 
@@ -57,3 +62,26 @@ def server_markers(
             x, y = newest.goal.x, newest.goal.y
             made += markers.goal(p.position_tolerance, x, y, frame, color)
     return MarkerArray(made)
+
+
+class Display:
+    """Publishes the markers; the server sets `newest` and `state`."""
+
+    def __init__(self, tuning: Tuning, inputs: Inputs) -> None:
+        self.newest: Optional[GoalExecution] = None
+        self.state = "idle"
+        self._tuning, self._inputs = tuning, inputs
+        self._trail = Trail()
+        self._topic = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
+        rospy.Timer(rospy.Duration(MARKER_PERIOD), self._publish, reset=True)
+
+    def _publish(self, _event: rospy.timer.TimerEvent) -> None:
+        odom = self._inputs.odom
+        if odom is not None:
+            position = odom.message.pose.pose.position
+            self._trail.add(odom.stamp_ns / NANOSECONDS, position.x, position.y)
+        if self._topic.get_num_connections():
+            robot = rospy.get_namespace().strip("/")
+            state = f"{robot}: {self.state}" if robot else self.state  # its text may stand beside another robot
+            made = server_markers(self._tuning.params, self._inputs, self.newest, state, self._trail.points)
+            self._topic.publish(made)

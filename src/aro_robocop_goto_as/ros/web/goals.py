@@ -17,7 +17,7 @@ from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers, names
-from ..client.sent_goal import STATES, UNFINISHED
+from ..client.goal_states import STATES, UNFINISHED
 from ..covariances import diagonal
 from ..names import ACTION, absolute
 from ..rospy_internals import publishers_of

@@ -1,6 +1,7 @@
 """What a client says of a server that is not there."""
 
 import pytest
+import rospy
 
 from aro_robocop_goto_as.ros import graph
 from aro_robocop_goto_as.ros.client import discovery
@@ -36,12 +37,13 @@ def test_the_robot_whose_name_is_similar_is_suggested(monkeypatch):
     assert discovery.absence(f"/rde/{ACTION}").endswith(" of the same type; did you mean red?")
 
 
-@pytest.mark.parametrize("lives, looks", [(False, 1), (True, 3)])
-def test_server_that_lives_and_has_not_connected_yet_gets_more_time(monkeypatch, lives, looks):
-    waits = []
-    monkeypatch.setattr(discovery, "is_up", lambda _client: len(waits) == 3)
-    monkeypatch.setattr(discovery, "wait_until", lambda condition, _timeout: waits.append(1) or condition())
-    monkeypatch.setattr(graph, "has_living_publisher", lambda topic: lives and topic == f"/{ACTION}/result")
-    monkeypatch.setattr(graph, "action_servers", dict)
-    missing = discovery.wait_or_explain(None, f"/{ACTION}", 5.0, lambda: False)
-    assert (missing == "", len(waits)) == (lives, looks)
+@pytest.mark.parametrize("now, up", [(0, False), (5, True)])
+def test_server_can_be_up_from_the_first_message_on_clock_on(monkeypatch, now, up):
+    monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time(now))
+
+    class Client:
+        def wait_for_server(self, timeout):
+            """As actionlib's, of a server that is connected."""
+            return rospy.get_rostime() + timeout < rospy.get_rostime()
+
+    assert discovery.is_up(Client()) == up

@@ -1,80 +1,78 @@
-"""How long a goal's transform is waited for."""
+"""Which transform a goal's position is computed with."""
 
 from unittest.mock import MagicMock
 
 import pytest
+import rospy
+import tf2_ros
 from geometry_msgs.msg import PoseStamped, TransformStamped
+from nav_msgs.msg import Odometry
 
 from aro_robocop_goto_as.errors import FrameError
-from aro_robocop_goto_as.ros import graph
 from aro_robocop_goto_as.ros.client import goal_frame
-from aro_robocop_goto_as.ros.client.tf_buffer import TfBuffer
 
 TIMEOUT = 0.02  # [s, wall]
+LAST_STAMP = 2**32 - 1
 
 
-class Machine:
-    """A busy one: callbacks, or a publisher of /tf_static, are late for some looks, and use processor time."""
+@pytest.fixture(name="robot")
+def _robot(monkeypatch):
+    """TF and odometry, which a test sets."""
+    return Robot(monkeypatch)
 
-    def __init__(self, monkeypatch, callbacks_late, publisher_late):
-        self.callbacks_late, self.publisher_late, self.used = callbacks_late, publisher_late, 0.0
-        monkeypatch.setattr(goal_frame, "TfBuffer", lambda: TfBuffer(debug=False))
-        monkeypatch.setattr(goal_frame.tf2_ros, "TransformListener", MagicMock())
-        monkeypatch.setattr(graph, "has_living_publisher", self.has_living_publisher)
-        self.transformer = goal_frame.GoalTransformer(
-            "odom", "map", TIMEOUT, lambda: None, lambda: self.used, self.callbacks_want_to_run
-        )
-        for name, topic in (("/tf", "tf_sub"), ("/tf_static", "tf_static_sub")):
-            subscriber = getattr(self.transformer.listener, topic)
-            subscriber.resolved_name, subscriber.impl.connections = name, [MagicMock(callerid_pub="/connected")]
 
-    def callbacks_want_to_run(self):
-        self.callbacks_late -= 1
-        if self.callbacks_late == 0:
-            self.send()
-        return self.callbacks_late > 0
+class BufferWithoutNode(tf2_ros.Buffer):
+    """One that offers no service."""
 
-    def has_living_publisher(self, topic, but):
-        assert but == {"/connected"}
-        if topic == "/tf":
-            return False
-        self.publisher_late -= 1
-        if self.publisher_late == 0:
-            self.send()
-        return self.publisher_late > 0
+    def __init__(self):
+        super().__init__(debug=False)
 
-    def send(self):
+
+class Robot:
+    def __init__(self, monkeypatch):
+        self.odom, self.warnings = None, []
+        monkeypatch.setattr(tf2_ros, "Buffer", BufferWithoutNode)
+        monkeypatch.setattr(tf2_ros, "TransformListener", MagicMock())
+        monkeypatch.setattr(rospy, "logwarn", self.warnings.append)
+        self.transformer = goal_frame.GoalTransformer("odom", "map", TIMEOUT, lambda: self.odom)
+
+    def send_transform(self, x, frame="base_footprint", stamp=1):
         sent = TransformStamped()
-        sent.header.frame_id, sent.child_frame_id, sent.transform.rotation.w = "odom", "map", 1.0
-        sent.transform.translation.x = 1.0
-        self.transformer.buffer.set_transform_static(sent, "/publisher")
+        sent.header.frame_id, sent.child_frame_id, sent.transform.rotation.w = "odom", frame, 1.0
+        sent.header.stamp, sent.transform.translation.x = rospy.Time(stamp), x
+        self.transformer.buffer.set_transform(sent, "a publisher")
 
-    def resolve(self):
+    def send_odometry(self, x):
+        self.odom = Odometry(child_frame_id="base_footprint")
+        self.odom.header.frame_id, self.odom.pose.pose.orientation.w = "odom", 1.0
+        self.odom.pose.pose.position.x = x
+
+    def resolve(self, stamp=1):
         pose = PoseStamped()
-        pose.header.frame_id = "map"
+        pose.header.frame_id, pose.header.stamp = "base_footprint", rospy.Time(stamp)
         return self.transformer.resolve(pose).x
 
 
-@pytest.mark.parametrize("callbacks_late, publisher_late", [(1, 0), (3, 0), (0, 1), (0, 3)])
-def test_transform_that_a_busy_machine_delays_is_waited_for(monkeypatch, callbacks_late, publisher_late):
-    assert Machine(monkeypatch, callbacks_late, publisher_late).resolve() == 1.0
+def test_transform_at_the_goals_time_is_used_without_a_warning(robot):
+    for stamp in (1, 2, 3):
+        robot.send_transform(float(stamp), stamp=stamp)
+    robot.send_odometry(9.0)
+    assert (robot.resolve(2), robot.warnings) == (2.0, [])
 
 
-def test_transform_that_nobody_sends_is_not_waited_for_longer(monkeypatch):
-    machine = Machine(monkeypatch, 0, 0)
-    with pytest.raises(FrameError):
-        machine.resolve()
-    assert (machine.callbacks_late, machine.publisher_late) == (-1, -1)  # one look each
+@pytest.mark.parametrize("stamp", [5, LAST_STAMP])
+def test_latest_transform_is_used_with_a_warning_where_there_is_none_of_the_goals_time(robot, stamp):
+    robot.send_transform(1.0)
+    assert robot.resolve(stamp) == 1.0
+    assert "using the latest one" in robot.warnings[0]
 
 
-def test_callbacks_that_always_run_get_as_much_processor_time_as_the_timeout(monkeypatch):
-    machine = Machine(monkeypatch, 1000, 0)
+def test_odometry_is_used_at_once_where_tf_does_not_connect_the_frames(robot, monkeypatch):
+    monkeypatch.setattr(robot.transformer, "timeout", 600.0)
+    robot.send_odometry(3.0)
+    assert (robot.resolve(5), robot.warnings) == (3.0, [])
 
-    def work():
-        machine.used += TIMEOUT / 2
-        return True
 
-    machine.transformer._callbacks_want_to_run = work
-    with pytest.raises(FrameError):
-        machine.resolve()
-    assert machine.used == TIMEOUT
+def test_frames_that_nothing_connects_are_refused(robot):
+    with pytest.raises(FrameError, match="no transform from 'base_footprint' to 'odom' within 0.02 s"):
+        robot.resolve()

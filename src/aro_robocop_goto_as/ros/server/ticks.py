@@ -1,0 +1,66 @@
+"""The ticks of the control loop: whole multiples of its period of ROS time, 0.1 s, 0.2 s, ..."""
+
+import threading
+from typing import Callable, Optional
+
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from aro_robocop_goto_as.msg import TickAnswer
+
+from ...geometry import STANDSTILL, Twist2D
+from ...simulation.schedule import NANOSECONDS
+from .. import convert
+
+
+class Ticks:
+    """Waits for ticks, and answers them: a simulator in lockstep holds time at each one until it is answered.
+
+    Unlike rospy.Rate, the wait can be interrupted, as by a cancel while /clock is paused.
+    """
+
+    def __init__(self, period: float, on_set_back: Callable[[str], None]) -> None:
+        """`period` [s]; `on_set_back` is called with the reason when simulated time was set back."""
+        self.command: Optional[Twist2D] = None  # since the last answer
+        self._period_ns = round(period * NANOSECONDS)
+        self._on_set_back = on_set_back
+        self._changed = threading.Condition()
+        self._clock = rospy.Time()
+        self._is_simulated = rospy.get_param("/use_sim_time", False)
+        # rospy sets its time before it calls this, as its own subscriber was there first.
+        rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
+        self.answers = rospy.Publisher("tick_answer", TickAnswer, queue_size=10)
+        self.answered = self.newest()  # the newest tick [ns] that is done
+
+    def _on_clock(self, message: Clock) -> None:
+        before, self._clock = self._clock, message.clock
+        if message.clock < before:
+            self._on_set_back(
+                f"simulated time was set back from {before.to_sec():.1f} to {message.clock.to_sec():.1f} s"
+            )
+        self.wake()
+
+    def wake(self) -> None:
+        """Have whoever waits look for an interruption."""
+        with self._changed:
+            self._changed.notify_all()
+
+    def newest(self) -> int:
+        """The time of the newest tick [ns]."""
+        return convert.to_ns(rospy.get_rostime()) // self._period_ns * self._period_ns
+
+    def wait_for_next(self, last_ns: int, is_interrupted: Callable[[], bool]) -> int:
+        """Wait until there is a later tick than the last one, or for an interruption; the newest tick [ns]."""
+        with self._changed:
+            while self.newest() <= last_ns and not is_interrupted():
+                remaining = last_ns + self._period_ns - convert.to_ns(rospy.get_rostime())
+                self._changed.wait(None if self._is_simulated else remaining / NANOSECONDS)
+        return self.newest()
+
+    def answer(self, tick_ns: int) -> None:
+        """Tell a simulator in lockstep that this tick is done, with the command since the last answer, if any."""
+        if tick_ns > self.answered:
+            self.answered = tick_ns
+            command, self.command = self.command, None
+            twist = convert.to_twist_msg(command or STANDSTILL)
+            self.answers.publish(TickAnswer(convert.to_time(tick_ns), command is not None, twist))

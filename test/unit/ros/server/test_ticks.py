@@ -1,0 +1,101 @@
+"""Ticks are whole multiples of the period, and each one is answered once."""
+
+import threading
+import time as wall
+from typing import Any, List
+
+import pytest
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from aro_robocop_goto_as.geometry import Twist2D
+from aro_robocop_goto_as.ros.server.ticks import Ticks
+
+MS = 1_000_000  # [ns]
+
+
+class Time:
+    """Simulated time, whose messages rospy hands to the ticks; the answers to ticks."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.now = rospy.Time()
+        self.set_back: List[str] = []
+        self.answers: List[Any] = []
+        monkeypatch.setattr(rospy, "get_rostime", lambda: self.now)
+        monkeypatch.setattr(rospy, "get_param", lambda name, default: True)
+        monkeypatch.setattr(
+            rospy, "Subscriber", lambda topic, kind, callback, **_: setattr(self, "_callback", callback)
+        )
+        monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: self)
+        self.ticks = Ticks(0.1, self.set_back.append)
+
+    def publish(self, answer: Any) -> None:
+        """As a publisher."""
+        self.answers.append((answer.tick.to_nsec() // MS, answer.has_command, answer.command.linear.x))
+
+    def reach(self, milliseconds: int) -> None:
+        """The clock shows this time."""
+        self.now = rospy.Time.from_sec(milliseconds / 1000.0)
+        self._callback(Clock(self.now))
+
+
+@pytest.fixture(name="time")
+def _time(monkeypatch: pytest.MonkeyPatch) -> Time:
+    return Time(monkeypatch)
+
+
+def never() -> bool:
+    """No interruption."""
+    return False
+
+
+def test_ticks_are_multiples_of_the_period_and_those_that_were_missed_are_left_out(time: Time) -> None:
+    newest = []
+    for now in (30, 99, 100, 140, 475, 501):
+        time.reach(now)
+        newest.append(time.ticks.newest() // MS)
+    assert newest == [0, 0, 100, 100, 400, 500]
+
+
+@pytest.mark.parametrize("before", [0, 99])
+def test_wait_ends_at_the_next_tick(time: Time, before: int) -> None:
+    time.reach(before)
+    waited: List[int] = []
+    waiting = threading.Thread(target=lambda: waited.append(time.ticks.wait_for_next(0, never)))
+    waiting.start()
+    time.reach(100)
+    waiting.join(10.0)
+    assert waited == [100 * MS]
+
+
+def test_wait_ends_by_an_interruption_while_the_clock_stands(time: Time) -> None:
+    interrupted = threading.Event()
+    waited: List[int] = []
+    waiting = threading.Thread(target=lambda: waited.append(time.ticks.wait_for_next(0, interrupted.is_set)))
+    waiting.start()
+    interrupted.set()
+    time.ticks.wake()
+    waiting.join(10.0)
+    assert waited == [0]
+
+
+def test_on_the_wall_clock_nobody_has_to_tell_of_a_tick(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
+    monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time()))
+    ticks = Ticks(0.01, time.set_back.append)
+    last = ticks.newest()
+    assert ticks.wait_for_next(last, never) > last
+
+
+def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time: Time) -> None:
+    for tick in (100, 100, 200):
+        time.ticks.command = Twist2D(0.1, 0.0) if tick == 100 else None
+        time.ticks.answer(tick * MS)
+    time.ticks.answer(100 * MS)
+    assert time.answers == [(100, True, 0.1), (200, False, 0.0)]
+
+
+def test_clock_that_was_set_back_is_told_with_both_times(time: Time) -> None:
+    for now in (900, 1000, 1000, 300):
+        time.reach(now)
+    assert time.set_back == ["simulated time was set back from 1.0 to 0.3 s"]
