@@ -20,13 +20,13 @@ From a velocity command to odometry, scan, tf and clock:
 
 From a goal to its result:
 
-    ros.server.goal_server        goal -> the control loop in ros.server.node
-    ros.server.goal_execution     one control period of the goal; ends one that is stuck, late or without sensor data
+    ros.server.node               goal -> the handout's loop -> cmd_vel, feedback, in the end result and terminal state
+        ros.server.ticks          when the next control period begins
         ros.server.inputs         newest odom and scan -> pose, and by obstacle_ahead the clearance
-        goto                      the handout's rule: rotate, move forward, reached or obstacle
-    ros.server.node               -> feedback, cmd_vel, in the end result and terminal state
+        ros.server.goal_execution decides by the rule; ends a goal that is stuck or late
+            goto                  the handout's rule: rotate, move forward, reached or obstacle
 
-    A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2), sent_goal.
+    A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2).
 
 From a world file to a scan:
 

@@ -103,7 +103,7 @@ class Campaign:
         """Each fault once, then episodes until so many goals have been sent; then the last ones."""
         self.stage.prepare()
         number = 0
-        while (self.goals_sent - self.goals_flooded < goals or number < len(self.faults)) and not self.violations:
+        while (self.goals_sent < goals or number < len(self.faults)) and not self.violations:
             fault = self.fault_of(number)
             if self.full or not fault.costly or number >= len(self.faults):
                 self.run_episode(number, fault)
@@ -136,11 +136,6 @@ class Campaign:
     def goals_sent(self):
         """How many goals have been sent so far."""
         return sum(client.sent for client in self.clients)
-
-    @property
-    def goals_flooded(self):
-        """How many of them were part of a flood, one of which has more goals than hundreds of episodes."""
-        return sum(client.flooded for client in self.clients)
 
     def run_episode(self, number, fault=None):
         """One episode, with its invariants."""

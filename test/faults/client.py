@@ -21,7 +21,7 @@ TERMINAL = {
 }
 STATES_OF = {  # the terminal states that belong to the first word of a result
     "REACHED": ("SUCCEEDED",),
-    "PREEMPTED": ("PREEMPTED", "RECALLED"),
+    "PREEMPTED": ("PREEMPTED",),
     **dict.fromkeys(
         ("OBSTACLE", "STUCK", "TIMEOUT", "NO_ODOM", "NO_SCAN", "BAD_GOAL", "SHUTDOWN", "ERROR"), ("ABORTED",)
     ),
@@ -73,7 +73,7 @@ class Client:
         self.action = f"{prefix}/robocop_goto_as"
         self.server = f"{prefix}/{SERVER}"
         self.numbers = itertools.count(1)
-        self.sent = self.flooded = 0  # goals; those of floods
+        self.sent = 0  # goals
         self.odom = self.position = None
         self.ended_at = 0.0  # [s] simulated, of the last result
         self.truth = collections.deque(maxlen=3000)  # (stamp [s], v [m/s], w [rad/s])
@@ -164,8 +164,8 @@ class Client:
 
     # -- goals --
 
-    def send(self, x, y, z=0.0, goal_id=None, stamp=None, expected=True, flood=False):
-        """Send a goal in odom [m], which may be one of a flood; its id."""
+    def send(self, x, y, z=0.0, goal_id=None, stamp=None, expected=True):
+        """Send a goal in odom [m]; its id."""
         message = GoToPositionActionGoal()
         name = f"{rospy.get_name()}-{next(self.numbers)}" if goal_id is None else goal_id
         message.goal_id = GoalID(rospy.Time() if stamp is None else stamp, name)
@@ -173,7 +173,6 @@ class Client:
         if expected and name not in self.expected:
             self.expected.append(name)
             self.sent += 1
-            self.flooded += flood
         self.goal_topic.publish(message)
         return name
 
@@ -254,13 +253,16 @@ class Client:
         for message in results:
             word, _, text = message.result.message.partition(": ")
             state = TERMINAL.get(message.status.status, message.status.status)
-            if state not in STATES_OF.get(word, ()) or not text or message.result.success != (word == "REACHED"):
+            consistent = state in STATES_OF.get(word, ()) and text and message.result.success == (word == "REACHED")
+            if not consistent and state != "RECALLED":  # whose result is actionlib's own, an empty one
                 raise Violation(f"goal {goal} ended {state}, success {message.result.success}: {message.result}")
             if ended and ended != [message.status.status]:
                 raise Violation(f"goal {goal}: result {state}, but status {states}")
 
     def word(self, goal):
-        """The first word of a goal's result."""
+        """The first word of a goal's result; PREEMPTED for one that was replaced or cancelled before it began."""
+        if self.results[goal][0].status.status == GoalStatus.RECALLED:
+            return "PREEMPTED"
         return self.results[goal][0].result.message.partition(": ")[0]
 
     def require_rest_since(self, stamp):

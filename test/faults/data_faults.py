@@ -162,23 +162,6 @@ def clock_stalled(e):
 
 
 @fault("clock", needs="messages")
-def clock_set_back(e):
-    """The clock is set back during a goal."""
-    drive(e)
-    e.stage.set_time(e.stage.now - e.rng.choice((0.1, 1.0, 20.0, 1e9)))
-    return (*STOPPED, "NO_ODOM", "NO_SCAN")
-
-
-@fault("clock", needs="messages")
-def clock_set_back_by_10_s(e):
-    """The clock is set back by 10 s during a goal."""
-    e.stage.set_time(max(e.stage.now, 20.0))
-    drive(e)
-    e.stage.set_time(e.stage.now - 10.0)
-    return (*STOPPED, "NO_ODOM", "NO_SCAN")
-
-
-@fault("clock", needs="messages")
 def clock_set_forward_by_an_hour(e):
     """The clock is set forward by an hour during a goal."""
     drive(e)

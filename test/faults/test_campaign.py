@@ -2,7 +2,7 @@
 
 ./robocop test test/faults --all --faults 10000     so many goals in each configuration, with the costly faults
 ./robocop test test/faults --all --faults 10000 -k "lockstep-wheels-one or free-kinematic-one or pillars or maze"
-./robocop test test/faults --all --faults 1000 --select "(?!goals_in_a_flood)"     without one of the faults
+./robocop test test/faults --all --faults 1000 --select "(?!goals_in_a_burst)"     without one of the faults
 ./robocop test test/faults --all --faults 1000 --busy 16     beside so many endless loops
 ./robocop test test/faults --all --soak 21600 -k hours     six hours of goals; the use of memory stays level
 ./robocop test test/faults --episode CONFIGURATION/SEED/NUMBER     one episode again, as a violation names it

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""A second server of the same name takes over during a goal: the first one ends its goal, the second one serves."""
+"""A server that another one of its name replaces, or whose clock is set back, ends its goal and leaves."""
 
 import unittest
 
 import rosgraph
 import rospy
 from fake_robot import FakeRobot
+from geometry_msgs.msg import Twist
 from harness import ACTION, SERVER, Process, run, script, wait_for, wait_for_connection
 
 
-class ServerReplaced(unittest.TestCase):
-    def test_second_server_of_the_same_name_serves_the_next_goal(self):
+class ServerLeaves(unittest.TestCase):
+    def test_a_second_server_of_the_same_name_serves_the_next_goal(self):
         robot = FakeRobot()
         robot.renew()
         goal = robot.start(2.0, 0.0)
@@ -40,6 +41,21 @@ class ServerReplaced(unittest.TestCase):
             robot.end(following, "REACHED")
             self.assertIsNone(second.process.poll())
 
+    def test_clock_that_is_set_back_ends_the_goal_and_the_server_with_exit_status_1(self):
+        with Process(script("robocop_goto_as.py"), f"__name:={SERVER[1:]}") as server:
+            robot = FakeRobot()
+            robot.pass_time(1000.0)
+            robot.renew()
+            goal = robot.start(2.0, 0.0)
+            self.assertTrue(robot.tick(goal))
+            robot.now_ns -= 900 * 1000000000
+            robot.pass_time(0.1)
+            reason = r"simulated time was set back from \d+\.\d to \d+\.\d s"
+            self.assertRegex(goal.result("SHUTDOWN").result.message, f"{reason}$")
+            self.assertEqual(robot.commands.messages[-1], Twist())
+            self.assertEqual(server.wait_for_exit(), 1, server.output)
+            self.assertRegex(server.output, f"CLOCK: {reason}")
+
 
 if __name__ == "__main__":
-    run(ServerReplaced)
+    run(ServerLeaves)
