@@ -47,6 +47,8 @@ def node(name: str, **options: Any) -> Iterator[None]:
         if not shutdown_has_begun():
             raise
         rospy.logdebug("%s", error)
+    finally:  # threads that wait for rospy's end would keep the process alive
+        rospy.signal_shutdown("the node has ended")
 
 
 def load_params(cls: Type[T]) -> T:

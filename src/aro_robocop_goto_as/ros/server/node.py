@@ -2,7 +2,6 @@
 
 import threading
 import time
-import traceback
 from typing import Optional
 
 import actionlib
@@ -49,6 +48,7 @@ class GotoNode:
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
         rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
+        # After these, as a simulator in lockstep then waits for the answers:
         self.ticks = Ticks(1.0 / p.control_rate, self.on_clock_set_back)
         self.server = actionlib.SimpleActionServer(ACTION, GoToPositionAction, self.execute, auto_start=False)
         self.server.register_preempt_callback(self.ticks.wake)
@@ -63,33 +63,32 @@ class GotoNode:
         with self.executing:
             execution = GoalExecution(goal, self.inputs)
             ending = execution.refusal()
-            if ending is None:
-                self.display.newest = execution
-                rospy.loginfo("goal accepted: %s", execution.where())
-            while ending is None:
-                tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
-                try:
-                    ending = self.interruption(execution) or self.control_period(execution, tick)
-                except Exception as error:  # the goal's outermost level: it fails, the server does not
-                    ending = failure(error)
+            try:
                 if ending is None:
-                    self.ticks.answer(tick)
-            self.end(execution, ending)
+                    self.display.newest = execution
+                    rospy.loginfo("goal accepted: %s", execution.where())
+                while ending is None:
+                    tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
+                    if self.stop_reason:
+                        ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
+                    elif self.server.is_preempt_requested():
+                        replaced = self.server.is_new_goal_available()
+                        reason = "a newer goal replaced it" if replaced else "it was cancelled"
+                        ending = execution.stopped_early(Outcome.PREEMPTED, reason)
+                    else:
+                        ending = self.control_period(execution, tick)
+                        if ending is None:
+                            self.ticks.answer(tick)
+            except RobocopError as error:  # odometry or a scan can't be used; actionlib reports other errors
+                ending = Ending(Outcome.ERROR, str(error))
+            finally:
+                self.drive(STANDSTILL)
+            self.set_terminal_state(execution, ending)
             self.ticks.answer(self.ticks.newest())
 
     def is_interrupted(self) -> bool:
         """Return whether the goal has to end before its next control period."""
         return bool(self.stop_reason) or self.server.is_preempt_requested()
-
-    def interruption(self, execution: GoalExecution) -> Optional[Ending]:
-        """How the goal ends if it is cancelled, replaced, or if the node ends; None to go on."""
-        if self.stop_reason:
-            return execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
-        if self.server.is_preempt_requested():
-            replaced = self.server.is_new_goal_available()
-            reason = "a newer goal replaced it" if replaced else "it was cancelled"
-            return execution.stopped_early(Outcome.PREEMPTED, reason)
-        return None
 
     def control_period(self, execution: GoalExecution, tick_ns: int) -> Optional[Ending]:
         """Errors, rotate or drive, feedback; returns how the goal ends, None to go on."""
@@ -118,9 +117,8 @@ class GotoNode:
         self.ticks.command = twist
         self.cmd_vel.publish(convert.to_twist_msg(twist))
 
-    def end(self, execution: GoalExecution, ending: Ending) -> None:
-        """Stop the robot, and give the goal its terminal state."""
-        self.drive(STANDSTILL)
+    def set_terminal_state(self, execution: GoalExecution, ending: Ending) -> None:
+        """Report how the goal ended, once."""
         execution.outcome, self.display.state = ending.outcome, ending.message
         log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
         log("%s", ending.message)
@@ -161,15 +159,6 @@ class GotoNode:
             self.executing.release()
         self.cmd_vel.publish(Twist())
         time.sleep(SEND_TIME)
-
-
-def failure(error: Exception) -> Ending:
-    """How a goal ends by an error; call while handling it."""
-    if isinstance(error, RobocopError):
-        return Ending(Outcome.ERROR, str(error))
-    if not rospy.is_shutdown():
-        rospy.logerr("goal failed:\n%s", traceback.format_exc())
-    return Ending(Outcome.ERROR, f"{type(error).__name__}: {error}")
 
 
 def main() -> None:
