@@ -9,11 +9,10 @@ import socket
 import threading
 import time
 from contextlib import suppress
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 WANTING = (["R"], ["D"])  # states of a thread that runs, or waits for a processor or for a disk
 TICK = os.sysconf("SC_CLK_TCK")  # [1/s] of processor times
-LOOK = 0.005  # [s, wall] from one look at this process's threads to the next
 
 
 class Peer:
@@ -46,26 +45,6 @@ class Peer:
 def others_want_to_run() -> bool:
     """Whether a thread of this process, other than the caller's, runs or waits for a processor or a disk."""
     return _want_to_run(os.getpid(), but=threading.get_native_id())
-
-
-def await_others(
-    wait: Callable[[float], object],
-    wall: float,
-    processor: float,
-    processor_time: Callable[[], float] = time.process_time,
-    want_to_run: Callable[[], bool] = others_want_to_run,
-    look: float = LOOK,
-) -> bool:
-    """Wait for what other threads of this process do, for `wall` [s] and then as long as they want to run.
-
-    `wait` waits for up to so many seconds, and returns whether it is done. This process may use `processor` [s] of its
-    time meanwhile, and `look` [s, wall] passes from one look at them to the next. Returns whether it is done.
-    """
-    limit = processor_time() + processor
-    done = wait(wall)
-    while not done and processor_time() < limit and want_to_run():
-        done = wait(look)
-    return bool(done or wait(0.0))  # it may have been done just before the last look
 
 
 def _peer_of(end: socket.socket) -> Optional[int]:

@@ -9,7 +9,7 @@ import psutil
 import pytest
 from waiting import wait_for
 
-from aro_robocop_goto_as.process.peer import Peer, _owners, await_others
+from aro_robocop_goto_as.process.peer import Peer, _owners
 
 SPIN, SLEEP, THREAD = "while True: pass", "time.sleep(1e6)", "threading.Thread(target=spin).start(); time.sleep(1e6)"
 Ends = Tuple[socket.socket, psutil.Popen]
@@ -74,21 +74,3 @@ def test_connection_of_this_process_with_itself_tells_nothing() -> None:
         far = server.accept()[0]
         with near, far:
             assert not Peer(near, 1e6).wants_to_run()
-
-
-@pytest.mark.parametrize(
-    "done_at, used, expected",  # calls of `wait`, of which one more follows the last look; processor time of each [s]
-    [(1, 0.0, (True, 1)), (3, 0.0, (True, 3)), (4, 0.0, (True, 4)), (9, 0.0, (False, 4)), (9, 0.6, (False, 3))],
-)
-def test_others_are_waited_for_as_long_as_they_want_to_run_and_have_processor_time_left(
-    done_at: int, used: float, expected: Tuple[bool, int]
-) -> None:
-    calls = []
-    looks = iter([True, True, False])
-
-    def wait(timeout: float) -> bool:
-        calls.append(timeout)
-        return len(calls) == done_at
-
-    done = await_others(wait, 0.2, 1.0, lambda: used * len(calls), lambda: next(looks))
-    assert (done, len(calls)) == expected and calls[0] == 0.2
