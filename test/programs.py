@@ -1,5 +1,6 @@
 """A program in a ROS environment of its own: its output, the processes it starts, and how it ends."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -65,7 +66,13 @@ class Program:
         return status
 
     def kill(self):
-        """Kill what is left of it."""
-        for process in self.processes():
-            os.kill(process, signal.SIGKILL)
+        """Kill what is left of it, also what it starts meanwhile."""
+        self.process.kill()
         self.process.wait()
+        while True:
+            left = self.processes()
+            if not left:
+                return
+            for process in left:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)

@@ -4,6 +4,7 @@ import signal
 import socket
 
 import pytest
+import waiting
 from processes import busy_processes
 from programs import Program
 
@@ -82,6 +83,14 @@ def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto, nu
             command.process.send_signal(number)
             assert command.wait_for_exit() == 1
     assert command.output == "robocop goto: interrupted\n"
+
+
+@pytest.mark.slow
+def test_the_system_ends_also_if_the_command_is_killed(goto):
+    command = goto("5", "0", "--world", "empty")
+    command.wait_until(lambda: "driving" in command.output, "driving")
+    command.process.kill()
+    waiting.wait_for(lambda: not command.processes(), lambda: f"the end of {command.processes()}: {command.output}")
 
 
 @pytest.mark.slow

@@ -35,7 +35,6 @@ def has_child(pid, word):
         (["run", "rviz:=false"], "_set_up"),
         (["run", "rviz:=false"], "_setup_util.py"),
         (["run", "rviz:=false"], "robocop_launch.py"),
-        (["run", "rviz:=false"], "rosversion"),
         (["goto", "1", "0"], "robocop_goto.py"),
         (["grade", "."], "robocop_grade.py"),
         (["bench"], "robocop_bench.py"),

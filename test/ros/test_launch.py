@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -195,14 +194,12 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
     assert Launch("sim:=false", bridge, "robots:=red 0 0").given("/red" + BRIDGE) == values
 
 
-@pytest.mark.parametrize(
-    "robots", ["99999999999", ";".join(f"r{i} 0 {i}" for i in range(400))], ids=["counted", "listed"]
-)
-def test_more_robots_than_launch_files_can_be_nested_are_refused(robots):
+def test_more_robots_than_launch_files_can_be_nested_are_refused():
     command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
+    robots = ";".join(f"r{i} 0 {i}" for i in range(400))
     ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, text=True)
     assert ended.returncode == 1
-    assert ended.stderr.strip().startswith("[FATAL] PARAMETER: robots: too many for a launch file")
+    assert ended.stderr.strip() == "[FATAL] PARAMETER: robots: too many for a launch file"
 
 
 def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):
@@ -291,19 +288,6 @@ def test_time_and_drive_are_passed_on_to_the_simulator():
 def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():
     assert {"/robocop_sim", SERVER, BRIDGE} <= {name.rstrip("/") for name in Launch().cleared}
     assert {"/red" + SERVER, "/red" + BRIDGE} <= {name.rstrip("/") for name in Launch("robots:=red 0 0").cleared}
-
-
-def test_what_a_full_disk_can_not_take_of_the_launchers_output_is_dropped(tmp_path):
-    script = """
-import os, pathlib, sys
-from aro_robocop_goto_as.process import signals
-from aro_robocop_goto_as.ros.cli import launch
-with launch.buffered_stderr(signals.Deferred()):
-    os.write(2, b"a warning")
-print("how to use it", file=launch._quiet(pathlib.Path(sys.argv[1])), flush=True)
-"""
-    with open("/dev/full", "wb") as full:
-        subprocess.run([sys.executable, "-c", script, str(tmp_path)], stdout=full, stderr=full, check=True)
 
 
 def test_a_key_without_a_value_in_a_parameter_file_is_refused_with_file_and_key(tmp_path):

@@ -1,12 +1,10 @@
 """robocop_launch.py: its exit status reports how the simulator ended, and an interrupt ends all of its processes."""
 
-import contextlib
 import os
 import signal
 from pathlib import Path
 
 import pytest
-from processes import busy_processes
 from programs import Program
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -31,22 +29,6 @@ class Launch(Program):
         self.wait_until(lambda: READY in self.output, "the simulator runs")
         return self.wait_for_process("robocop_sim.py")
 
-    def has_handlers(self, process):
-        """Whether a process has installed a handler of SIGTERM."""
-        (line,) = [line for line in Path(f"/proc/{process}/status").read_text().splitlines() if "SigCgt" in line]
-        return bool(int(line.split()[1], 16) >> signal.SIGTERM - 1 & 1)
-
-    def waits_for_the_master(self, process):
-        """Whether a process has sent the master a request that the master has not read yet."""
-        sockets = set()
-        for entry in Path(f"/proc/{process}/fd").iterdir():
-            with contextlib.suppress(FileNotFoundError):  # closed meanwhile
-                sockets.add(os.readlink(entry))
-        rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-        master = f"0100007F:{self.port:04X}"
-        mine = {row[1] for row in rows if row[2] == master and f"socket:[{row[9]}]" in sockets}
-        return any(row[1] == master and row[2] in mine and int(row[4].split(":")[1], 16) for row in rows)
-
 
 @pytest.fixture
 def launch(tmp_path):
@@ -59,13 +41,6 @@ def launch(tmp_path):
     yield start
     for launched in started:
         launched.kill()
-
-
-@pytest.mark.slow
-def test_launch_fails_when_the_simulator_refuses_its_parameters(launch):
-    launched = launch("world:=no_such")
-    assert launched.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in launched.output
 
 
 def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(launch):
@@ -82,10 +57,10 @@ def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(lau
     assert launched.wait_for_exit() == 0
 
 
-def test_quiet_launch_shows_why_the_simulator_failed(launch):
-    launched = launch("--quiet", "world:=no_such")
+def test_launch_fails_and_shows_why_when_the_simulator_refuses_its_parameters(launch):
+    launched = launch("--quiet", "real_time_factor:=-1")
     assert launched.wait_for_exit() == 1
-    assert "there is no world 'no_such'" in launched.output
+    assert "real_time_factor: expected at least 0, got -1.0" in launched.output
     assert "Ctrl-C" not in launched.output  # nothing about how to use what does not run
 
 
@@ -119,47 +94,23 @@ def test_launch_fails_when_the_simulator_is_killed(launch):
 def test_interrupted_simulator_is_no_failure(launch):
     launched = launch("world:=empty")
     simulator = launched.simulator()
-    with busy_processes():
-        os.kill(simulator, signal.SIGINT)
-        assert launched.wait_for_exit() == 0
+    os.kill(simulator, signal.SIGINT)
+    assert launched.wait_for_exit() == 0
 
 
 def test_interrupted_launch_ends_all_processes_and_is_no_failure(launch):
     launched = launch("world:=empty")
     launched.simulator()
-    with busy_processes():
-        launched.process.send_signal(signal.SIGINT)
-        assert launched.wait_for_exit() == 0
+    launched.process.send_signal(signal.SIGINT)
+    assert launched.wait_for_exit() == 0
     assert "Traceback" not in launched.output
 
 
 @pytest.mark.slow
-def test_simulator_interrupted_while_it_waits_for_the_master_ends_when_that_answers(launch):
-    launched = launch("world:=empty")
-    simulator, master = launched.wait_for_process("robocop_sim.py"), launched.process.pid  # the launcher has the master
-    launched.wait_until(lambda: launched.has_handlers(simulator), "the simulator handles signals")
-    os.kill(master, signal.SIGSTOP)
-    try:
-        launched.wait_until(lambda: launched.waits_for_the_master(simulator), "it waits for the master")
-    except BaseException:
-        os.kill(master, signal.SIGCONT)
-        raise
-    with busy_processes():
-        os.kill(simulator, signal.SIGINT)
-        os.kill(master, signal.SIGCONT)
-        assert launched.wait_for_exit() == 0
-
-
-ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("signals", [ONCE, TWICE])
-@pytest.mark.parametrize("program", ["/rosout", "robocop_sim.py", "/robot_state_publisher"])
-def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch, program, signals):
+@pytest.mark.parametrize("program", ["rosmaster", "/rosout", "robocop_sim.py"])
+def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch, program):
     launched = launch("world:=empty")
     launched.wait_for_process(program)
-    with busy_processes():
-        for number in signals:
-            launched.process.send_signal(number)
-        assert launched.wait_for_exit() == 0
+    for number in (signal.SIGTERM, signal.SIGINT):
+        launched.process.send_signal(number)
+    assert launched.wait_for_exit() == 0

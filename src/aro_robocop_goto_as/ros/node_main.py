@@ -12,13 +12,6 @@ from ..errors import RobocopError
 from ..param_loading import from_dict
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
-from . import log_handlers
-from .rospy_internals import (
-    log_without_the_master,
-    shutdown_has_begun,
-    start_quickly,
-    stop_registering_on_shutdown,
-)
 
 T = TypeVar("T")
 
@@ -33,18 +26,14 @@ def node(name: str, **options: Any) -> Iterator[None]:
     for number in ending_signals():
         signal.signal(number, _shut_down)
     raise_descriptor_limit()
-    log_handlers.use()
-    start_quickly()
-    stop_registering_on_shutdown()
     try:
         rospy.init_node(name, disable_signals=True, **options)
-        log_without_the_master()
         yield
     except RobocopError as error:
         rospy.logfatal("%s: %s", error.code, error)
         sys.exit(1)
     except rospy.ROSException as error:  # shutdown during start, or while publishing
-        if not shutdown_has_begun():
+        if not rospy.core.is_shutdown_requested():
             raise
         rospy.logdebug("%s", error)
     finally:  # threads that wait for rospy's end would keep the process alive

@@ -1,11 +1,8 @@
 """Everything that uses private parts of rospy and genpy, each with the reason."""
 
 import contextlib
-import functools
 import socket
 import threading
-import time
-import types
 import weakref
 from typing import Any, Callable, List, Optional, Set, Tuple
 
@@ -121,37 +118,3 @@ def write_with(connection: Any, method: "weakref.WeakMethod[Callable[[bytes], No
 def message_definition(kind: Any) -> Tuple[str, str]:
     """Type name of a message class, and its definition with those of its parts; genpy has no public names for them."""
     return kind._type, kind._full_text
-
-
-def shutdown_has_begun() -> bool:
-    """Whether shutdown was requested; rospy.is_shutdown() turns true only after the on_shutdown hooks."""
-    return bool(rospy.core.is_shutdown_requested())
-
-
-def stop_registering_on_shutdown() -> None:
-    """Have rospy give up on a master that is gone as soon as shutdown is requested.
-
-    It keeps trying until rospy.is_shutdown(), with the lock that the hooks before that wait for: for ever.
-    """
-    rospy.impl.registration.is_shutdown = rospy.core.is_shutdown_requested
-
-
-def start_quickly() -> None:
-    """Call before init_node: rospy may pause meanwhile, and each of its subscribers asks the master.
-
-    The pause is a tenth of a second if the registration has not ended at once, as on a busy machine; here rospy looks
-    for it each millisecond. The question is whether to publish statistics, to which the first answer holds.
-    """
-    vars(rospy.impl.init)["time"] = types.SimpleNamespace(sleep=lambda seconds: time.sleep(min(seconds, 1e-3)))
-    statistics = rospy.impl.statistics.SubscriberStatisticsLogger
-    statistics.is_enabled = functools.lru_cache(maxsize=None)(statistics.is_enabled)
-
-
-def log_without_the_master() -> None:
-    """Have rospy's logging not ask the master, as it does for each line unless this parameter is set; after init_node.
-
-    A master that hangs would stop the caller. And the master takes the question of a node that is ending because
-    another one has its name for a registration, and ends the other one.
-    """
-    name = "/rosout_disable_topics_generation"
-    rospy.impl.paramserver.get_param_server_cache().set(name, rospy.get_param(name, False))

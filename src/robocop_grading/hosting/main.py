@@ -9,8 +9,6 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
-import rospkg
-
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
@@ -34,9 +32,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")
-    # This package's log handlers are not found where a package of the same name is hosted.
-    ros_logging = {"ROS_PYTHON_LOG_CONFIG_FILE": os.path.join(rospkg.get_etc_ros_dir(), "python_logging.conf")}
-    return folder, {**environment, **ros_logging, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
+    return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
 
 
 def make_startable(choice: Choice, source: Path) -> None:

@@ -9,13 +9,12 @@ from urllib.parse import urlparse
 import rospy
 
 from aro_robocop_goto_as.errors import GraderLostError, NoTimeError, WatchError
-from aro_robocop_goto_as.ros.own_master import start_master
-from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from ..record import read
 from ..runner import Job
 from . import progress, ros_internals
 from .bridge import BridgeRun
+from .own_master import start_master
 from .run import NODE_LOST, Run
 from .server import ServerRun
 from .stage import PARAMS, Stage
@@ -62,7 +61,7 @@ def main() -> None:
         print(error, file=sys.stderr)
         status = 1
     except rospy.ROSException:  # publish() fails when a shutdown closes the topics during a tick
-        if not shutdown_has_begun():
+        if not ros_internals.shutdown_has_begun():
             raise
         print(NODE_LOST, file=sys.stderr)
         status = 1

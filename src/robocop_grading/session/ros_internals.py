@@ -47,6 +47,11 @@ def set_time(now_ns: int) -> None:
     rospy.rostime._set_rostime(rospy.Time(0, now_ns))
 
 
+def shutdown_has_begun() -> bool:
+    """Whether shutdown was requested; rospy.is_shutdown() turns true only after the on_shutdown hooks."""
+    return bool(rospy.core.is_shutdown_requested())
+
+
 def raw(kind: Any, body: bytes) -> Tuple[str, bytes, str, Any]:
     """A serialized message as rosbag.Bag.write() takes it."""
     return kind._type, body, kind._md5sum, kind

@@ -15,7 +15,6 @@ from rosgraph_msgs.msg import Log
 from aro_robocop_goto_as.errors import GraderLostError
 from aro_robocop_goto_as.geometry import STANDSTILL
 from aro_robocop_goto_as.ros import convert, graph
-from aro_robocop_goto_as.ros.rospy_internals import shutdown_has_begun
 
 from .. import record as rec
 from ..handout import ACTION
@@ -26,6 +25,7 @@ from ..sandbox.guard import exceeded_memory
 from . import progress
 from .display import is_shown
 from .node import Node
+from .ros_internals import shutdown_has_begun
 from .stage import Stage
 
 TICK = 0.1  # [s]

@@ -13,7 +13,7 @@ from ...bootstrap import doctor, master
 from ...errors import MasterError
 from ...process import x_display
 from ...suggestions import did_you_mean
-from ..names import PACKAGE
+from ..names import ACTION, ACTION_TYPE, PACKAGE, absolute
 from . import completion, container_image, program
 from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments
 from .program import ROOT, refuse, say
@@ -50,7 +50,8 @@ def refuse_second_simulator() -> None:
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)
     if simulator:
-        refuse(f"{simulator} on {uri}; stop it, or use another ROS_MASTER_URI")
+        how = "with Ctrl-C in its terminal or with ./robocop shell rosnode kill --all"
+        refuse(f"{simulator} on {uri}; stop it {how}, or use another ROS_MASTER_URI")
 
 
 def run(arguments: List[str]) -> None:
@@ -105,10 +106,13 @@ def web_arguments(words: Sequence[str]) -> Tuple[List[str], List[str]]:
 
 def axclient(arguments: List[str]) -> None:
     """actionlib's graphical client of the running system's server."""
+    if arguments and (len(arguments) != 2 or arguments[0] != "--robot"):
+        refuse(f"axclient: expected --robot NAME or nothing, got {' '.join(arguments)}")
     if not program.is_dry_run() and not x_display.answers():
         refuse("axclient: it is a window, and there is no usable display; ./robocop goto X Y sends a goal without one")
     program.need("axclient")
-    program.start_script("robocop_axclient.py", *arguments)
+    say("change the numbers under Goal and press SEND GOAL; close the window to end it")
+    program.start("rosrun", "actionlib_tools", "axclient.py", absolute("".join(arguments[1:]), ACTION), ACTION_TYPE)
 
 
 def record(arguments: List[str]) -> None:

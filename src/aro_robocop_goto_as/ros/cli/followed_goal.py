@@ -16,12 +16,10 @@ from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, Go
 
 from ...errors import FrameError
 from ...process import signals
-from .. import log_handlers
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import STATES
 from ..names import ACTION, absolute_if_named, place, prefixed
-from ..rospy_internals import start_quickly
 from ..ticker import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
 
@@ -86,8 +84,6 @@ def go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool] =
 
 
 def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool]) -> int:
-    log_handlers.use()
-    start_quickly()
     rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
     started = rospy.get_rostime()
     latest: List[Optional[Odometry]] = [None]

@@ -19,7 +19,7 @@ from ...bootstrap import master
 from ...errors import MasterError, RobocopError
 from ...process import child, orphans, signals
 from ...process.ports import free_port
-from ..names import COMMAND_VARIABLE, PACKAGE, SIMULATOR
+from ..names import COMMAND_VARIABLE, PACKAGE
 from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, WRONG_ARGUMENTS, complain, parse
 
 LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs
@@ -60,7 +60,7 @@ def _run(args: argparse.Namespace) -> int:
         from . import preflight  # only where it is needed, as it takes time
 
         try:
-            preflight.check({"world": world}, SIMULATOR)
+            preflight.check({"world": world})
         except RobocopError as error:
             complain(f"--world: {error}")
             return WRONG_ARGUMENTS

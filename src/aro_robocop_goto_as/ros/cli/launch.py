@@ -1,37 +1,51 @@
-"""roslaunch, but its exit status reports how the simulator ended, and it can be interrupted at any time.
+"""roslaunch, but its exit status reports how the simulator ended, and the screen shows what its user needs.
 
-roslaunch itself exits with 0 even when a required node failed. A signal that arrives while it starts a process makes it
-wait for itself, give up after 20 s and leave master and nodes running.
+roslaunch itself exits with 0 even when a required node failed.
 """
 
 import argparse
 import contextlib
 import os
 import sys
-import tempfile
 import time
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, TextIO, cast
+from typing import Any, Dict, List, Optional, TextIO
 
 import rosgraph
 import roslaunch
 import rospkg
 from roslaunch import rlutil
-from roslaunch.core import printerrlog
-from rospkg import get_log_dir
+from roslaunch.parent import ROSLaunchParent
+from roslaunch.pmon import ProcessListener
 
-from ...errors import RobocopError, RobotModelError
+from ...errors import RobocopError
 from ...process import signals
-from ...robot.model_names import urdf_of
-from .. import log_handlers
-from ..names import RVIZ_LOG, SIMULATOR, absolute
-from .roslaunch_internals import Launcher
+from ..names import PACKAGE, RVIZ_LOG, SIMULATOR, absolute
 
 FAILED = 1  # exit status
+PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages
 READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
-READY_PATIENCE = 30.0  # [s, wall] for a simulator with a large world on a slow machine
+READY_TIMEOUT = 30.0  # [s, wall] for a simulator with a large world on a slow machine
 POLL = 0.05  # [s, wall]
-STDOUT, STDERR = 1, 2  # file descriptors
+STDOUT = 1  # file descriptor
+
+
+class Launcher(ROSLaunchParent, ProcessListener):
+    """roslaunch's parent of all nodes; it notes whether the simulator has failed."""
+
+    failed = False  # whether a required node of PACKAGES has; an RViz that crashes when it closes is no failure
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        """Arguments as those of ROSLaunchParent."""
+        super().__init__(*args, process_listeners=[self], **options)
+
+    def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
+        """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
+        process = self.pm.get_process(process_name)
+        if process is None or process.name.rpartition("/")[2].startswith("rviz"):
+            return
+        if exit_code != 0 and process.required and process.package in PACKAGES:
+            self.failed = True
 
 
 def launch(arguments: List[str]) -> int:
@@ -44,14 +58,12 @@ def launch(arguments: List[str]) -> int:
     parser.add_argument("--quiet", action="store_true", help="show only that, warnings and errors")
     parser.add_argument("file", nargs="+", metavar="[PACKAGE] FILE [NAME:=VALUE...]")
     options = parser.parse_args(arguments)
-    deferred = signals.Deferred()
     try:
+        _check(options.file)
         files = rlutil.resolve_launch_arguments(options.file)
         run_id = rlutil.get_or_generate_uuid(None, False)
-        logs = Path(get_log_dir(), run_id)
+        logs = Path(rospkg.get_log_dir(), run_id)
         screen = _quiet(logs) if options.quiet else sys.stdout
-        sys.stdout = cast(TextIO, log_handlers.Lossy(sys.stdout))
-        log_handlers.use()
         roslaunch.configure_logging(run_id)
         rlutil.change_terminal_name(files, False)
         launcher = Launcher(
@@ -62,11 +74,8 @@ def launch(arguments: List[str]) -> int:
             force_log=options.quiet,
             show_summary=not options.no_summary,
         )
-        with deferred:  # after the launcher has installed its signal handlers, which are restored
-            with buffered_stderr(deferred):
-                launcher.load()
-            _check(launcher.config)
-            launcher.start()
+        if not _started(launcher):
+            return FAILED
         if options.quiet or options.overview:
             simulator = _simulator(launcher, expected=options.overview)
             if not launcher.pm.is_shutdown:
@@ -79,26 +88,33 @@ def launch(arguments: List[str]) -> int:
     except RobocopError as error:
         print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
         return FAILED
+    except RecursionError:  # launch/each_robot.launch includes itself for the next robot
+        print("[FATAL] PARAMETER: robots: too many for a launch file", file=sys.stderr)
+        return FAILED
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
-        if not deferred.interrupted:
-            printerrlog(_explained(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
+        print(f"[FATAL] {type(error).__name__}: {error}", file=sys.stderr)
         return FAILED
     return FAILED if launcher.failed else 0
 
 
-def _simulators(config: Any) -> List[str]:
-    """The names of the simulators that a launch file starts."""
-    return [rosgraph.names.ns_join(node.namespace, node.name) for node in config.nodes if node.name == SIMULATOR]
+def _check(words: List[str]) -> None:
+    """RobocopError for NAME:=VALUE that would end the simulator or roslaunch at its start."""
+    given = dict(word.split(":=", 1) for word in words if ":=" in word)
+    if given:
+        from . import preflight
+
+        preflight.check(given)
 
 
-def _check(config: Any) -> None:
-    """RobocopError for what a simulator would refuse, unless all its parameters have their defaults."""
-    for name in _simulators(config):
-        given = {key[len(name) + 1 :]: spec.value for key, spec in config.params.items() if key.startswith(f"{name}/")}
-        if given:
-            from . import preflight
+def _started(launcher: Launcher) -> bool:
+    """Start all processes; returns whether none that is required has ended meanwhile.
 
-            preflight.check(given, name)
+    A signal is deferred until all have started: roslaunch would wait for itself, and end them 10 s or more later.
+    """
+    roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers
+    with signals.Deferred() as deferred:
+        launcher.start()
+        return deferred.interrupted or not launcher.pm.is_shutdown
 
 
 def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
@@ -106,9 +122,11 @@ def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
 
     So the reason why a simulator can't start is not preceded by what to do with it.
     """
-    names = _simulators(launcher.config) or ([absolute("", SIMULATOR)] if expected else [])
+    nodes = [node for node in launcher.config.nodes if node.name == SIMULATOR]
+    names = [rosgraph.names.ns_join(node.namespace, node.name) for node in nodes]
+    names = names or ([absolute("", SIMULATOR)] if expected else [])
     master = rosgraph.Master("/robocop_launch", launcher.config.master.uri)
-    deadline = time.monotonic() + READY_PATIENCE
+    deadline = time.monotonic() + READY_TIMEOUT
     while names and not launcher.pm.is_shutdown and time.monotonic() < deadline:
         with contextlib.suppress(rosgraph.MasterException, OSError):
             master.lookupService(f"{names[0]}/{READY_SERVICE}")
@@ -125,39 +143,7 @@ def _quiet(folder: Path) -> TextIO:
     with open(folder / "roslaunch.log", "ab") as log:
         os.dup2(log.fileno(), STDOUT)
     os.environ[RVIZ_LOG] = str(folder / "rviz.log")
-    return cast(TextIO, log_handlers.Lossy(screen))
-
-
-@contextlib.contextmanager
-def buffered_stderr(deferred: signals.Deferred) -> Iterator[None]:
-    """Print what the block and its child processes write to standard error at its end, unless it is interrupted.
-
-    Ctrl-C also reaches the commands that roslaunch runs for parameters; Python prints a traceback for each.
-    """
-    sys.stderr.flush()
-    screen = os.dup(STDERR)
-    with tempfile.TemporaryFile() as buffer, os.fdopen(screen, "wb", buffering=0) as stream:
-        os.dup2(buffer.fileno(), STDERR)
-        try:
-            yield
-        finally:
-            sys.stderr.flush()
-            os.dup2(screen, STDERR)
-            buffer.seek(0)
-            if not deferred.interrupted:
-                with contextlib.suppress(OSError):  # a full disk
-                    stream.write(buffer.read())
-
-
-def _explained(error: OSError) -> str:
-    """An error about a file that an argument names; the file may be that of a robot's model."""
-    folder, _, model = str(error.filename).partition("/urdf/")
-    if not model.endswith(".urdf"):
-        return f"{error.filename}: {error.strerror}" if error.filename else str(error)
-    try:
-        return str(error) if urdf_of(model[: -len(".urdf")], folder) else ""
-    except RobotModelError as unknown:
-        return f"{unknown.code}: {unknown}"
+    return screen
 
 
 def main(arguments: Optional[List[str]] = None) -> None:

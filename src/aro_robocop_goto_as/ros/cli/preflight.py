@@ -1,12 +1,16 @@
-"""What simulator and parameter server would refuse of parameters, found before anything is started."""
+"""What is refused of a launch file's arguments before anything is started, as NAME:=VALUE on the command line."""
 
 import datetime
 import os
-from typing import Any, Dict
+from pathlib import Path
+from typing import Any, Mapping
+
+import rosparam  # with its tags for YAML, such as !degrees
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
-from ...param_loading import from_dict
+from ...param_loading import declared, from_dict
+from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...sim_params import SimParams
 from ...world.load import RANDOM, find_world
@@ -14,9 +18,14 @@ from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
 
 
-def check(given: Dict[str, Any], node: str) -> None:
-    """RobocopError for parameters of a simulator with this name that it would refuse; files are found, but not read."""
-    p = from_dict(SimParams, given, f"parameters of {node}")
+def check(given: Mapping[str, str]) -> None:
+    """RobocopError for texts that the simulator would refuse, and for files that the parameter server can't have.
+
+    A world is found, but not read. roslaunch checks numbers, and the simulator what its parameter files say.
+    """
+    are_texts = {name for name, spec in declared(SimParams).items() if isinstance(spec.default, str)}
+    texts = {name: text for name, text in given.items() if text and name in are_texts}
+    p = from_dict(SimParams, texts, "launch arguments")
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))
     urdf_of(p.robots.model, share())
@@ -27,10 +36,17 @@ def check(given: Dict[str, Any], node: str) -> None:
     elif text:
         for request in parse_robots(text):
             urdf_of(request.model or p.robots.model, share())
+    for name, value in given.items():
+        if name.endswith("config") and value.endswith(".yaml") and os.path.isfile(value):
+            with reading(value, ParameterError, "parameters in YAML"):
+                require_parameters(rosparam.yaml.safe_load(Path(value).read_text(encoding="utf-8")) or {}, value)
 
 
 def require_parameters(value: Any, where: str) -> None:
-    """ParameterError, naming the key, for what the parameter server can't have: no value, a date, a large integer."""
+    """ParameterError, naming the key, for what the parameter server can't have: no value, a date, a large integer.
+
+    roslaunch prints a traceback of its XML-RPC library.
+    """
     if isinstance(value, dict):
         for key, entry in value.items():
             if not isinstance(key, str):

@@ -19,7 +19,6 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from ...geometry import rotation_matrix
 from ...process import x_display
-from .. import log_handlers
 from ..names import RVIZ_LOG, prefixed
 from .rviz_config import SHARE, Observed, adapted
 
@@ -56,7 +55,6 @@ def observe(frame: str, wait: float, server: bool) -> Observed:
     if not rosgraph.is_master_online():
         return Observed(frame, server=server, screen=screen)
     # Not under the name that RViz will have; on the wall clock, as simulated time may not run yet.
-    log_handlers.use()
     rospy.init_node("robocop_rviz_config", argv=[], anonymous=True, disable_rostime=True, disable_signals=True)
     robot = rospy.get_namespace().strip("/")
     markers = _world(wait)

@@ -18,7 +18,6 @@ from ...bootstrap import master
 from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
 from ...process import signals
-from .. import log_handlers
 from ..names import absolute
 from ..publishing import publisher
 from ..ticker import wait_until
@@ -162,7 +161,6 @@ def main() -> None:
         if not master.master_answers(master.master_uri()):
             raise TeleopError(f"no ROS master answers at {master.master_uri()}; start the system with ./robocop run")
         # Wall time: a paused simulator must not keep keys from being read.
-        log_handlers.use()
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
         teleop = KeyboardTeleop(absolute(args.robot, "cmd_vel"), args.linear, args.angular)
         with _raw_keys(terminal):

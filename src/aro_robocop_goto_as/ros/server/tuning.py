@@ -3,10 +3,12 @@
 from typing import Any, Mapping
 
 import rospy
+from dynamic_reconfigure.server import Server
+
+from aro_robocop_goto_as.cfg import GotoConfig
 
 from ...errors import ParameterError
 from ...goto_params import GotoParams, clamped_values, differences, tuned
-from ..reconfigure import GotoConfig, Server
 
 NAMES = tuple(GotoConfig.defaults)
 

@@ -4,9 +4,11 @@ import math
 from typing import Any, Callable, Dict, List, Optional
 
 import rospy
+from dynamic_reconfigure.server import Server
 from geometry_msgs.msg import Pose, PoseWithCovarianceStamped
 from std_srvs.srv import Trigger
 
+from aro_robocop_goto_as.cfg import SimConfig
 from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, SpawnModel, Step
 
 from ...errors import FrameError, PlaceError, WorldError
@@ -17,7 +19,6 @@ from ...world.edit import requested_model, with_model, with_model_at, without_mo
 from ...world.model import World
 from .. import convert
 from ..names import prefixed
-from ..reconfigure import Server, SimConfig
 
 LONGEST_STEP = 1e6  # [s]
 REFUSALS = FrameError, PlaceError, WorldError

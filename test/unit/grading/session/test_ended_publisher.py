@@ -7,7 +7,7 @@ import sys
 from waiting import DEADLINE, patience
 
 from aro_robocop_goto_as.process.ports import free_port
-from aro_robocop_goto_as.ros.own_master import start_master
+from robocop_grading.session.own_master import start_master
 
 MESSAGES = 50
 PUBLISHER = f"""

@@ -21,21 +21,28 @@ from aro_robocop_goto_as.ros.cli.preflight import check, require_parameters
         ({"robots": "red:burgr 0 0"}, "there is no model 'burgr'"),
         ({"robots": "red"}, "robots: expected 'NAME X Y [YAW]; ...'"),
         ({"spawn": "here"}, "spawn: expected 'x y'"),
-        ({"real_time_factor": -1.0}, "parameters of /robocop_sim: real_time_factor: expected at least 0, got -1.0"),
-        ({"wrold": "empty"}, "parameters of /robocop_sim: wrold: unknown parameter; did you mean 'world'?"),
+        ({"drive": "wheel"}, "launch arguments: drive: expected one of wheels, kinematic, got 'wheel'"),
     ],
 )
 def test_what_the_simulator_would_refuse_is_refused(given, words):
     with pytest.raises(RobocopError) as refused:
-        check(given, "/robocop_sim")
+        check(given)
     assert words in str(refused.value)
 
 
 @pytest.mark.parametrize(
-    "given", [{}, {"world": "random"}, {"robots": "3"}, {"robots": "red:waffle 0 0; blue 1 1 1.5"}, {"spawn": "1 2"}]
+    "given",
+    [
+        {},
+        {"world": "random"},
+        {"world": "", "rviz": "false"},
+        {"robots": "3"},
+        {"robots": "red:waffle 0 0; blue 1 1 1.5"},
+        {"spawn": "1 2"},
+    ],
 )
 def test_what_it_accepts_is_accepted(given):
-    check(given, "/robocop_sim")
+    check(given)
 
 
 @pytest.mark.parametrize(

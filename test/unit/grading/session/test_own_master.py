@@ -4,7 +4,7 @@ import socket
 import xmlrpc.client
 
 from aro_robocop_goto_as.process.ports import free_port
-from aro_robocop_goto_as.ros.own_master import start_master
+from robocop_grading.session.own_master import start_master
 
 
 def test_master_answers_at_its_port():
