@@ -5,7 +5,6 @@ import socket
 
 import pytest
 import waiting
-from processes import busy_processes
 from programs import Program
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -65,10 +64,9 @@ ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
 def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, signals):
     command = goto("5", "0", "--world", "empty")
     command.wait_for_process(word)
-    with busy_processes():
-        for number in signals:
-            command.process.send_signal(number)
-        assert command.wait_for_exit() == 1
+    for number in signals:
+        command.process.send_signal(number)
+    assert command.wait_for_exit() == 1
     assert "Traceback" not in command.output
 
 
@@ -79,9 +77,8 @@ def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto, nu
         silent.settimeout(command.deadline)
         connection, _ = silent.accept()
         assert connection.recv(1)
-        with busy_processes():
-            command.process.send_signal(number)
-            assert command.wait_for_exit() == 1
+        command.process.send_signal(number)
+        assert command.wait_for_exit() == 1
     assert command.output == "robocop goto: interrupted\n"
 
 
@@ -97,9 +94,8 @@ def test_the_system_ends_also_if_the_command_is_killed(goto):
 def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
     command = goto("5", "0", "--world", "empty")
     command.wait_until(lambda: "driving" in command.output, "driving")
-    with busy_processes():
-        command.process.send_signal(signal.SIGTERM)
-        assert command.wait_for_exit() == 1
+    command.process.send_signal(signal.SIGTERM)
+    assert command.wait_for_exit() == 1
     assert "PREEMPTED: PREEMPTED: " in command.output
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from processes import busy_processes, processes_with
+from processes import processes_with
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -31,13 +31,10 @@ def has_child(pid, word):
 @pytest.mark.parametrize(
     "command, word",
     [
-        (["run", "rviz:=false"], "sys.version_info"),
-        (["run", "rviz:=false"], "_set_up"),
         (["run", "rviz:=false"], "_setup_util.py"),
         (["run", "rviz:=false"], "robocop_launch.py"),
         (["goto", "1", "0"], "robocop_goto.py"),
         (["grade", "."], "robocop_grade.py"),
-        (["bench"], "robocop_bench.py"),
     ],
 )
 def test_interrupted_while_it_starts_it_ends_without_a_traceback(tmp_path, command, word):
@@ -60,9 +57,8 @@ def test_interrupted_while_it_starts_it_ends_without_a_traceback(tmp_path, comma
                 os.killpg(started.pid, signal.SIGINT)
                 started.wait(DEADLINE)
                 started = start()
-        with busy_processes():
-            os.killpg(started.pid, signal.SIGINT)  # as the terminal does
-            assert started.wait(DEADLINE) != 0
+        os.killpg(started.pid, signal.SIGINT)  # as the terminal does
+        assert started.wait(DEADLINE) != 0
         assert "Traceback" not in output.read_text() and "Fatal" not in output.read_text()
         assert processes_with(b"ROS_HOME=" + os.fsencode(tmp_path)) == []
     finally:
