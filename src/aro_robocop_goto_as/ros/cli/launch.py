@@ -50,6 +50,22 @@ class Launcher(ROSLaunchParent, ProcessListener):
 
 def launch(arguments: List[str]) -> int:
     """Run a launch file until it ends; returns the exit status."""
+    options = _parsed(arguments)
+    deferred = signals.Deferred()
+    try:
+        _check(options.file)
+        return _run(options, deferred)
+    except RobocopError as error:
+        print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
+    except RecursionError:  # launch/each_robot.launch includes itself for the next robot
+        print("[FATAL] PARAMETER: robots: too many for a launch file", file=sys.stderr)
+    except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
+        if not deferred.interrupted:  # Ctrl-C also ends the commands that roslaunch runs for parameters
+            print(f"[FATAL] {type(error).__name__}: {error}", file=sys.stderr)
+    return FAILED
+
+
+def _parsed(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="robocop_launch.py", description=__doc__)
     parser.add_argument("-p", "--port", type=int, help="of the ROS master, if one has to be started")
     parser.add_argument("--screen", action="store_true", help="show the output of all nodes")
@@ -57,44 +73,39 @@ def launch(arguments: List[str]) -> int:
     parser.add_argument("--overview", action="store_true", help="show how to use the system when it runs")
     parser.add_argument("--quiet", action="store_true", help="show only that, warnings and errors")
     parser.add_argument("file", nargs="+", metavar="[PACKAGE] FILE [NAME:=VALUE...]")
-    options = parser.parse_args(arguments)
-    try:
-        _check(options.file)
-        files = rlutil.resolve_launch_arguments(options.file)
-        run_id = rlutil.get_or_generate_uuid(None, False)
-        logs = Path(rospkg.get_log_dir(), run_id)
-        screen = _quiet(logs) if options.quiet else sys.stdout
-        roslaunch.configure_logging(run_id)
-        rlutil.change_terminal_name(files, False)
-        launcher = Launcher(
-            run_id,
-            files,
-            port=options.port,
-            force_screen=options.screen,
-            force_log=options.quiet,
-            show_summary=not options.no_summary,
-        )
-        if not _started(launcher):
-            return FAILED
-        if options.quiet or options.overview:
-            simulator = _simulator(launcher, expected=options.overview)
-            if not launcher.pm.is_shutdown:
-                from .overview import overview  # now that everything else has started
+    return parser.parse_args(arguments)
 
-                print(overview(launcher.config, simulator, logs, not options.quiet), file=screen, flush=True)
-        if not options.no_summary:
-            rlutil.check_log_disk_usage()
-        launcher.spin()
-    except RobocopError as error:
-        print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
-        return FAILED
-    except RecursionError:  # launch/each_robot.launch includes itself for the next robot
-        print("[FATAL] PARAMETER: robots: too many for a launch file", file=sys.stderr)
-        return FAILED
-    except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
-        print(f"[FATAL] {type(error).__name__}: {error}", file=sys.stderr)
-        return FAILED
-    return FAILED if launcher.failed else 0
+
+def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
+    """Start the processes with signals deferred, and wait for their end; returns the exit status."""
+    files = rlutil.resolve_launch_arguments(options.file)
+    run_id = rlutil.get_or_generate_uuid(None, False)
+    logs = Path(rospkg.get_log_dir(), run_id)
+    screen = _quiet(logs) if options.quiet else sys.stdout
+    roslaunch.configure_logging(run_id)
+    rlutil.change_terminal_name(files, False)
+    launcher = Launcher(
+        run_id,
+        files,
+        port=options.port,
+        force_screen=options.screen,
+        force_log=options.quiet,
+        show_summary=not options.no_summary,
+    )
+    roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers
+    with deferred:  # a signal while roslaunch starts a process makes it wait for itself, for 10 s and more
+        launcher.start()
+        failed = launcher.pm.is_shutdown and not deferred.interrupted  # too early for process_died()
+    if options.quiet or options.overview:
+        simulator = _simulator(launcher, expected=options.overview)
+        if not launcher.pm.is_shutdown:
+            from .overview import overview  # now that everything else has started
+
+            print(overview(launcher.config, simulator, logs, not options.quiet), file=screen, flush=True)
+    if not options.no_summary:
+        rlutil.check_log_disk_usage()
+    launcher.spin()
+    return FAILED if failed or launcher.failed else 0
 
 
 def _check(words: List[str]) -> None:
@@ -104,17 +115,6 @@ def _check(words: List[str]) -> None:
         from . import preflight
 
         preflight.check(given)
-
-
-def _started(launcher: Launcher) -> bool:
-    """Start all processes; returns whether none that is required has ended meanwhile.
-
-    A signal is deferred until all have started: roslaunch would wait for itself, and end them 10 s or more later.
-    """
-    roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers
-    with signals.Deferred() as deferred:
-        launcher.start()
-        return deferred.interrupted or not launcher.pm.is_shutdown
 
 
 def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
