@@ -15,7 +15,7 @@ UNDOCUMENTED = (
 # What ROS's wiki describes of these: rospy's overviews, and roslaunch's page "API Usage".
 DOCUMENTED = (
     *("rospy.core.is_shutdown_requested", "rospy.rostime.wallsleep", "rospy.timer.TimerEvent"),
-    *("roslaunch.parent", "roslaunch.pmon.ProcessListener", "roslaunch.rlutil"),
+    *("roslaunch.core.Node", "roslaunch.parent", "roslaunch.pmon.ProcessListener", "roslaunch.rlutil"),
 )
 DOCUMENTED_ATTRIBUTES = {"_exit", "_fields", "_replace", "_connection_header", "_md5sum", "_type"}
 # Undocumented attributes of rospy.Publisher, actionlib.ActionServer, ActionClient and SimpleActionServer.

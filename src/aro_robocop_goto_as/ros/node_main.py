@@ -13,6 +13,7 @@ from ..param_loading import from_dict
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 
+ROSOUT_TOPICS = "/rosout_disable_topics_generation"
 T = TypeVar("T")
 
 
@@ -28,6 +29,10 @@ def node(name: str, **options: Any) -> Iterator[None]:
     raise_descriptor_limit()
     try:
         rospy.init_node(name, disable_signals=True, **options)
+        # While this is not set, rospy asks the master for it at each line that it logs. If a node that ends because
+        # another one has its name logs a line, the master takes the question for a registration and ends the other one.
+        if not rospy.has_param(ROSOUT_TOPICS):
+            rospy.set_param(ROSOUT_TOPICS, False)  # as it is when not set
         yield
     except RobocopError as error:
         rospy.logfatal("%s: %s", error.code, error)
