@@ -81,8 +81,7 @@ ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip")
 OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets", "wx"}
 # Where the insides of other libraries are used, in how many lines at most, and why. What is not here may use none.
 INSIDES = {
-    f"{PACKAGE}/ros/rospy_internals.py": (14, "publishing: rospy can't send to several topics or subscribers at once"),
-    f"{PACKAGE}/ros/client/discovery.py": (5, "names of connected nodes: rospy only counts them"),
+    f"{PACKAGE}/ros/rospy_internals.py": (11, "publishing: rospy can't send to several topics or subscribers at once"),
     f"{PACKAGE}/ros/web/server.py": (2, "viser has no setting for who may use its web server"),
     f"{GRADER}/session/own_master.py": (2, "the grader's node has the master in its process, until it has no node"),
     f"{GRADER}/session/ros_internals.py": (9, "the grader knows when all that was sent has come, until it has no node"),
