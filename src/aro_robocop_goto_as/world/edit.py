@@ -8,7 +8,6 @@ from ..reading import parse_xml, reading
 from .ground import levelled
 from .model import Obstacle, World
 from .sdf.reader import read_model
-from .sdf.urdf import as_sdf
 from .sdf.uris import locate_model
 from .sdf.xml import parse
 
@@ -19,15 +18,15 @@ VALID_NAME = "printable characters without '/' or '::', and without spaces at th
 def requested_model(name: str, xml: str, file: str, pose: Pose3D, world_path: str) -> World:
     """A world that contains only the model of an insertion request, at a pose in the world.
 
-    name: the model's new name; empty: its own. Exactly one of xml, the text of an SDF or URDF, and file, a URI or path
+    name: the model's new name; empty: its own. Exactly one of xml, the text of an SDF, and file, a URI or path
     as in an <include> of the world's file at world_path, must be given. WorldError if it can't be read, or if the name
     could be confused with the names of obstacles.
     """
     if bool(xml) == bool(file):
         raise WorldError("expected either xml or file")
-    with reading(f"{'xml' if xml else 'file'} of the request", WorldError, "a model in SDF or URDF"):
+    with reading(f"{'xml' if xml else 'file'} of the request", WorldError, "a model in SDF"):
         root = parse_xml(xml.encode(), "xml of the request", WorldError) if xml else parse(_located(file, world_path))
-        model = read_model(as_sdf(root) if root.tag == "robot" else root, name, pose)
+        model = read_model(root, name, pose)
     (used,) = model.models
     if used != used.strip() or not used.isprintable() or "/" in used or "::" in used:
         owner, hint = ("request", "") if name else (f"model in {model.path}", "; the request may give another name")

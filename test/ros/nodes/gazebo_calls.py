@@ -9,6 +9,8 @@ from gazebo_msgs.srv import DeleteLight, DeleteModel, GetModelState, GetWorldPro
 from geometry_msgs.msg import Point, Pose, Twist
 from std_srvs.srv import Empty
 
+from aro_robocop_goto_as.ros.sim.gazebo_services import REFUSED
+
 ROBOT = "turtlebot3_burger"
 BOX = """<sdf version="1.6"><model name="box"><link name="link"><collision name="collision"><geometry>
 <box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""
@@ -58,6 +60,12 @@ def main():
     answers["spawned nonsense"] = spawn("chair", "<sdf", 2.0).status_message[:12]
     answers["table"] = position("table")
     answers["table moved"] = set_position(1.0, 1.0, name="table") and position("table")
+    topic = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1, latch=True)
+    topic.publish(ModelState("table", Pose(position=Point(-2.0, 1.0, 0.0)), Twist(), "world"))
+    while position("table")[:3] != [True, -2.0, 1.0]:
+        rospy.rostime.wallsleep(0.01)
+    refused = {name: call(name, kind, kind._request_class()) for name, (kind, _) in REFUSED.items()}
+    answers["refused"] = [name for name, answer in refused.items() if answer.success or not answer.status_message]
     answers["deleted"] = call("delete_model", DeleteModel, "table").success
     answers["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
     answers["unknown"] = position("table")

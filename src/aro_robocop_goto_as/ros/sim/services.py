@@ -109,10 +109,6 @@ class Services:
             self._simulation.jobs.post(lambda: time.set_real_time_factor(factor, self._simulator.steps))
         return config
 
-    def set_factor(self, factor: float) -> None:
-        """Change the real-time factor, as dynamic_reconfigure does, and tell its clients."""
-        self._reconfigure.update_configuration({"real_time_factor": factor})
-
     # -- the world --
 
     def _change(self, edit: Callable[[World], World]) -> None:
