@@ -74,9 +74,9 @@ ORDER = {
 }
 # Modules whose rosdep key differs from their name.
 ROSDEP_KEYS = {
-    name: f"python3-{name}" for name in ("collada", "jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
+    name: f"python3-{name}" for name in ("jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
 }
-ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip")
+ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip", trimesh="python3-trimesh-pip")
 # Imported on request only: in compat/, in deb-packages/class.txt or grade.txt, in requirements-web.txt.
 OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets", "wx"}
 # Where the insides of other libraries are used, in how many lines at most, and why. What is not here may use none.

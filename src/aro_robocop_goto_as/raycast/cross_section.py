@@ -94,21 +94,14 @@ def _prism_outline(base: np.ndarray, size: Vector3, pose: Pose3D, height: float)
 
 
 def _mesh_segments(pose: Pose3D, mesh: Mesh, height: float) -> np.ndarray:
-    """The exact intersection of a mesh's triangles with a horizontal plane: segments (m, 2, 2).
+    """The intersection of a mesh's triangles with a horizontal plane: segments (m, 2, 2)."""
+    import trimesh  # takes 0.3 s, and most worlds have no meshes
 
-    A corner exactly at the height counts as below it, so that triangles which share an edge there are treated alike.
-    """
     corners = mesh.corners @ rotation_matrix(pose.orientation).T + np.array(pose.position)
-    above = corners[..., 2] > height
-    cut = above.any(axis=1) & ~above.all(axis=1)
-    corners, above = corners[cut], above[cut]
-    # The tip is the one corner on its side of the plane; both of its edges cross the plane.
-    tip_index = np.argmax(np.where(above.sum(axis=1, keepdims=True) == 1, above, ~above), axis=1)
-    rows = np.arange(len(corners))
-    tip, left, right = (corners[rows, (tip_index + turn) % 3] for turn in range(3))
-    ends = [tip + (foot - tip) * ((height - tip[:, 2]) / (foot[:, 2] - tip[:, 2]))[:, None] for foot in (left, right)]
-    segments = np.stack(ends, axis=1)[..., :2]
-    return segments[(segments[:, 0] != segments[:, 1]).any(axis=1)]
+    faces = np.arange(3 * len(corners)).reshape(-1, 3)
+    placed = trimesh.Trimesh(corners.reshape(-1, 3), faces, process=False)
+    lines: np.ndarray = trimesh.intersections.mesh_plane(placed, (0.0, 0.0, 1.0), (0.0, 0.0, height))
+    return lines[..., :2]
 
 
 def _wall_segments(pose: Pose3D, walls: Walls, height: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from lxml import etree
 
 from ..errors import RobotModelError, WorldError
 from ..geometry import Pose3D, Vector3
-from ..world.sdf.large_meshes import load_triangles
+from ..world.sdf.meshes import load_triangles
 from ..world.sdf.uris import locate
 from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape, color_of
 

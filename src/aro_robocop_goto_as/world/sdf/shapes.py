@@ -9,7 +9,7 @@ from ...geometry import FARTHEST
 from ...reading import Element, file_of
 from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml
-from .large_meshes import load_triangles
+from .meshes import load_triangles
 
 _SHAPES = ("box", "cylinder", "empty", "mesh", "plane", "sphere")
 
