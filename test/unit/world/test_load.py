@@ -47,10 +47,6 @@ BROKEN = {  # file: (content, pattern of the message after the file's path)
         WORLD.format(WALL.format("<geometry><mesh><uri>model://house/meshes/house.dae</uri></mesh></geometry>")),
         r":8: in 'wall/link/collision': 'model://house/meshes/house.dae' was not found; looked for",
     ),
-    "polyline.world": (
-        WORLD.format(WALL.format("<geometry><polyline><height>1</height></polyline></geometry>")),
-        r":8: in 'wall/link/collision': <polyline> in <geometry> is not supported; supported: box, cylinder, .*mesh",
-    ),
     "misspelt.world": (
         WORLD.format(WALL.format("<geometry><box><sise>1 1 1</sise></box></geometry>")),
         r":8: in 'wall/link/collision': <box> has no <size>",
@@ -119,7 +115,7 @@ def test_broken_file_is_refused_with_file_line_problem_and_expectation(tmp_path,
 
 def test_each_broken_file_gets_a_different_message(tmp_path):
     messages = [message_of(tmp_path, name).partition(name)[2] for name in BROKEN]
-    assert len(set(messages)) == len(BROKEN) == 12
+    assert len(set(messages)) == len(BROKEN) == 11
 
 
 def test_bare_name_is_looked_up_in_the_worlds_directory():

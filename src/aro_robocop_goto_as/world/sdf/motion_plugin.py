@@ -26,7 +26,8 @@ def motion_of(model: Element, world_from_model: Pose3D) -> Optional[Motion]:
     plugin = plugins[0]
     if len(plugins) > 1:
         raise xml.error(plugins[1], f"a second <plugin filename='{PLUGIN}'>; supported: one")
-    xml.require_known_children(plugin, read=("turn", "waypoint"))
+    for child in xml.unknown_children(plugin, ("turn", "waypoint")):
+        raise xml.error(child, f"{xml.title_of(child)} in <plugin> is not supported; supported: turn, waypoint")
     if not world_from_model.is_upright():
         raise xml.error(plugin, "the model that it moves is tilted; supported: upright models")
     turn = xml.optional_child(plugin, "turn")

@@ -21,21 +21,16 @@ SPAWN_FRAME = "robot_spawn"
 MAX_DEPTH = 20  # of models within models
 MAX_MODELS = 5000  # as a file that includes another one twice, which includes a third one twice, ...
 
-# Children of SDF's elements that have no effect on a robot among fixed obstacles: first those that users may expect to
-# have one, which World.ignored lists. A child that is neither here nor read is refused.
-_UNUSED: Mapping[str, Tuple[str, str]] = {
-    "world": (
-        "actor joint light plugin road sensor",
-        "atmosphere audio gravity gui magnetic_field physics scene spherical_coordinates wind",
-    ),
-    "include": ("plugin", ""),
-    "model": ("joint plugin", "allow_auto_disable enable_wind frame gripper self_collide"),
-    "link": (
-        "frame light sensor",
-        "audio_sink audio_source battery enable_wind gravity inertial kinematic must_be_base_link particle_emitter"
-        " projector self_collide velocity_decay visual",
-    ),
-    "collision": ("", "frame laser_retro max_contacts surface"),
+# Children of SDF's elements that have no effect on a robot among fixed obstacles. A <plugin> may have one, so World.ignored
+# lists it. A child that is neither here nor read is left out, and World.approximated lists it.
+_UNUSED: Mapping[str, str] = {
+    "world": "actor atmosphere audio gravity gui joint light magnetic_field physics plugin road scene sensor"
+    " spherical_coordinates wind",
+    "include": "plugin",
+    "model": "allow_auto_disable enable_wind frame gripper joint plugin self_collide",
+    "link": "audio_sink audio_source battery enable_wind frame gravity inertial kinematic light must_be_base_link"
+    " particle_emitter projector self_collide sensor velocity_decay visual",
+    "collision": "frame laser_retro max_contacts surface",
 }
 # Models of Gazebo that may be included without having their files; None: without effect here.
 _BUILT_IN: Mapping[str, Optional[bytes]] = {
@@ -133,12 +128,12 @@ class _Reader:
         (self.approximated if is_different else self.ignored).append(f"{what} ({line})")
 
     def check_children(self, element: Element, *read: str) -> None:
-        """WorldError for a child that is neither read nor known to be unused; unused ones may be reported."""
-        reported, silent = (tags.split() for tags in _UNUSED[element.tag])
-        xml.require_known_children(element, read, (*reported, *silent))
-        for child in element:
-            if child.tag in reported and not (is_motion(child) and element.tag == "model"):
-                self.report(f"{child.tag} '{child.get('name', '')}'", child)
+        """Report plugins, and children that are neither read nor known to be unused."""
+        for child in xml.unknown_children(element, (*read, *_UNUSED[element.tag].split())):
+            self.report(f"{xml.title_of(child)} in <{element.tag}> is left out", child, is_different=True)
+        for plugin in element.iterchildren("plugin"):
+            if not (is_motion(plugin) and element.tag == "model"):
+                self.report(f"plugin '{plugin.get('name', '')}'", plugin)
 
     def children(self, element: Element, parent: _Parent) -> None:
         """Read the models and includes in a <world> or a <model>."""
@@ -164,14 +159,16 @@ class _Reader:
         model_name = uris.model_name(uri)
         if model_name in _BUILT_IN:
             content = _BUILT_IN[model_name]
-            if content is None:
-                self.report(f"include '{model_name}'", include)
-            else:
+            if content is not None:
                 model = xml.root_of(parse_xml(content, uri, WorldError), ("model",))
                 self.model(model, parent, include, new_name, new_pose, static)
             return
-        with xml.about(include):
-            path = uris.locate_model(uri, file_of(include))
+        try:
+            with xml.about(include):
+                path = uris.locate_model(uri, file_of(include))
+        except xml.NotSimulatedError as exc:
+            self.report(f"an include is left out: {exc}", include, is_different=True)
+            return
         if os.path.realpath(path) in self.open_files:
             raise xml.error(include, f"'{uri}' is {path} again, within itself; expected another model")
         self.open_files.append(os.path.realpath(path))
@@ -179,8 +176,6 @@ class _Reader:
             included = xml.root_of(xml.parse(path), ("actor", "light", "model"))
             if included.tag == "model":
                 self.model(included, parent, include, new_name, new_pose, static)
-            else:
-                self.report(f"{included.tag} '{included.get('name', '')}'", included)
         except WorldError as exc:
             raise WorldError(f"{exc}; included by {file_of(include)}:{include.sourceline}") from exc
         finally:
@@ -250,10 +245,11 @@ class _Reader:
         self.check_children(collision, "geometry", "pose")
         name = "/".join((*parent.names, xml.name_of(collision)))
         shape = xml.required_child(collision, "geometry")
-        if shape.find("heightmap") is not None:
-            self.report(f"heightmap of '{name}' is left out", shape, is_different=True)
+        try:
+            geometry = read_shape(shape, self.triangles)
+        except xml.NotSimulatedError as exc:
+            self.report(f"'{name}' is left out: {exc}", shape, is_different=True)
             return
-        geometry = read_shape(shape, self.triangles)
         if geometry is None:
             return
         pose = frames.placed(collision, parent.pose)

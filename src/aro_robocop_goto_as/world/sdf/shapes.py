@@ -15,11 +15,12 @@ _SHAPES = ("box", "cylinder", "empty", "mesh", "plane", "sphere")
 
 
 def read_shape(geometry: Element, triangles: Dict[str, np.ndarray]) -> Optional[Geometry]:
-    """The shape in a <geometry>; None for <empty>. WorldError for unsupported shapes.
+    """The shape in a <geometry>; None for <empty>. NotSimulatedError for other shapes, and for a part of a mesh.
 
     triangles: by path, those of the mesh files that the world has used so far; others are read and added
     """
-    xml.require_known_children(geometry, read=_SHAPES)
+    for other in [*xml.unknown_children(geometry, _SHAPES), *geometry.iterfind("mesh/submesh")]:
+        raise xml.NotSimulatedError(f"<{other.tag}>")
     shapes = [child for child in geometry if child.tag in _SHAPES]
     if len(shapes) != 1:
         known = ", ".join(_SHAPES)
@@ -38,7 +39,6 @@ def read_shape(geometry: Element, triangles: Dict[str, np.ndarray]) -> Optional[
 
 
 def _mesh(mesh: Element, triangles: Dict[str, np.ndarray]) -> Mesh:
-    xml.require_known_children(mesh, read=("scale", "uri"))
     uri = xml.required_child(mesh, "uri")
     with xml.about(uri):
         path = uris.locate(xml.text_of(uri), file_of(uri))

@@ -7,8 +7,8 @@ from ...geometry import FARTHEST, Pose3D
 from ...reading import Element
 from . import xml
 
-_SKIPPED = ("deletions", "insertions", "iterations", "light", "real_time", "sim_time", "wall_time")
-_SKIPPED_OF_MODELS = ("acceleration", "collision", "joint", "static", "velocity", "wrench")
+_KNOWN = ("deletions", "insertions", "iterations", "light", "model", "real_time", "sim_time", "wall_time")
+_KNOWN_OF_MODELS = tuple("acceleration collision joint link model pose scale static velocity wrench".split())
 
 Report = Callable[[str, Element, bool], None]  # of what differs, the element, True
 SavedPoses = Dict[str, Tuple[Pose3D, Element]]  # model or link name: its pose in the world and its element
@@ -18,21 +18,21 @@ def state_poses(world: Element, report: Report) -> SavedPoses:
     """The poses in a world's <state> elements, which override those of its models and links, as in Gazebo.
 
     Names are `model`, `model/link`, `model/nested`. Scales are reported and left out: Gazebo saves them in addition to
-    shapes that are already scaled. WorldError if a state adds or removes something.
+    shapes that are already scaled. So is what a state adds or removes.
     """
     poses: SavedPoses = {}
     for state in world.iterchildren("state"):
-        for change in state.iterchildren("insertions", "deletions"):
-            if xml.text_of(change):
-                raise xml.error(change, f"<{change.tag}> in <state> is supported only if it is empty")
-        xml.require_known_children(state, ("model",), _SKIPPED)
+        changes = [change for change in state.iterchildren("insertions", "deletions") if len(change) or change.text]
+        for child in [*xml.unknown_children(state, _KNOWN), *changes]:
+            report(f"{xml.title_of(child)} in <state> is left out", child, True)
         poses.update(_poses(state, "", report))
     return poses
 
 
 def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, Tuple[Pose3D, Element]]]:
     for element in parent.iterchildren("model", "link"):
-        xml.require_known_children(element, ("link", "model", "pose", "scale"), _SKIPPED_OF_MODELS)
+        for child in xml.unknown_children(element, _KNOWN_OF_MODELS):
+            report(f"{xml.title_of(child)} in a <{element.tag}> of <state> is left out", child, True)
         name = prefix + xml.name_of(element)
         scale = xml.optional_child(element, "scale")
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):

@@ -2,10 +2,8 @@
 
 import functools
 import os
-import re
 from pathlib import Path
 from typing import Iterable, Iterator, List, Tuple
-from urllib.parse import unquote
 
 import rospkg
 
@@ -14,57 +12,45 @@ from . import xml
 
 Candidate = Tuple[str, str]  # a path that may exist, and the reason to look there, for messages
 
-# An address of Gazebo Fuel, formerly fuel.ignitionrobotics.org; app.gazebosim.org/OWNER/fuel is its web page.
-_FUEL = re.compile(
-    r"(https?|fuel)://.*\b(fuel|gazebosim)\b.*/models/(?P<name>[^/]+)(/(\d+|tip)(/files(?P<rest>/.*)?)?)?", re.I
-)
 _REMOTE = ("fuel", "ftp", "http", "https")  # schemes of files on other machines
 _DEFAULT = "model.sdf"
 
 
 def model_name(uri: str) -> str:
-    """The name of the model that a model:// URI, or an address of Gazebo Fuel, refers to as a whole; else empty."""
-    scheme, (path, *_) = _split(uri)
+    """The name of the model that a model:// URI refers to as a whole; else empty."""
+    scheme, path = _split(uri)
     path = path[: -len(_DEFAULT) - 1] if path.endswith(f"/{_DEFAULT}") else path
     return path if scheme == "model" and "/" not in path else ""
 
 
-def _split(uri: str) -> Tuple[str, Tuple[str, ...]]:
-    """The scheme of a URI, "file" for a plain path, and the path; two paths for an address of Gazebo Fuel.
+def _split(uri: str) -> Tuple[str, str]:
+    """The scheme of a URI, "file" for a plain path, and the path.
 
-    Slashes at the end and, for model:// and package://, after the scheme are left out: Gazebo ignores them too. A model
-    on Fuel is a local one, under the usual name or its own: "Ground Plane" is ground_plane.
+    Slashes at the end and, for model:// and package://, after the scheme are left out: Gazebo ignores them too.
     """
-    whole, uri = uri, uri.rstrip("/")
-    on_fuel = _FUEL.fullmatch(unquote(uri))
-    if on_fuel:
-        name, rest = on_fuel["name"], on_fuel["rest"] or ""
-        return "model", (name.lower().replace(" ", "_") + rest, name + rest)
-    scheme, separator, path = uri.partition("://")
+    scheme, separator, path = uri.rstrip("/").partition("://")
     if not separator:
-        return "file", (whole,)
-    return scheme, (path.lstrip("/") if scheme in ("model", "package") else path,)
+        return "file", uri
+    return scheme, path.lstrip("/") if scheme in ("model", "package") else path
 
 
 def locate(uri: str, file: str) -> str:
     """The file or directory that a URI in a file refers to: model://, package://, file://, or a plain path.
 
-    Nothing is downloaded: a model on Gazebo Fuel is searched under its name, as by model://. WorldError lists the
-    places searched, or the supported kinds of URI.
+    NotSimulatedError for a web address: nothing is downloaded. WorldError lists the places searched, or the supported
+    kinds of URI.
     """
-    scheme, paths = _split(uri)
+    scheme, path = _split(uri)
     if scheme.lower() in _REMOTE:
-        raise WorldError(f"'{uri}' is a web address, and nothing is downloaded; expected model://NAME of a local model")
-    if scheme not in ("model", "package", "file") or not paths[0]:
+        raise xml.NotSimulatedError(f"'{uri}' is a web address, and nothing is downloaded")
+    if scheme not in ("model", "package", "file") or not path:
         raise WorldError(f"'{uri}' is not supported; supported: model://, package://, file:// and plain paths")
     looked_for: List[str] = []
-    for path in paths:
-        for candidate, why in _candidates(scheme, path, os.path.abspath(file)):
-            if os.path.exists(candidate):
-                return os.path.normpath(candidate)
-            looked_for.append(f"{os.path.normpath(candidate)} ({why})")
-    where = " is on Gazebo Fuel, and nothing is downloaded; it" if len(paths) > 1 else ""
-    raise WorldError(f"'{uri}'{where} was not found; looked for: {', '.join(dict.fromkeys(looked_for))}")
+    for candidate, why in _candidates(scheme, path, os.path.abspath(file)):
+        if os.path.exists(candidate):
+            return os.path.normpath(candidate)
+        looked_for.append(f"{os.path.normpath(candidate)} ({why})")
+    raise WorldError(f"'{uri}' was not found; looked for: {', '.join(dict.fromkeys(looked_for))}")
 
 
 def locate_model(uri: str, file: str) -> str:

@@ -4,7 +4,7 @@ The grammar of SDF is that of http://sdformat.org/spec, versions 1.4 to 1.8.
 """
 
 from contextlib import contextmanager
-from typing import Iterable, Iterator, Optional, Sequence, Set, Tuple
+from typing import Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ...errors import WorldError
 from ...geometry import FARTHEST, Pose3D
@@ -23,11 +23,17 @@ def error(element: Element, message: str) -> WorldError:
     return WorldError(f"{place}: in '{where}': {message}" if where else f"{place}: {message}")
 
 
+class NotSimulatedError(WorldError):
+    """What an element asks for is not simulated, so the element is left out; the message begins with what it is."""
+
+
 @contextmanager
 def about(element: Element) -> Iterator[None]:
     """Raise a WorldError of this block as an error about an element."""
     try:
         yield
+    except NotSimulatedError:
+        raise
     except WorldError as exc:
         raise error(element, str(exc)) from exc
 
@@ -41,7 +47,6 @@ def root_of(root: Element, expected: Sequence[str]) -> Element:
         raise error(root, f"the outermost element is <{root.tag}>, expected <sdf>")
     if root.get("version") not in VERSIONS:
         raise error(root, f"SDF version {root.get('version')!r} is not supported; supported: {', '.join(VERSIONS)}")
-    require_known_children(root, read=expected)
     children = [child for child in root if child.tag in expected]
     if not children:
         raise error(root, f"<sdf> has no <{'> and no <'.join(expected)}>")
@@ -57,17 +62,15 @@ def parse(path: str, lenient: bool = False) -> Element:
         return parse_xml(file.read(), path, WorldError, lenient)
 
 
-def require_known_children(element: Element, read: Iterable[str], skipped: Iterable[str] = ()) -> None:
-    """WorldError for a child that is neither read nor deliberately skipped, so that misspelt tags are reported."""
-    known = {*read, *skipped}
-    for child in element:
-        # SDF allows extensions in other XML namespaces.
-        if child.tag not in known and not child.tag.startswith("{"):
-            name = f" '{child.get('name')}'" if child.get("name") else ""
-            raise error(
-                child,
-                f"<{child.tag}>{name} in <{element.tag}> is not supported; supported: {', '.join(sorted(read))}",
-            )
+def unknown_children(element: Element, known: Iterable[str]) -> List[Element]:
+    """The children with other tags; SDF allows extensions in other XML namespaces, which do not count."""
+    tags = {*known}
+    return [child for child in element if child.tag not in tags and not child.tag.startswith("{")]
+
+
+def title_of(element: Element) -> str:
+    """An element's tag, and its name if it has one, for a message."""
+    return f"<{element.tag}>" + (f" '{element.get('name')}'" if element.get("name") else "")
 
 
 def require_unique_names(elements: Iterable[Element]) -> None:

@@ -1,9 +1,7 @@
 """Models are found where Gazebo looks for them."""
 
 import pytest
-from sdf_files import BOX, mesh_world, only_obstacle, raised_by, sdf_file, world_file
-
-from aro_robocop_goto_as.world.load import load_world
+from sdf_files import BOX, only_obstacle, raised_by, sdf_file, world_file
 
 
 @pytest.mark.parametrize(
@@ -34,41 +32,9 @@ def test_models_of_ros_packages_are_found_by_package_name_and_exported_path(tmp_
         assert only_obstacle(world_file(tmp_path / "far", f"<include><uri>{uri}</uri></include>")).name == "desk/l/c"
 
 
-FUEL = (
-    "https://fuel.gazebosim.org/1.0/OpenRobotics/models/{}",
-    "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/{}/2",
-    "HTTPS://app.gazebosim.org/OpenRobotics/fuel/models/{}/",
-    "fuel://fuel.gazebosim.org/1.0/OpenRobotics/models/{}/tip",
-    "https://fuel.gazebosim.org/1.0/OpenRobotics/models/{}/tip/files/model.sdf",
-)
-
-
-@pytest.mark.parametrize("address", FUEL)
-def test_gazebo_fuels_addresses_of_what_is_built_in_are_accepted(tmp_path, address):
-    names = ("Sun", "Ground Plane", "ground%20plane")
-    includes = (f"<include><name>{i}</name><uri>{address.format(name)}</uri></include>" for i, name in enumerate(names))
-    world = load_world(world_file(tmp_path, "".join(includes)))
-    assert [obstacle.name for obstacle in world.obstacles] == ["1/link/collision", "2/link/collision"]
-    assert world.ignored == ("include 'sun' (line 3)",)
-
-
-@pytest.mark.parametrize("address", FUEL)
-@pytest.mark.parametrize("folder", ["office_desk", "Office Desk"])
-def test_models_on_gazebo_fuel_are_looked_up_under_their_names_before_they_are_refused(tmp_path, address, folder):
-    sdf_file(tmp_path / "models" / folder / "model.sdf", f'<model name="desk">{BOX}</model>')
-    include = f"<include><uri>{address.format('Office Desk')}</uri></include>"
-    assert only_obstacle(world_file(tmp_path / "worlds", include)).name == "desk/l/c"
-
-
 def test_file_of_a_built_in_model_is_the_built_in_model(tmp_path):
     include = "<include><uri>model://ground_plane/model.sdf</uri></include>"
     assert only_obstacle(world_file(tmp_path, include)).name == "ground_plane/link/collision"
-
-
-def test_file_of_a_model_on_gazebo_fuel_is_looked_up_in_the_local_model(tmp_path, chair):
-    (chair / "seat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    uri = FUEL[0].format("Chair/2/files/seat.obj")
-    assert only_obstacle(mesh_world(tmp_path / "far", uri)).geometry.file == str(chair / "seat.obj")
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message 
     "no version": ("<sdf><world name='w'/></sdf>", 1, ["version None"]),
     "no world": ("<sdf version='1.7'/>", 1, ["<world>"]),
     "two worlds": ("<sdf version='1.7'><world name='a'/>\n<world name='b'/></sdf>", 2, ["second <world>"]),
-    "light outside of a world": ("<sdf version='1.7'>\n<light name='stray'/></sdf>", 2, ["<light>", "stray"]),
+    "light outside of a world": ("<sdf version='1.7'>\n<light name='stray'/></sdf>", 1, ["<sdf> has no <world>"]),
     "world without a name": ("<sdf version='1.7'>\n<world/></sdf>", 2, ["<world> has no name"]),
     "empty file": ("", 1, ["XML"]),
     "undeclared entity": ("<sdf version='1.7'>\n<world name='w'>&x;</world></sdf>", 2, ["'x'", "XML"]),
