@@ -25,9 +25,7 @@ from ..ticker import wait_until
 LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models
 PERIOD = 0.1  # [s, wall] between two commands, well below the simulator's command timeout
 CONNECT_PATIENCE = 5.0  # [s, wall]
-# Terminals report presses and their repetition, but no releases.
-FIRST_REPEAT = 0.8  # [s] a held key repeats first after 0.25 s (console) to 0.66 s (X server, `xset q`)
-NEXT_REPEAT = 0.3  # [s] and then 10 to 30 times a second, less evenly over a slow connection
+RELEASE_TIMEOUT = 0.5  # [s] without a repetition of the key: terminals report presses, but no releases
 MOST_READ = 4096  # [byte] so that a read never ends within a key's escape sequence
 # Factors of the linear and angular speed.
 KEYS = {
@@ -43,7 +41,7 @@ HELP = """\
   q  w  e       forward, and turning left or right
   a     d       turn left, turn right            (arrow keys work as well)
      x          backward
-The robot stops when the key is released. Ctrl-C quits.
+The robot stops half a second after the key is released. Ctrl-C quits.
 """
 
 
@@ -70,30 +68,12 @@ def _raw_keys(terminal: int) -> Iterator[None]:
             termios.tcsetattr(terminal, termios.TCSANOW, before)
 
 
-class HeldKey:
-    """The last key that was pressed, for as long as its repetition shows that it is held."""
-
-    def __init__(self) -> None:
-        self._key = ""
-        self._until = 0.0  # [s]
-
-    def press(self, key: str, now: float) -> None:
-        """A key was pressed or has repeated, at a time [s]."""
-        repeats = key == self.at(now)
-        self._key, self._until = key, now + (NEXT_REPEAT if repeats else FIRST_REPEAT)
-
-    def at(self, now: float) -> str:
-        """The key that is held at a time [s]; empty if none is."""
-        return self._key if now < self._until else ""
-
-
 class KeyboardTeleop:
-    """Publishes the held key's velocity, and zero once when it is released, so that goals are not disturbed."""
+    """Publishes a key's velocity while it repeats, then zero once, so that goals are not disturbed."""
 
     def __init__(self, topic: str, linear: float, angular: float) -> None:
         self._publisher = publisher(topic, Twist)
         self._speeds = linear, angular
-        self._keys = HeldKey()
         self._moving = False
         if not wait_until(lambda: self._publisher.get_num_connections() > 0, CONNECT_PATIENCE):
             advice = "is the simulator running? With several robots, --robot NAME says which one"
@@ -101,6 +81,7 @@ class KeyboardTeleop:
 
     def run(self, terminal: int) -> None:
         """Follow the keys until the terminal is closed or the node is shut down."""
+        key, released = "", 0.0
         while not rospy.is_shutdown():
             ready, _, _ = select.select([terminal], [], [], PERIOD)
             if ready:
@@ -109,9 +90,8 @@ class KeyboardTeleop:
                     read = os.read(terminal, MOST_READ)
                 if not read:
                     return
-                for key in keys_of(read.decode(errors="replace")):
-                    self._keys.press(key, time.monotonic())
-            self._send(command(self._keys.at(time.monotonic()), *self._speeds))
+                key, released = keys_of(read.decode(errors="replace"))[-1], time.monotonic() + RELEASE_TIMEOUT
+            self._send(command(key if time.monotonic() < released else "", *self._speeds))
 
     def stop(self) -> None:
         """Publish a zero velocity if the robot was commanded to move."""

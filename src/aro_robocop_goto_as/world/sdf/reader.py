@@ -21,8 +21,8 @@ SPAWN_FRAME = "robot_spawn"
 MAX_DEPTH = 20  # of models within models
 MAX_MODELS = 5000  # as a file that includes another one twice, which includes a third one twice, ...
 
-# Children of SDF's elements that have no effect on a robot among fixed obstacles. A <plugin> may have one, so World.ignored
-# lists it. A child that is neither here nor read is left out, and World.approximated lists it.
+# Children of SDF's elements that have no effect on a robot among fixed obstacles. A <plugin> may have one, so it is in
+# World.ignored. A child that is neither here nor read is left out, and in World.approximated.
 _UNUSED: Mapping[str, str] = {
     "world": "actor atmosphere audio gravity gui joint light magnetic_field physics plugin road scene sensor"
     " spherical_coordinates wind",
