@@ -129,7 +129,7 @@ class World:
     spawn: world_from_footprint of a robot at the start [m, rad]
     has_spawn: whether the file says so; otherwise `spawn` is the origin, where there may be no room for a robot
     ignored: what may have an effect in Gazebo, such as "plugin 'lift' (line 4)"
-    approximated: each element that differs from the file, such as "<gemoetry> in <collision> is left out (line 4)"
+    approximated: each element that differs from the file, such as "'hill/link/c' is left out: <heightmap> (line 4)"
     path: the file, as it was given to load_world
     ground: height [m] in the file of what robots stand on, which is the z = 0 of all poses here
     models: world_from_model of each model [m]; the names of its obstacles begin with the model's name

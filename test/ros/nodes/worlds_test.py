@@ -151,10 +151,10 @@ class Worlds(unittest.TestCase):
         leaning.orientation.w = 0.5
         for name, kind, arguments, words in (
             ("spawn_model", SpawnModel, ("a", "<sdf", "", level), "xml of the request:1: not well-formed XML"),
-            ("spawn_model", SpawnModel, ("a", "<robot/>", "", level), "<link>"),
+            ("spawn_model", SpawnModel, ("a", "<robot/>", "", level), "<robot>, expected <sdf>"),
             ("spawn_model", SpawnModel, ("a", "", "/no/such.sdf", level), "'/no/such.sdf' was not found"),
             ("spawn_model", SpawnModel, ("a", "", "", level), "expected either xml or file"),
-            ("spawn_model", SpawnModel, ("a", CRATE.format("<gaol/>"), "", level), "<gaol> in <model>"),
+            ("spawn_model", SpawnModel, ("a", CRATE.format("<link/>"), "", level), "<link> has no name"),
             ("spawn_model", SpawnModel, ("a", CRATE.format(""), "", leaning), "quaternion of length 1"),
             ("spawn_model", SpawnModel, ("a", "<car/>", "", level), "<car>, expected <sdf>"),
             ("move_model", MoveModel, ("walls", level), "no model 'walls'; there are:"),
