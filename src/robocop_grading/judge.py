@@ -3,9 +3,11 @@
 import enum
 import re
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, List, Mapping, Optional, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Verdict
+from .checks.bridge import about_pending
+from .checks.topic_types import wrong_type
 from .plan import CheckPlan, Plan
 from .record import Record
 from .texts import Texts, sentences, text
@@ -163,11 +165,11 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
         checks += [_told(check, plan.texts) for check in _with_reasons(own, by_name)]
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
-    found += [
-        f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _end_of(part, by_name, plan)
-    ]
-    if any(check.outcome is not Outcome.PASSED for check in checks):
-        found += [f"{part}: {plan.texts.told(it)}" for part, by_name in records.items() for it in _unpublished(by_name)]
+    for part, by_name in records.items():
+        said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits)]
+        if any(check.outcome is not Outcome.PASSED for check in checks):
+            said += [*_unpublished(by_name), *_wrong_types(by_name, checks)]
+        found += [f"{part}: {plan.texts.told(it)}" for it in dict.fromkeys(said)]
     return Grade(name, tuple(checks), tuple(found))
 
 
@@ -204,6 +206,13 @@ def _end_of(part: str, records: Mapping[str, Record], plan: Plan) -> List[str]:
         return []
     verdicts = [CHECKS[name](record, plan.limits) for record in records.values() for name in (FIRST, ALIVE)]
     return [sentences(verdict.cause) for verdict in verdicts if isinstance(verdict, Failed)][:1]
+
+
+def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -> List[str]:
+    """What to say of topics that the node uses with a wrong type, unless it is a check's cause."""
+    said = "".join(check.words for check in checks)
+    wrong = [wrong_type(record, topic) for record in records.values() for topic, *_ in record.other_types]
+    return [it for it in wrong if it not in said]
 
 
 def alike(text: str) -> str:
@@ -263,9 +272,6 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         elif problem:
             verdict = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
         if isinstance(verdict, Failed):
-            retried, again = judged.retried, records.get(judged.retried.scenario) if judged.retried else None
-            if retried and again and name in records and retried.when(verdict, again, plan.limits):
-                verdict = replace(verdict, cause=text(retried.cause))
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
         if verdict is None:
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")

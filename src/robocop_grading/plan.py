@@ -23,7 +23,7 @@ HEADING = 0.7  # [rad] yaw of each site's odom frame in the world, so that confu
 PARTS = ("server", "bridge")
 FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
-BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "no_pending")  # fixed, not in the plan's file
+BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
 SECTIONS = {"limits": dict, "scenarios": list, "checks": dict}
 STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
 MIDDLE = 0  # the seed with which every range stands for its middle
@@ -132,16 +132,13 @@ class Plan:
 
     def examines(self, part: str, scenario: str = "") -> bool:
         """Whether some check examines this part, or this scenario of it."""
-        return any(
-            check.part == part and scenario in ("", *check.scenarios, *(CHECKS[check.name].retried or ())[:1])
-            for check in self.checks
-        )
+        return any(check.part == part and scenario in ("", *check.scenarios) for check in self.checks)
 
     def scenarios_of(self, part: str) -> List[str]:
-        """The scenarios that are run for a part, in their order."""
+        """The scenarios that are run for a part, in their order; no check of ours examines a bridge's last one."""
         if part == "server":
             return [START, *(it.name for it in self.scenarios if self.examines(part, it.name))]
-        examined = [number for number, name in enumerate(BRIDGE_SCENARIOS, 1) if self.examines(part, name)]
+        examined = [n for n, name in enumerate(BRIDGE_SCENARIOS, 1) if self.is_whole or self.examines(part, name)]
         return list(BRIDGE_SCENARIOS[: max(examined, default=0)])
 
     def restricted(self, names: Sequence[str]) -> "Plan":

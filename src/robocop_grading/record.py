@@ -51,10 +51,11 @@ class Goal:
 
 @dataclass(frozen=True)
 class Cancel:
-    """A cancel request; an empty id cancels all goals."""
+    """A cancel request: for a goal, for those up to its stamp [s] unless that is 0, for all if it has neither."""
 
     time: float
     id: str
+    stamp: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -152,6 +153,7 @@ class Record:
     servers: Tuple[str, ...] = ()  # names of the action servers that were found
     types: Tuple[str, ...] = ()  # of these servers, in the same order
     unpublished: Tuple[str, ...] = ()  # topics that the node subscribes to and nobody publishes
+    other_types: Tuple[Tuple[str, str, str], ...] = ()  # the node's topics with a wrong type: name, type, expected one
     problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()

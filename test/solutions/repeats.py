@@ -49,7 +49,7 @@ from robocop_grading.submission import prepare_submission
 PROOF_WRONG = (
     *("degrees", "direction_calculated_once", "moves_first", "done_never_cleared", "unpaced_loop", "slow_loop"),
     *("scan_read_once", "exits_after_goal", "exception_in_scan", "feedback_of_the_last_iteration"),
-    *("bridge_never_cancels", "bridge_pending_is_stopped"),
+    *("bridge_never_cancels", "bridge_states_shifted"),
 )
 PROOF = [*(path.name[: -len(".py.in")] for path in sorted((HERE / "right").glob("*.py.in"))), *PROOF_WRONG]
 BY_NAME = {wrong.name: wrong for wrong in WRONG}

@@ -11,7 +11,7 @@ import time
 import pytest
 from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded
 from processes import busy_processes, processes_mentioning
-from wrong_solutions import WRONG
+from wrong_solutions import ADVISED, WRONG
 
 from aro_robocop_goto_as.errors import GradingError
 from robocop_grading.cli import INTERRUPTED
@@ -48,6 +48,14 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
     assert wrong.words in check.words
     if wrong.alone:
         assert [mistake.check.name for mistake in grade.mistakes] == [wrong.check]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("advised", ADVISED, ids=lambda advised: advised.name)
+def test_what_works_with_the_handouts_server_gets_full_marks_and_advice(advised, tmp_path):
+    grade = graded(advised.name, advised.text(), tmp_path)
+    assert grade.failed() == []
+    assert any(advised.words in problem for problem in grade.problems), grade.problems
 
 
 @pytest.mark.slow
@@ -206,8 +214,9 @@ def test_links_in_a_circle_are_refused(tmp_path):
 
 def test_wrong_solutions_are_valid_python_with_unique_names_and_checks_from_the_plan():
     checks = {check.name for check in load(PLAN).checks}
-    assert len({wrong.name for wrong in WRONG}) == len(WRONG)
-    for wrong in WRONG:
+    everything = (*WRONG, *ADVISED)
+    assert len({wrong.name for wrong in everything}) == len(everything)
+    for wrong in everything:
         compile(wrong.text(), wrong.name, "exec")
         assert wrong.text() != (HERE / wrong.base).read_text()
         assert wrong.check in checks

@@ -57,6 +57,7 @@ SLEEP = "            rate.sleep()\n"
 RATE = "        rate = rospy.Rate(10)\n"
 REQUESTED = "            if self.server.is_preempt_requested():"
 AHEAD = "valid.min() if len(valid) else float('inf')"
+CANCEL_TOPIC = "        self.cancel_pub = rospy.Publisher('robocop_goto_as/cancel', GoalID, queue_size=1)\n"
 STATE = "GoalStatus.to_string(self.client.get_state())"
 
 # The velocity in force, for solutions that forget half of it when they stop.
@@ -573,25 +574,12 @@ WRONG = (
             "        rospy.Subscriber('/odom', Odometry, lambda msg: self.pub.publish(msg.pose.pose.position.x))\n",
         ),
     ),
-    _bridge(
-        "bridge_pending_is_stopped",
-        "reports_status",
-        "The bridge treats a PENDING goal as finished",
-        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
-        ("        if self.sent:\n", "        if self.timer:\n"),
-        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
-        (
-            "        rospy.loginfo('server",
-            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
-            "            self.timer = None\n            return\n        rospy.loginfo('server",
-        ),
-    ),
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
     _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
     _bridge(
         "bridge_cancels_newer",
         "cancels_older",
-        "Cancel before send_goal(), not after it",
+        "cancel before send_goal(), not after it",
         ("        if self.sent:\n            self.client.cancel_goal()\n", ""),
         (
             "        self.sent = True\n",
@@ -740,7 +728,7 @@ WRONG = (
     _bridge(
         "bridge_always_active",
         "reports_status",
-        "reports ACTIVE while the goal is PENDING",
+        "reports ACTIVE while the goal is SUCCEEDED",
         (STATE, "'ACTIVE'"),
         alone=True,
     ),
@@ -759,13 +747,6 @@ WRONG = (
         alone=True,
     ),
     _bridge(
-        "bridge_pending_is_active",
-        "reports_status",
-        "reports ACTIVE while the goal is PENDING",
-        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
-        alone=True,
-    ),
-    _bridge(
         "bridge_x_and_y_swapped",
         "forwards_goal",
         "x and y are swapped",
@@ -781,5 +762,122 @@ WRONG = (
         "sign of y is wrong",
         ("goal.position = pose.pose.position", "goal.position = pose.pose.position\n        goal.position.y *= -1"),
         alone=True,
+    ),
+    _bridge(
+        "bridge_click_of_another_type",
+        "forwards_goal",
+        "/move_base_simple/goal is used with the wrong type, geometry_msgs/Pose; its type is geometry_msgs/PoseStamped",
+        ("import PoseStamped", "import Pose, PoseStamped"),
+        ("'/move_base_simple/goal', PoseStamped", "'/move_base_simple/goal', Pose"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_of_another_action",
+        "forwards_goal",
+        "The action's type is actionlib/TestAction; the handout's is GoToPositionAction",
+        ("\n\nclass", "\nfrom actionlib.msg import TestAction\n\n\nclass"),
+        ("'robocop_goto_as', GoToPositionAction", "'robocop_goto_as', TestAction"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_cancels_an_unknown_id",
+        "cancels_older",
+        'The cancel request is for a goal with the id "goal_1", but the older goal\'s id is',
+        ("import GoalStatus", "import GoalID, GoalStatus"),
+        ("        self.sent = False\n", f"        self.sent = False\n{CANCEL_TOPIC}"),
+        ("self.client.cancel_goal()", "self.cancel_pub.publish(GoalID(id='goal_1'))"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_cancels_until_now",
+        "cancels_older",
+        "for all goals up to a time, and the newer goal has no later time stamp",
+        ("cancel_goal()", "cancel_goals_at_and_before_time(rospy.Time.now())"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_with_a_new_client_for_each_click",
+        "cancels_older",
+        "cancel_goal() on the client that has sent the older one",
+        (
+            "        if self.sent:\n",
+            "        self.client = actionlib.SimpleActionClient('robocop_goto_as', GoToPositionAction)\n"
+            "        self.client.wait_for_server()\n        if self.sent:\n",
+        ),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_only_cancels",
+        "cancels_older",
+        "The older goal is cancelled, but the newer one is never sent",
+        (
+            "            self.client.cancel_goal()\n",
+            "            self.client.cancel_goal()\n            self.sent = False\n            return\n",
+        ),
+        alone=True,
+    ),
+    _bridge("bridge_reports_nothing", "reports_status", 'as in "server:"', (STATE, "''"), alone=True),
+    _bridge("bridge_reports_none", "reports_status", 'as in "server: None"', (STATE, "None"), alone=True),
+    _bridge(
+        "bridge_reports_a_function",
+        "reports_status",
+        "the parentheses of its call are missing",
+        (STATE, "self.client.get_state"),
+        alone=True,
+    ),
+    _server(
+        "publishes_stamped_commands",
+        "turns_to_goal",
+        "/cmd_vel is used with the wrong type, geometry_msgs/TwistStamped; its type is geometry_msgs/Twist",
+        ("import Twist\n", "import Twist, TwistStamped\n"),
+        ("'/cmd_vel', Twist,", "'/cmd_vel', TwistStamped,"),
+        ("self.cmd_pub.publish(msg)", "self.cmd_pub.publish(TwistStamped(twist=msg))"),
+        alone=True,
+    ),
+    _server(
+        "odometry_of_another_type",
+        "reaches_goal",
+        "/odom is used with the wrong type, geometry_msgs/PoseWithCovarianceStamped; its type is nav_msgs/Odometry",
+        ("'/odom', Odometry", "'/odom', PoseWithCovarianceStamped"),
+        ("import Twist\n", "import PoseWithCovarianceStamped, Twist\n"),
+        (RATE, f"{RATE}        while self.pose is None:\n            rate.sleep()\n"),
+        alone=True,
+    ),
+    _server(
+        "scan_of_another_type",
+        "stops_at_obstacle",
+        "/scan is used with the wrong type, sensor_msgs/PointCloud2; its type is sensor_msgs/LaserScan",
+        ("'/scan', LaserScan", "'/scan', PointCloud2"),
+        ("import LaserScan\n", "import LaserScan, PointCloud2\n"),
+        alone=True,
+    ),
+)
+
+# Solutions that get full marks, and advice with these words.
+ADVISED: Tuple[Wrong, ...] = (
+    _bridge(
+        "bridge_pending_is_stopped",
+        "reports_status",
+        "its reports stop while a goal is PENDING",
+        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
+        ("        if self.sent:\n", "        if self.timer:\n"),
+        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
+        (
+            "        rospy.loginfo('server",
+            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
+            "            self.timer = None\n            return\n        rospy.loginfo('server",
+        ),
+    ),
+    _bridge(
+        "bridge_pending_is_not_cancelled",
+        "cancels_older",
+        "it does not cancel an older goal that is PENDING",
+        ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
+    ),
+    _bridge(
+        "bridge_pending_is_active",
+        "reports_status",
+        "reports ACTIVE while the goal is PENDING",
+        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
     ),
 )

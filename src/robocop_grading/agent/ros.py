@@ -260,7 +260,7 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
 
 
 def topics(ports: Set[int]) -> Dict[str, Any]:
-    """What the node publishes, and what it subscribes to with the ports of its connections to the grader.
+    """What the node publishes, and what it subscribes to, by type, with the ports of its connections to the grader.
 
     Without rospy's locks, which a waiting thread may hold.
     """
@@ -268,11 +268,12 @@ def topics(ports: Set[int]) -> Dict[str, Any]:
     from rospy.topics import get_topic_manager
 
     manager = get_topic_manager()
-    published = [[name, topic.data_class._md5sum] for name, topic in list(manager.pubs.items())]
+    published = [[name, topic.data_class._md5sum, topic.data_class._type] for name, topic in list(manager.pubs.items())]
     subscribed = [
         [
             name,
             topic.data_class._md5sum,
+            topic.data_class._type,
             [_port(link) for link in topic.connections if (link.dest_address or (0, 0))[1] in ports],
         ]
         for name, topic in list(manager.subs.items())

@@ -1,22 +1,24 @@
 """Checks of the bridge: clicks become goals, and the server's status is reported."""
 
 import math
-import re
-from typing import List, NamedTuple, Optional, Set
+from typing import List, Mapping, Optional, Sequence
 
 from ..handout import ACTION, CLICKS, Limits
-from ..record import PENDING, PREEMPTED, STATUS_NAMES, Click, Goal, Record
+from ..record import PREEMPTED, Cancel, Click, Goal, Record
 from ..texts import text
+from .bridge_reports import NO_REPORT, UNTRUE, wrong_reports
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
-from .verdict import After, Failed, NotReached, Retry, Verdict, check
+from .topic_types import wrong_type
+from .verdict import After, Failed, NotReached, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
+MAX_ID = 80  # characters that are shown of a goal's id
 NEEDS = "bridge_alive", "forwards_goal"
-CRASH = After("bridge_alive", kind=MISSING)
+CRASH = After("bridge_alive", when=lambda _record, failure, _earlier: failure.kind in (MISSING, NO_REPORT))
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
@@ -73,6 +75,8 @@ def _missing_connection(record: Record) -> str:
     if not _has_client(record):  # first: a bridge waiting for a misspelt server has no subscriber either
         return _unconnected(record)
     if not record.marks.get("listeners", 1.0):
+        if wrong_type(record, CLICKS):
+            return wrong_type(record, CLICKS)
         similar = closest(CLICKS, record.unpublished)
         return text("other_topic", CLICKS, similar) if similar else text("no_subscriber", CLICKS)
     return text("nothing_sent")
@@ -80,126 +84,76 @@ def _missing_connection(record: Record) -> str:
 
 def _unconnected(record: Record) -> str:
     """Why no action client connected to the server."""
+    other = wrong_type(record, *(f"{ACTION}/{topic}" for topic in ("goal", "status", "result")))
+    if other:
+        return other
     name, others = ACTION[1:], [server.lstrip("/") for server in record.servers]
     if not others or name in others:
         return text("unconnected")
     return text("other_action", closest(name, others) or others[0], name)
 
 
-def _reports(record: Record, until: float = math.inf) -> List[float]:
-    """When each report before this time began [s]."""
-    start = record.marks["watching"]
-    reports: List[float] = []
-    for line in record.lines:
-        if start + 0.2 < line.time < until and (not reports or line.time - reports[-1] > SAME_REPORT):
-            reports.append(line.time)
-    return reports
-
-
-def _reports_without_pending(failure: Failed, retried: Record, limits: Limits) -> bool:
-    """Whether enough is reported for a goal that is never PENDING."""
-    second_click = retried.clicks[-1].time - 1e-6  # which changes the state
-    return failure.kind == MISSING and len(_reports(retried, second_click)) >= limits.status_reports
-
-
-@check("clicks", after=(CRASH,), needs=NEEDS, retried=Retry("no_pending", _reports_without_pending, "reports_stop"))
+@check("clicks", after=(CRASH,), needs=NEEDS)
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
         return NotReached("the bridge did not get this far")
-    count = len(_reports(record))
-    if count >= limits.status_reports:
-        return _untrue(record)
-    if not _has_client(record):  # it may wait for the server before it creates its timer
-        return NotReached(_unconnected(record))
-    cause = text("reported_once" if count else "nothing_reported")
-    wanted = text("{} reports within {:g} s", limits.status_reports, limits.status_span)
-    return Failed(wanted, f"{count}", record.marks["watching"], cause, MISSING)
+    problem = wrong_reports(record, limits)
+    if problem is not None and problem.kind == NO_REPORT and not _has_client(record):
+        return NotReached(_unconnected(record))  # it may wait for the server before it creates its timer
+    return problem
 
 
-STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
-NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
-PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
-SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
-MOSTLY = 0.8
-
-
-class Report(NamedTuple):
-    """A report of a goal's state: when [s], the states that its text names, and the true one."""
-
-    time: float
-    states: Set[int]
-    true: int
-
-
-def _stated(record: Record) -> List[Report]:
-    """The reports that name a state, while a goal is PENDING or ACTIVE, each once."""
-    changes = sorted(record.statuses, key=lambda change: change.time)
-    found: List[Report] = []
-    for line in record.lines:
-        before = [change for change in changes if change.time <= line.time + 1e-6]
-        told = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
-        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(told)}
-        names = names or {int(one or other) for one, other in NUMBER.findall(line.text)}
-        known = names and before and before[-1].status <= 1 and line.time > before[-1].time + SETTLED
-        if known and not (found and line.time - found[-1].time <= SAME_REPORT):
-            found.append(Report(line.time, names, before[-1].status))
-    return found
-
-
-def _untrue(record: Record) -> Optional[Failed]:
-    """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
-    reports = _stated(record)
-    wrong = [report for report in reports if report.true not in report.states]
-    true_states = dict.fromkeys(report.true for report in reports)
-    for true in true_states:
-        some = [report for report in reports if report.true == true]
-        untrue = [report for report in wrong if report.true == true]
-        if len(untrue) > 1 and len(untrue) > MOSTLY * len(some) or len(wrong) == len(reports) > 1:
-            first = untrue[0]
-            names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-            shifts = {state - report.true for report in reports for state in report.states}
-            cause = "shifted_states" if len(true_states) > 1 and len(shifts) == 1 else "untrue_state"
-            return Failed(STATUS_NAMES[true], names, first.time, text(cause, names, STATUS_NAMES[true]))
-    return None
-
-
-def _cancels_without_pending(failure: Failed, retried: Record, _limits: Limits) -> bool:
-    """Whether an older goal that is never PENDING is cancelled."""
-    cancelled = any(cancel.time >= retried.clicks[-1].time - 1e-6 for cancel in retried.cancels)
-    return failure.kind == NOT_CANCELLED and cancelled
-
-
-@check(
-    "clicks",
-    after=(CRASH, After("forwards_goal", alike)),
-    needs=NEEDS,
-    retried=Retry("no_pending", _cancels_without_pending, "no_older_goal_seen"),
-)
+@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
-    if not record.clicks or not any(goal.time < record.clicks[0].time for goal in record.goals):
+    if len(record.clicks) < 2:
+        return NotReached("there was no newer click")
+    before, click = record.clicks[:2]
+    goals = _goals_after(record, click)
+    old = [goal for goal in _goals_after(record, before) if goal not in goals]
+    if not old:
         return NotReached("there was no older goal")
-    click = record.clicks[0]
-    older = next(goal for goal in record.goals if goal.time < click.time)
-    newer = [goal for goal in _goals_after(record, click) if goal.id != older.id]
-    cancelled = [change.id for change in record.statuses if change.status == PREEMPTED]
+    older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
+    cancelled = {change.id for change in record.statuses if change.status == PREEMPTED}
     if not newer:
-        return Failed("the newer goal", "no goal", click.time, text("no_newer_goal"), MISSING)
-    x, y = newer[-1].x, newer[-1].y
-    if not _distance(newer[-1], click.x, click.y) <= POSITION_TOLERANCE:
+        cause = text("cancelled_only" if older.id in cancelled else "no_newer_goal")
+        return Failed("the newer goal", "no goal", click.time, cause, MISSING)
+    if _distance(older, before.x, before.y) <= POSITION_TOLERANCE < _distance(newer[-1], click.x, click.y):
+        x, y = newer[-1].x, newer[-1].y
         same = _distance(older, x, y) <= POSITION_TOLERANCE
         cause = text("older_position") if same else _other_position(click, newer[-1])
         wanted, seen = text("x {:g} y {:g}", click.x, click.y), text("x {:.2f} y {:.2f}", x, y)
         return Failed(wanted, seen, newer[-1].time, cause, POSITION)
     if newer[-1].id in cancelled:
         seen = "one for both" if older.id in cancelled else "one for the newer goal"
-        cause = "Cancel before send_goal(), not after it"
-        return Failed("a cancel request for the older goal only", seen, newer[-1].time, cause)
+        wanted = "a cancel request for the older goal only"
+        return Failed(wanted, seen, newer[-1].time, _newer_cancelled(record, newer[-1]))
     if older.id not in cancelled:
-        wanted = "a cancel request for the older goal"
-        return Failed(wanted, "none", click.time, text("cancel_first"), NOT_CANCELLED)
+        wanted, requests = "a cancel request for the older goal", _requests(record, click)
+        seen = "one for another goal" if requests else "none"
+        return Failed(wanted, seen, click.time, _not_cancelled(requests, older), NOT_CANCELLED)
     return None
+
+
+def _requests(record: Record, click: Click) -> List[Cancel]:
+    return [cancel for cancel in record.cancels if cancel.time >= click.time - 1e-6]
+
+
+def _newer_cancelled(record: Record, newer: Goal) -> str:
+    """Why the newer goal is cancelled."""
+    by_stamp = [cancel for cancel in record.cancels if not cancel.id and cancel.stamp > 0.0]
+    by_id = any(cancel.id == newer.id for cancel in record.cancels)
+    return text("cancelled_by_stamp") if by_stamp and not by_id else text("cancelled_after")
+
+
+def _not_cancelled(requests: Sequence[Cancel], older: Goal) -> str:
+    """Why the older goal is not cancelled."""
+    if not requests:
+        return text("cancel_first")
+    if requests[-1].id:
+        return text("cancel_of_another", requests[-1].id[:MAX_ID], older.id[:MAX_ID])
+    return text("cancel_by_early_stamp", requests[-1].stamp)
 
 
 @check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
@@ -250,3 +204,19 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             wanted = text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y)
             return Failed(wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, cause, POSITION)
     return None
+
+
+def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
+    """What to say of a bridge that works with goals that are accepted at once, and not with PENDING ones."""
+    record, found = records.get("pending"), []
+    if record is None or isinstance(_crash(record, limits), Failed):
+        return []
+    if "click" in records and reports_status(records["click"], limits) is None:
+        verdict = reports_status(record, limits)
+        if isinstance(verdict, Failed) and verdict.kind in (NO_REPORT, UNTRUE):
+            found.append(text("reports_stop") if verdict.kind == NO_REPORT else verdict.cause)
+    if "replace" in records and cancels_older(records["replace"], limits) is None:
+        verdict = cancels_older(record, limits)
+        if isinstance(verdict, Failed) and verdict.kind == NOT_CANCELLED:
+            found.append(text("no_older_goal_seen"))
+    return found

@@ -19,6 +19,7 @@ from ..record import (
 from ..texts import sentences, text
 from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
+from .topic_types import wrong_type
 from .verdict import After, Failed, NotReached, Verdict, check
 
 TWO_STATES = "The goal got two terminal states"
@@ -32,7 +33,8 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     if not results:
         last = record.samples[-1].time if record.samples else goal.time
         problem = record.problem or "the goal got no terminal state and no result"
-        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:])
+        other_type = wrong_type(record, "/odom", "/scan", "/cmd_vel")
+        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:], other_type)
         return Failed(status_name(wanted), NO_RESULT, last, cause, NO_RESULT, goal)
     result = results[0]
     if result.status == wanted:
@@ -46,7 +48,7 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
             return replace(early, expected=status_name(wanted))
     cause = _wrong_state(record, goal, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):  # odometry continued to advance
-        cause = narrow_obstacle(record) or text("collision_unnoticed")
+        cause = wrong_type(record, "/scan") or narrow_obstacle(record) or text("collision_unnoticed")
     state = status_name(result.status)
     seen = state + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)

@@ -9,6 +9,7 @@ from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, 
 from ..texts import text
 from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
+from .topic_types import wrong_type
 from .verdict import After, Failed, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
@@ -127,7 +128,7 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     commands = [command for command in record.commands if goal.time <= command.time <= end]
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
-        cause = text("never_turned", angle, reason)
+        cause = wrong_type(record, "/cmd_vel") or text("never_turned", angle, reason)
         return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
     return None
 

@@ -4,7 +4,7 @@ A check that has tested its contract and found it kept has nothing to say: its v
 """
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Optional, Sequence, Union
 
 from ..handout import Limits
 from ..record import Goal, Record
@@ -54,14 +54,6 @@ class After:
         return self.kind in ("", failure.kind) and self.when(record, failure, earlier)
 
 
-class Retry(NamedTuple):
-    """Another scenario; if `when` holds for the failure and what happened there, the text of this name is the cause."""
-
-    scenario: str
-    when: Callable[[Failed, Record, Limits], bool]
-    cause: str
-
-
 @dataclass(frozen=True)
 class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
@@ -74,7 +66,6 @@ class Check:
     plot: str
     after: Sequence[After] = ()
     needs: Sequence[str] = ()
-    retried: Optional[Retry] = None
 
     def __call__(self, record: Record, limits: Limits) -> Verdict:
         return self.judge(record, limits)

@@ -1,6 +1,5 @@
 """The bridge's scenarios: clicks as RViz publishes them, and an action server controlled by the grader."""
 
-import math
 from functools import partial
 from typing import Any, Callable, Dict
 
@@ -30,6 +29,8 @@ START_TIMEOUT = 20.0  # [s] for the node's first connection
 CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
 STATUS_TICKS = 2  # from one status message to the next, which is actionlib's 5 Hz
+BEFORE, SECOND = (1.2, -0.4), (-0.6, 0.9)  # [m] clicks in odom
+ACCEPTED = "This goal has been accepted by the simple action server"  # the status text of actionlib's SimpleActionServer
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
 STATUS_TYPES = {
@@ -63,18 +64,16 @@ class _Server(actionlib.ActionServer):
 class BridgeRun(Run):
     """One submission's bridge.
 
-    Its goals stay PENDING for a fixed simulated time: how long they do with a real server depends on that server, and
-    a bridge that treats PENDING as the end would pass or fail by chance.
+    Its goals are accepted at once, as by the handout's server. In the last scenario, which gives no points, they stay
+    PENDING: how long they do with a real server depends on that server.
     """
 
     def __init__(self, job: Job, stage: Stage) -> None:
         super().__init__(job, stage)
-        # A timer with a longer period can't report often enough, so one that can always meets a PENDING goal.
-        self.pending_time = self.plan.limits.status_span / max(1.0, self.plan.limits.status_reports)
+        self.accepts = True
         self.cancels = stage.listen(f"{ACTION}/cancel", GoalID, self._on_cancel)
         self.clicks = rospy.Publisher(CLICKS, PoseStamped, queue_size=10)
         self.handles: Dict[str, Any] = {}  # of goals that have not ended, by id
-        self.accepted_from: Dict[str, float] = {}  # likewise of PENDING goals: when they are accepted [s]
         self.server: Any = None
         self.reports: Dict[str, rospy.Subscriber] = {}  # by topic
         self._ticks = 0
@@ -99,30 +98,27 @@ class BridgeRun(Run):
     def _on_sent(self, message: GoToPositionActionGoal) -> None:
         position, name = message.goal.position, message.goal_id.id
         self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
-        self._note_if_cancelled(name)
+        self._note_if_cancelled(message.goal_id)
         self.server.receive_goal(message)
 
-    def _note_if_cancelled(self, name: str) -> None:
+    def _note_if_cancelled(self, goal_id: GoalID) -> None:
         """Cancel requests are handled first of what has arrived."""
-        if any(cancel.id == name for cancel in self.parts["cancels"]):
-            self.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+        stamp = goal_id.stamp.to_sec()
+        if any(cancel.id == goal_id.id or 0.0 < stamp <= cancel.stamp for cancel in self.parts["cancels"]):
+            self.add("statuses", rec.Status(self.stage.now, goal_id.id, rec.PREEMPTED))
 
     def _on_goal(self, handle: Any) -> None:
         name = handle.get_goal_id().id
         self.handles[name] = handle
         self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
-        self.accepted_from[name] = self.stage.now + self.pending_time - 1e-6
-        self._note_if_cancelled(name)
-        self._accept_goals()
+        self._note_if_cancelled(handle.get_goal_id())
+        if self.accepts:
+            self._accept(name)
 
-    def _accept_goals(self) -> None:
-        """Accept the goals that have been PENDING for their time."""
-        for name, handle in self.handles.items():
-            if self.accepted_from.get(name, math.inf) <= self.stage.now:
-                del self.accepted_from[name]
-                handle.set_accepted()
-                self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
-                handle.publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
+    def _accept(self, name: str) -> None:
+        self.handles[name].set_accepted(ACCEPTED)
+        self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
+        self.handles[name].publish_feedback(GoToPositionFeedback(1.0, 0.0, "on the way"))
 
     def _on_cancel(self, message: GoalID) -> None:
         """Preempt the goals that a cancel request is for.
@@ -130,7 +126,7 @@ class BridgeRun(Run):
         A request for all goals spares those of the same tick: a client that cancels all and then sends a goal uses two
         connections, and cannot know which message arrives first.
         """
-        self.add("cancels", rec.Cancel(self.stage.now, message.id))
+        self.add("cancels", rec.Cancel(self.stage.now, message.id, message.stamp.to_sec()))
         if self.server is not None:
             self.server.receive_cancel(message)
         for goal in self.parts["goals"]:
@@ -141,14 +137,12 @@ class BridgeRun(Run):
                 self.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
                 handle.set_canceled(GoToPositionResult(False, "cancelled"))
                 del self.handles[goal.id]
-                self.accepted_from.pop(goal.id, None)
 
     def _finish_goals(self) -> None:
-        """Let all goals succeed, each once it has been accepted."""
-        while self.accepted_from:
-            self.tick()
-        for handle in self.handles.values():
+        """Let all goals succeed."""
+        for name, handle in self.handles.items():
             handle.set_succeeded(GoToPositionResult(True, "there"))
+            self.add("statuses", rec.Status(self.stage.now, name, rec.SUCCEEDED))
         self.handles.clear()
 
     # -- clicks --
@@ -166,8 +160,9 @@ class BridgeRun(Run):
         self.stage.digest()  # what the bridge does at once takes no simulated time
         for _ in range(round(REACTION_TIME / TICK)):
             if len(self.parts["goals"]) > count:
-                return
+                break
             self.tick()
+        self.stage.digest()  # its client has learned the goal's state before time continues
 
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
@@ -180,9 +175,8 @@ class BridgeRun(Run):
                 self.stage.join()
 
     def tick(self, real_time: bool = True) -> None:
-        """One control tick, after which goals may be accepted, and the server tells of its goals if that is due."""
+        """One control tick, after which the server tells of its goals if that is due."""
         super().tick(real_time)
-        self._accept_goals()
         self._ticks += 1
         if self.server is not None and self._ticks % STATUS_TICKS == 0:
             self.server.publish_status()
@@ -202,7 +196,7 @@ class BridgeRun(Run):
         self.finish("no_server")
 
     def _click(self) -> None:
-        """The server is there; a click, then time passes while the goal is active."""
+        """The server is there; a click, then time passes while the goal is active, and when it has succeeded."""
         self.begin("click", 0)
         self._serve()
         self.wait_for(lambda: self.clicks.get_num_connections() > 0 and has_client(self.server), CONNECT_TIMEOUT)
@@ -212,31 +206,33 @@ class BridgeRun(Run):
         self.marks["clicked"] = self.stage.now
         self.marks["listeners"] = float(self.clicks.get_num_connections())
         self.marks["clients"] = float(goal_senders(self.server))
-        self._send_click("odom", 1.2, -0.4)
-        while self.parts["goals"] and self.stage.now < self.parts["goals"][-1].time + self.pending_time:
-            self.tick()
-        self.marks["watching"] = self.stage.now
-        self._watch_reports(self.plan.limits.status_span)
+        self._send_click("odom", *BEFORE)
+        self._watch_reports()
+        self._finish_goals()
+        self._watch_reports()
+        self._stop_watching()
         self.finish("click", **self.names(graph.action_clients()))
 
-    def _watch_reports(self, seconds: float) -> None:
+    def _watch_reports(self) -> None:
         """Let time pass, and record what is published on topics that appear meanwhile."""
-        for tenth in range(int(round(seconds * 10))):
-            if tenth % 10 == 0:
+        self.marks.setdefault("watching", self.stage.now)
+        for tick in range(round(self.plan.limits.status_span / TICK)):
+            if tick % 10 == 0:
                 self._subscribe_to_reports()
             self.tick()
+        self.marks.setdefault("watched", self.stage.now)
+
+    def _stop_watching(self) -> None:
         for subscriber in self.reports.values():
             subscriber.unregister()
         self.reports.clear()
 
     def _replace(self) -> None:
-        """A second click while the first one's goal is active."""
-        first = list(self.parts["goals"])
+        """A click, and a second one while the first one's goal is active."""
         self.begin("replace", 0)
-        for goal in first[-1:]:
-            self.add("goals", goal)
-        self.marks["clicked"] = self.stage.now
-        self._send_click("odom", -0.6, 0.9)
+        self._send_click("odom", *BEFORE)
+        self.settle(2.0)
+        self._send_click("odom", *SECOND)
         self.settle(2.0)
         self.finish("replace")
 
@@ -255,19 +251,18 @@ class BridgeRun(Run):
             self.settle(0.5)
         self.finish("frame")
 
-    def _no_pending(self) -> None:
-        """A click and a second one, whose goals are accepted at once, so that the bridge's timer finds them ACTIVE."""
+    def _pending(self) -> None:
+        """A click and a second one, whose goals are not accepted yet; for advice, without points."""
         self._finish_goals()
-        self.pending_time = 0.0
-        self.begin("no_pending", 0)
+        self.accepts = False
+        self.begin("pending", 0)
         self.settle(1.0)
-        self._send_click("odom", 1.2, -0.4)
-        self.marks["watching"] = self.stage.now
-        self._watch_reports(self.plan.limits.status_span)
-        self._send_click("odom", -0.6, 0.9)
-        self.settle(1.0)
-        self._finish_goals()
-        self.finish("no_pending")
+        self._send_click("odom", *BEFORE)
+        self._watch_reports()
+        self._stop_watching()
+        self._send_click("odom", *SECOND)
+        self.settle(2.0)
+        self.finish("pending")
 
 
 def _text(text: str, message: Any) -> str:

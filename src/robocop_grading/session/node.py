@@ -24,6 +24,7 @@ from . import ros_internals
 from .output import Output
 
 MAX_ANSWER = 1_000_000  # bytes
+MAX_NAME = 200  # characters that are kept of a type's name
 NEVER = 1 << 62  # [ns]
 SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
 SOON = 5e-4  # [s, wall] between two looks at whether connections have been made
@@ -229,7 +230,7 @@ class Node:
         return connects and not self._has_ended()
 
     def _hears(self) -> bool:
-        return all(ros_internals.hears(self._topics["node"], *topic) for topic in self._topics["published"])
+        return all(ros_internals.hears(self._topics["node"], *topic[:2]) for topic in self._topics["published"])
 
     def _reaches(self) -> bool:
         return all(ros_internals.reaches(self._topics["node"], *topic[:2]) for topic in self._topics["subscribed"])
@@ -237,5 +238,11 @@ class Node:
     def _is_connected(self) -> bool:
         return self._hears() and all(
             ros_internals.is_connected(topic, checksum, set(ports) - {0})
-            for topic, checksum, ports in self._topics["subscribed"]
+            for topic, checksum, _type, ports in self._topics["subscribed"]
         )
+
+    def other_types(self) -> List[Tuple[str, str, str]]:
+        """The topics that it shares with this process with another type: name, its type, and this process's."""
+        topics = [topic[:3] for topic in (*self._topics["published"], *self._topics["subscribed"])]
+        found = [(name, kind, ros_internals.other_type(name, checksum)) for name, checksum, kind in topics]
+        return [(str(name), str(kind)[:MAX_NAME], other) for name, kind, other in found if other]

@@ -113,6 +113,12 @@ def hears(node: str, topic: str, checksum: str) -> bool:
     return node in {getattr(connection, "callerid_pub", None) for connection in subscription.connections}
 
 
+def other_type(topic: str, checksum: str) -> str:
+    """The type with which this process publishes or subscribes to a topic, if it is not the one of this checksum."""
+    kinds = [it[topic].data_class for it in (_topics().pubs, _topics().subs) if topic in it]
+    return str(kinds[0]._type) if kinds and "*" not in (checksum, kinds[0]._md5sum) and checksum != kinds[0]._md5sum else ""
+
+
 def reaches(node: str, topic: str, checksum: str) -> bool:
     """Whether what this process publishes on a topic goes to a node, or it does not publish that, or not this type."""
     connections = _subscribers(topic, checksum)

@@ -75,7 +75,9 @@ class Run:
         if not rosgraph.is_master_online():
             raise GraderLostError("the ROS master was ended while the submission ran")
         parts: Dict[str, Any] = {part: tuple(entries) for part, entries in self.parts.items()}
-        record = Record(name, self.job.part, marks=self.marks, **parts, **more)
+        node = self.stage.node
+        others = tuple(node.other_types()) if node is not None else ()
+        record = Record(name, self.job.part, marks=self.marks, other_types=others, **parts, **more)
         rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 

@@ -10,7 +10,6 @@ from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
 from robocop_grading import record as rec
 from robocop_grading.checks import CHECKS, Failed, NotReached
 from robocop_grading.record import Record
-from robocop_grading.texts import text
 
 
 @pytest.mark.parametrize(
@@ -215,80 +214,3 @@ def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: b
     assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause and words in verdict.cause
     never = CHECKS["cancel"](cancelled, LIMITS)
     assert isinstance(never, Failed) and "is not noticed" in never.cause
-
-
-def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, ...] = ()) -> Record:
-    """A bridge's scenario: a click becomes a goal at (x, y), PENDING until 10 s, then ACTIVE."""
-    statuses = rec.Status(0.0, "g", rec.PENDING), rec.Status(10.0, "g", rec.ACTIVE)
-    return Record(
-        "click",
-        "bridge",
-        servers=servers,
-        goals=(rec.Goal("g", x, y, 0.0, ""),),
-        clicks=(rec.Click(0.0, "odom", 1.2, -0.4, 1.2, -0.4),),
-        statuses=statuses,
-        lines=tuple(rec.Line(time, text) for time, text in lines),
-        marks={"watching": 10.0},
-    )
-
-
-@pytest.mark.parametrize(
-    "pending, active, words",
-    [
-        ("[INFO] state: PENDING", "[INFO] state: ACTIVE", ""),
-        ("state 0", "state 1", ""),
-        ("published on /status: 0", "published on /status: 1", ""),
-        ("the goal is active: PENDING", "the goal is active: ACTIVE", ""),
-        ("all is well", "all is well", ""),
-        ("report 3", "report 4", ""),
-        ("ACTIVE", "ACTIVE", "reports ACTIVE while the goal is PENDING"),
-        ("active", "active", "reports ACTIVE while the goal is PENDING"),
-        ("PENDING", "PENDING", "reports PENDING while the goal is ACTIVE"),
-        ("ACTIVE", "PREEMPTED", "shifted: ACTIVE is reported for PENDING"),
-        ("published on /status: 1", "published on /status: 2", "shifted"),
-    ],
-)
-def test_reported_states_are_compared_with_the_true_ones(pending: str, active: str, words: str) -> None:
-    record = _clicked(1.2, -0.4, *((float(t), pending if t < 10 else active) for t in range(2, 30, 4)))
-    verdict = CHECKS["reports_status"](record, LIMITS)
-    assert verdict is None if not words else isinstance(verdict, Failed) and words in verdict.cause
-
-
-@pytest.mark.parametrize(
-    "times, words",
-    [
-        ((11.0, 30.0, 30.5), "only report changes"),  # the second click, at 30 s, changes the state
-        ((11.0, 13.0), "treats a PENDING goal as finished"),
-    ],
-)
-def test_reports_of_a_goal_that_is_never_pending_tell_why_others_stop(times: Tuple[float, ...], words: str) -> None:
-    verdict = CHECKS["reports_status"](_clicked(1.2, -0.4, (11.0, "state 1")), LIMITS)
-    assert isinstance(verdict, Failed)
-    watched = _clicked(1.2, -0.4, *((time, "state") for time in times))
-    second = rec.Click(30.0, "odom", -0.6, 0.9, -0.6, 0.9)
-    retried = CHECKS["reports_status"].retried
-    assert retried is not None
-    explained = retried.when(verdict, replace(watched, clicks=(*watched.clicks, second)), LIMITS)
-    assert words in (text(retried.cause) if explained else verdict.cause)
-
-
-@pytest.mark.parametrize(
-    "x, y, words",
-    [
-        (-0.4, 1.2, "x and y are swapped"),
-        (1.2, 0.4, "sign of y"),
-        (0.0, 0.0, "never set"),
-        (1.2, 0.0, "y is not set"),
-        (5.0, 5.0, "does not have the message's position"),
-    ],
-)
-def test_cause_of_a_goal_elsewhere_than_the_click_is_named(x: float, y: float, words: str) -> None:
-    verdict = CHECKS["forwards_goal"](_clicked(x, y), LIMITS)
-    assert isinstance(verdict, Failed) and words in verdict.cause
-
-
-def test_misspelt_name_of_an_action_client_is_quoted() -> None:
-    record = replace(_clicked(0.0, 0.0, servers=("/robovop_goto_as", "/other")), goals=())
-    verdict = CHECKS["forwards_goal"](replace(record, marks={"clients": 0.0}), LIMITS)
-    assert isinstance(verdict, Failed)
-    assert verdict.cause == "The action client looks for robovop_goto_as; the handout says robocop_goto_as"

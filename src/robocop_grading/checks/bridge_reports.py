@@ -1,0 +1,117 @@
+"""What a bridge reports of its goal's state: how often, whether it says anything, and whether that is true."""
+
+import re
+from typing import List, NamedTuple, Optional, Set
+
+from ..handout import Limits
+from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, SUCCEEDED, Line, Record
+from ..texts import text
+from .verdict import Failed
+
+NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
+SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
+STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
+NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
+PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
+# How a recorded line begins: as rospy writes it to a terminal, as recorded from /rosout, or a published report.
+BEGIN = re.compile(r"^(?:\x1b\[[\d;]*m)*(?:\[ *[A-Z]+\] ?(?:\[[\d., ]+\]:? ?)?|published on \S+: )?")
+UNCALLED = re.compile(r"<(?:bound method|function) [^>]*>*")
+# A label without a value, or with an empty one.
+NOTHING = re.compile(r"(?:[^:=,;]*[:=]\s*)?(?:None|\'\'|\"\")?\W*|[^:=,;]*\bNone\W*")
+SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
+MOSTLY = 0.8
+DONE = 7  # the number of actionlib's CommState for a goal that has ended, in which ACTIVE is 2
+CLIENT_ACTIVE = 2
+
+
+def _content(line: Line) -> str:
+    return BEGIN.sub("", line.text.strip(), count=1)
+
+
+def _says_nothing(line: Line) -> bool:
+    content = _content(line)
+    return bool(UNCALLED.search(content) or NOTHING.fullmatch(content))
+
+
+def _began(lines: List[Line]) -> List[float]:
+    """When each report began [s]."""
+    reports: List[float] = []
+    for line in lines:
+        if not reports or line.time - reports[-1] > SAME_REPORT:
+            reports.append(line.time)
+    return reports
+
+
+def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
+    """Too few reports while a goal is active, or untrue ones."""
+    start = record.marks["watching"]
+    lines = [line for line in record.lines if start + 0.2 < line.time < record.marks.get("watched", float("inf"))]
+    count = len(_began([line for line in lines if not _says_nothing(line)]))
+    if count >= limits.status_reports:
+        return _untrue(record)
+    wanted = text("{} reports within {:g} s", limits.status_reports, limits.status_span)
+    if len(_began(lines)) >= limits.status_reports:
+        empty = next(line for line in lines if _says_nothing(line))
+        uncalled = UNCALLED.search(_content(empty))
+        cause = text("uncalled_report") if uncalled else text("empty_report", _content(empty))
+        return Failed(wanted, f"{count}", empty.time, cause, EMPTY)
+    cause = text("reported_once" if count else "nothing_reported")
+    return Failed(wanted, f"{count}", start, cause, NO_REPORT)
+
+
+class Report(NamedTuple):
+    """A report of a goal's state: when [s], the states that it names, whether by numbers, and the true one."""
+
+    time: float
+    states: Set[int]
+    by_number: bool
+    true: int
+
+    @property
+    def is_true(self) -> bool:
+        """Whether it names the true state. Of a goal that has succeeded, only what contradicts that is untrue.
+
+        Numbers may then be those of another enumeration than actionlib's.
+        """
+        if self.true != SUCCEEDED:
+            return self.true in self.states
+        return self.states != {ACTIVE} if self.by_number else bool(self.states & {SUCCEEDED, PENDING, LOST})
+
+
+def _stated(record: Record) -> List[Report]:
+    """The reports that name a state, while the newest goal is PENDING, ACTIVE or SUCCEEDED, each once."""
+    changes = sorted(record.statuses, key=lambda change: change.time)
+    found: List[Report] = []
+    for line in record.lines:
+        before = [change for change in changes if change.time <= line.time + 1e-6]
+        told = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
+        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(told)}
+        numbers = {int(one or other) for one, other in NUMBER.findall(line.text)}
+        judged = before and before[-1].status in (PENDING, ACTIVE, SUCCEEDED) and line.time > before[-1].time + SETTLED
+        if (names or numbers) and judged and not (found and line.time - found[-1].time <= SAME_REPORT):
+            found.append(Report(line.time, names or numbers, not names, before[-1].status))
+    return found
+
+
+def _is_client_state(reports: List[Report]) -> bool:
+    """Whether the numbers are those of actionlib's CommState."""
+    ended = [report.states for report in reports if report.true == SUCCEEDED and report.by_number]
+    active = [report.states for report in reports if report.true == ACTIVE and report.by_number]
+    return bool(ended) and all(DONE in it for it in ended) and all(CLIENT_ACTIVE in it for it in active)
+
+
+def _untrue(record: Record) -> Optional[Failed]:
+    """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
+    reports = _stated(record)
+    wrong = [] if _is_client_state(reports) else [report for report in reports if not report.is_true]
+    true_states = dict.fromkeys(report.true for report in reports)
+    for true in true_states:
+        some = [report for report in reports if report.true == true]
+        untrue = [report for report in wrong if report.true == true]
+        if len(untrue) > 1 and len(untrue) > MOSTLY * len(some) or len(wrong) == len(reports) > 1:
+            first = untrue[0]
+            names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
+            shifts = {state - report.true for report in reports for state in report.states}
+            cause = "shifted_states" if len(true_states) > 1 and len(shifts) == 1 else "untrue_state"
+            return Failed(STATUS_NAMES[true], names, first.time, text(cause, names, STATUS_NAMES[true]), UNTRUE)
+    return None

@@ -1,0 +1,160 @@
+"""The bridge's checks on constructed records."""
+
+from dataclasses import replace
+from typing import Tuple
+
+import pytest
+from grading_records import LIMITS
+
+from robocop_grading import record as rec
+from robocop_grading.checks import CHECKS, Failed
+from robocop_grading.checks.bridge import about_pending
+from robocop_grading.record import Record
+
+BEFORE, NEWER = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4), rec.Click(5.0, "odom", -0.6, 0.9, -0.6, 0.9)
+
+
+def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, ...] = ()) -> Record:
+    """A click becomes a goal at (x, y), which is ACTIVE at once, and SUCCEEDED after 20 s."""
+    return Record(
+        "click",
+        "bridge",
+        servers=servers,
+        goals=(rec.Goal("g", x, y, 0.0, ""),),
+        clicks=(rec.Click(0.0, "odom", 1.2, -0.4, 1.2, -0.4),),
+        statuses=tuple(rec.Status(time, "g", state) for time, state in ((0, 0), (0, rec.ACTIVE), (20, rec.SUCCEEDED))),
+        lines=tuple(rec.Line(time, text) for time, text in lines),
+        marks={"watching": 0.0, "watched": 20.0},
+    )
+
+
+def _reported(active: str, succeeded: str) -> Record:
+    return _clicked(1.2, -0.4, *((float(t), active if t < 20 else succeeded) for t in range(2, 40, 4)))
+
+
+@pytest.mark.parametrize(
+    "active, succeeded",
+    [
+        ("[INFO] state: ACTIVE", "[INFO] state: SUCCEEDED"),
+        ("state 1", "state 3"),
+        ("the goal is active: ACTIVE", "the goal is done: SUCCEEDED"),
+        ("published on /status: 1", "published on /status: 0"),  # numbers of its own
+        ("state 2", "state 7"),  # of actionlib's CommState
+        ("ACTIVE", "DONE"),
+        ("state: ACTIVE", "state: LOST"),  # get_state() after stop_tracking_goal()
+        ("all is well", "all is well"),
+        ("report 3", "report 4"),
+        ("connected: True, result: None", "connected: True, result: there"),
+        ("[INFO] [1668.1, 2.3]: no errors", "no errors"),
+    ],
+)
+def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str) -> None:
+    assert CHECKS["reports_status"](_reported(active, succeeded), LIMITS) is None
+
+
+@pytest.mark.parametrize(
+    "active, succeeded, words",
+    [
+        ("ACTIVE", "ACTIVE", "reports ACTIVE while the goal is SUCCEEDED"),
+        ("published on /status: 1", "published on /status: 1", "reports ACTIVE while the goal is SUCCEEDED"),
+        ("PENDING", "PENDING", "reports PENDING while the goal is ACTIVE"),
+        ("active", "aborted", "reports ABORTED while the goal is SUCCEEDED"),
+        ("PREEMPTED", "ABORTED", "shifted: PREEMPTED is reported for ACTIVE"),
+        ("state 2", "state 4", "shifted"),
+        ("", "", 'say nothing about the state, as in ""'),
+        ("[INFO] [1668.1, 2.3]: server:", "[INFO] server: done", 'as in "server:"'),
+        ("\x1b[32m[INFO] status = None.", "SUCCEEDED", 'as in "status = None."'),
+        ("published on /status: None", "published on /status: SUCCEEDED", 'as in "None"'),
+        ("state None", "state None", 'as in "state None"'),
+        ("server: <bound method A.get_state of <a.A object at 0x7f>>", "x", "parentheses of its call are missing"),
+    ],
+)
+def test_reports_that_are_empty_or_untrue_are_named(active: str, succeeded: str, words: str) -> None:
+    verdict = CHECKS["reports_status"](_reported(active, succeeded), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize("times, words", [((), "Nothing is logged"), ((4.0, 22.0, 30.0), "only report changes")])
+def test_too_few_reports_while_the_goal_is_active_fail(times: Tuple[float, ...], words: str) -> None:
+    verdict = CHECKS["reports_status"](_clicked(1.2, -0.4, *((time, "state") for time in times)), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize(
+    "x, y, words",
+    [
+        (-0.4, 1.2, "x and y are swapped"),
+        (1.2, 0.4, "sign of y"),
+        (0.0, 0.0, "never set"),
+        (1.2, 0.0, "y is not set"),
+        (5.0, 5.0, "does not have the message's position"),
+    ],
+)
+def test_cause_of_a_goal_elsewhere_than_the_click_is_named(x: float, y: float, words: str) -> None:
+    verdict = CHECKS["forwards_goal"](_clicked(x, y), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_misspelt_name_of_an_action_client_is_quoted() -> None:
+    record = replace(_clicked(0.0, 0.0, servers=("/robovop_goto_as", "/other")), goals=())
+    verdict = CHECKS["forwards_goal"](replace(record, marks={"clients": 0.0}), LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == "The action client looks for robovop_goto_as; the handout says robocop_goto_as"
+
+
+@pytest.mark.parametrize(
+    "mark, topic, found, expected, words",
+    [
+        ("listeners", "/move_base_simple/goal", "a/Pose", "a/PoseStamped", "wrong type, a/Pose; its type is a/PoseStamped"),
+        ("listeners", "/move_base_simple/goal", "a/PoseStamped", "a/PoseStamped", "but with other fields"),
+        ("clients", "/robocop_goto_as/goal", "a/TestActionGoal", "x", "The action's type is a/TestAction; the handout's"),
+    ],
+)
+def test_wrong_type_of_a_topic_is_named(mark: str, topic: str, found: str, expected: str, words: str) -> None:
+    record = replace(_clicked(0.0, 0.0), goals=(), marks={mark: 0.0}, other_types=((topic, found, expected),))
+    verdict = CHECKS["forwards_goal"](record, LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def _replaced(*cancels: rec.Cancel, preempted: str = "older", older_x: float = 1.2) -> Record:
+    """A click and a newer one become goals; the one of the id `preempted` is cancelled."""
+    goals = rec.Goal("older", older_x, -0.4, 1.0, ""), rec.Goal("newer", -0.6, 0.9, 5.0, "")
+    statuses = (rec.Status(5.0, preempted, rec.PREEMPTED),)
+    return Record("replace", "bridge", clicks=(BEFORE, NEWER), goals=goals, cancels=cancels, statuses=statuses)
+
+
+@pytest.mark.parametrize(
+    "record, words",
+    [
+        (_replaced(preempted=""), "No cancel request was sent"),
+        (_replaced(rec.Cancel(5.0, "goal_1"), preempted=""), 'id "goal_1", but the older goal\'s id is "older"'),
+        (_replaced(rec.Cancel(5.0, "", 0.5), preempted=""), "for goals sent up to 0.5 s"),
+        (_replaced(rec.Cancel(5.0, "", 5.0), preempted="newer"), "no later time stamp"),
+        (_replaced(rec.Cancel(5.0, "newer"), preempted="newer"), "cancel before send_goal(), not after it"),
+        (replace(_replaced(), goals=_replaced().goals[:1]), "the newer one is never sent"),
+        (replace(_replaced(preempted=""), goals=_replaced().goals[:1]), "does the callback wait for the older goal"),
+        (replace(_replaced(), clicks=(BEFORE, replace(NEWER, y=-0.9))), "The sign of y is wrong"),
+    ],
+)
+def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record: Record, words: str) -> None:
+    verdict = CHECKS["cancels_older"](record, LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_position_that_is_wrong_in_both_goals_does_not_count_twice() -> None:
+    mirrored = replace(_replaced(older_x=-1.2), clicks=(BEFORE, replace(NEWER, x=0.6)))
+    assert CHECKS["cancels_older"](_replaced(), LIMITS) is None
+    assert CHECKS["cancels_older"](mirrored, LIMITS) is None
+
+
+def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
+    click = _reported("state: ACTIVE", "state: SUCCEEDED")
+    records = {"click": click, "replace": _replaced(rec.Cancel(5.0, "older"))}
+    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 4.9})
+    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(3.0, "x")))
+    stops, sees_none = about_pending({**records, "pending": pending}, LIMITS)
+    assert stops.startswith("its reports stop while a goal is PENDING")
+    assert sees_none.startswith("it does not cancel an older goal that is PENDING")
+    assert about_pending({**records, "pending": right}, LIMITS) == []
+    failed = {"click": _reported("PENDING", ""), "replace": _replaced(preempted=""), "pending": pending}
+    assert about_pending(failed, LIMITS) == []  # it loses points for what it does with all goals
