@@ -14,5 +14,7 @@ def wrong_type(record: Record, *topics: str) -> str:
             action = re.sub("(Goal|Result|Feedback)$", "", found)
             if topic.startswith(f"{ACTION}/") and action != found and action != ACTION_TYPE:
                 return text("other_type", action)
-            return text("wrong_fields", topic, found) if found == expected else text("wrong_type", topic, found, expected)
+            return (
+                text("wrong_fields", topic, found) if found == expected else text("wrong_type", topic, found, expected)
+            )
     return ""

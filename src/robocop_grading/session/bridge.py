@@ -30,7 +30,9 @@ CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
 STATUS_TICKS = 2  # from one status message to the next, which is actionlib's 5 Hz
 BEFORE, SECOND = (1.2, -0.4), (-0.6, 0.9)  # [m] clicks in odom
-ACCEPTED = "This goal has been accepted by the simple action server"  # the status text of actionlib's SimpleActionServer
+ACCEPTED = (
+    "This goal has been accepted by the simple action server"  # the status text of actionlib's SimpleActionServer
+)
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
 STATUS_TYPES = {

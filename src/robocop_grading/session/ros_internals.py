@@ -116,7 +116,8 @@ def hears(node: str, topic: str, checksum: str) -> bool:
 def other_type(topic: str, checksum: str) -> str:
     """The type with which this process publishes or subscribes to a topic, if it is not the one of this checksum."""
     kinds = [it[topic].data_class for it in (_topics().pubs, _topics().subs) if topic in it]
-    return str(kinds[0]._type) if kinds and "*" not in (checksum, kinds[0]._md5sum) and checksum != kinds[0]._md5sum else ""
+    others = [kind._type for kind in kinds if "*" not in (checksum, kind._md5sum) and checksum != kind._md5sum]
+    return str(others[0]) if others else ""
 
 
 def reaches(node: str, topic: str, checksum: str) -> bool:

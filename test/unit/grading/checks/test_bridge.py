@@ -105,9 +105,9 @@ def test_misspelt_name_of_an_action_client_is_quoted() -> None:
 @pytest.mark.parametrize(
     "mark, topic, found, expected, words",
     [
-        ("listeners", "/move_base_simple/goal", "a/Pose", "a/PoseStamped", "wrong type, a/Pose; its type is a/PoseStamped"),
+        ("listeners", "/move_base_simple/goal", "a/Pose", "a/PoseStamped", "wrong type, a/Pose; its type is a/PoseS"),
         ("listeners", "/move_base_simple/goal", "a/PoseStamped", "a/PoseStamped", "but with other fields"),
-        ("clients", "/robocop_goto_as/goal", "a/TestActionGoal", "x", "The action's type is a/TestAction; the handout's"),
+        ("clients", "/robocop_goto_as/goal", "a/TestActionGoal", "x", "The action's type is a/TestAction; the"),
     ],
 )
 def test_wrong_type_of_a_topic_is_named(mark: str, topic: str, found: str, expected: str, words: str) -> None:
