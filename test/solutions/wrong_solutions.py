@@ -811,8 +811,9 @@ WRONG = (
         "cancels_older",
         "The older goal is cancelled, but the newer one is never sent",
         (
-            "            self.client.cancel_goal()\n",
-            "            self.client.cancel_goal()\n            self.sent = False\n            return\n",
+            "        if self.sent:\n            self.client.cancel_goal()\n",
+            "        if self.client.get_state() == GoalStatus.ACTIVE:\n            self.client.cancel_goal()\n"
+            "            return\n",
         ),
         alone=True,
     ),

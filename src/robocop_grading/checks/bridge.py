@@ -113,7 +113,10 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     goals = _goals_after(record, click)
     old = [goal for goal in _goals_after(record, before) if goal not in goals]
     if not old:
-        return NotReached("there was no older goal")
+        if not goals:
+            return NotReached("there was no older goal")
+        wanted = text("a goal at {}", text("x {:g} y {:g}", before.x, before.y))
+        return Failed(wanted, "no goal", before.time, "The click was not forwarded", MISSING)
     older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
     cancelled = {change.id for change in record.statuses if change.status == PREEMPTED}
     if not newer:

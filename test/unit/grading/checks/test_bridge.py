@@ -133,6 +133,7 @@ def _replaced(*cancels: rec.Cancel, preempted: str = "older", older_x: float = 1
         (_replaced(rec.Cancel(5.0, "newer"), preempted="newer"), "cancel before send_goal(), not after it"),
         (replace(_replaced(), goals=_replaced().goals[:1]), "the newer one is never sent"),
         (replace(_replaced(preempted=""), goals=_replaced().goals[:1]), "does the callback wait for the older goal"),
+        (replace(_replaced(), goals=_replaced().goals[1:]), "The click was not forwarded"),
         (replace(_replaced(), clicks=(BEFORE, replace(NEWER, y=-0.9))), "The sign of y is wrong"),
     ],
 )
