@@ -27,7 +27,7 @@ NAMED = {name for name, told in LISTED.items() if told}  # long texts
 SHORT = {"none", "contact", "large", "small", "left", "right", "backward"}
 NOT_TOLD = {"the node did not come up", "another position", "too early", "late success", "no answer", "a long turn"}
 NOT_TOLD |= {"of the position", "too late", "an exception", "not cancelled", "not reset", "moves first"}
-NOT_TOLD |= {"no report", "empty report", "untrue report"}
+NOT_TOLD |= {"no report", "empty report", "untrue report", "nothing was judged"}
 
 
 def told_in(path):
