@@ -159,5 +159,5 @@ def main() -> None:
         print("\r\033[K", end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
     print(f"scenarios: seed {plan.seed}")
-    print(f"report: {folder / 'report.html'}")
+    print(printable(f"report: {folder / 'report.html'}"))
     sys.exit(0 if grade.all_right else 1)

@@ -17,6 +17,7 @@ from .hosting.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
     NODE_NAMES,
+    NOT_EXECUTABLE,
     PARTS,
     Choice,
     choose,
@@ -105,7 +106,11 @@ def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -
         [top, _lab_folder(state)],  # `top` may contain helper modules
         lab_environment(share, state),
         scripts,
-        notes=[note for script in scripts for note in _advice(script)],
+        notes=[
+            note
+            for script in scripts
+            for note in (*_obstacles(script.part, choices[script.part], is_loose=True), *_advice(script))
+        ],
     )
 
 
@@ -167,10 +172,15 @@ def _advice(script: Script) -> List[str]:
     return [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
 
 
-def _obstacles(part: str, choice: Choice) -> Iterator[str]:
-    """Why roslaunch could not start a script that is started here by its interpreter."""
+def _obstacles(part: str, choice: Choice, is_loose: bool = False) -> Iterator[str]:
+    """Why roslaunch could not start a script that is started here by its interpreter.
+
+    `is_loose`: it is not in a package, and what copied it may have dropped its execute bit.
+    """
     name = choice.path.name
     for problem, remedy in obstacles(choice.path):
+        if is_loose and problem == NOT_EXECUTABLE:
+            continue
         result = "so roslaunch can't start it in the lab"
         if choice.is_installed and problem != BYTE_ORDER_MARK:
             result = "so the lab starts it only by way of catkin_install_python"

@@ -124,7 +124,8 @@ def main() -> None:
         for_package, for_simulator = sort_arguments(
             package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch")
         )
-        print(f"robocop sim: building {package.name} from {package.path}", flush=True)
+        shown = os.fsencode(package.path).decode(errors="replace")
+        print(f"robocop sim: building {package.name} from {shown}", flush=True)
         with scratch_folder():
             folder, environment, found = host(package, share, state, for_package)
         scripts = {NODE_NAMES[part]: choice.path.name for part, choice in found.choices.items()}

@@ -4,7 +4,7 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.ros.names import PACKAGE
@@ -145,7 +145,6 @@ def started(
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}
     notes: List[str] = []
-    choices = choose(copy, nodes, relays) if package.launch_file is None else {}
     for path in package.launch_files:
         is_main = path == package.launch_file
         try:
@@ -154,21 +153,26 @@ def started(
             if is_main:
                 raise
             continue  # it may need packages that only another machine has
-        choices = choose(copy, [*nodes, *file.nodes], relays)
+        choices = choose(copy, [*nodes, *file.nodes], relays, expects_one=False)
         if is_main or any(choice.node in file.nodes for choice in choices.values()):
             nodes += file.nodes
             parameters = {**file.parameters, **parameters}
-            notes += [*file.warnings, *_not_done(package, file.nodes, choices)]
+            names = {it.name for it in (*files_below(copy), *relays)}
+            notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
         if all(part in choices and choices[part].node is not None for part in PARTS.values()):
             break
-    return Started(choices, parameters, notes)
+    return Started(choose(copy, nodes, relays), parameters, notes)
 
 
-def _not_done(package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice]) -> Iterator[str]:
-    """What launch files of the package ask for beside the start of its server and its bridge."""
+def _not_done(
+    package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice], names: Collection[str]
+) -> Iterator[str]:
+    """What launch files of the package, which has files of these `names`, ask for beside its server and its bridge."""
     graded = [choice.node for choice in choices.values()]
     for node in (node for node in nodes if node.is_own):
-        if node not in graded and node.package not in SHOWN_BY:
+        if node.package == package.name and node.type not in names:
+            yield f"{node.place}: roslaunch finds no {node.type} in this package"
+        elif node not in graded and node.package not in SHOWN_BY:
             yield (
                 f"{node.place}: node {node.name} ({node.package} {node.type}) is not started: server and bridge are "
                 "graded one at a time, each alone"

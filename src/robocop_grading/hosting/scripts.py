@@ -29,6 +29,7 @@ ASIDE = re.compile(r"(^|[^a-z])(backups?|bak|old|orig|copy|copies|archive|trash|
 # After #!: env takes the rest of the line as one word, except after -S.
 PYTHON3 = re.compile(r"(/usr)?/bin/(env python3|(env -S )?python3( .*)?)")
 FIRST_LINE = "#!/usr/bin/env python3"
+NOT_EXECUTABLE = "is not executable"
 BYTE_ORDER_MARK = "begins with a byte-order mark"
 MOST_LINES = 20  # from a script's top in which a #! line is looked for
 RELAY = re.compile(rb"^python_script = '([^'\n]+)'$", re.M)  # in what catkin_install_python makes
@@ -94,13 +95,16 @@ def best_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
     return is_aside, not os.access(path, os.X_OK), path.parent.name != folder
 
 
-def choose(top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = ()) -> Dict[str, Choice]:
+def choose(
+    top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = (), expects_one: bool = True
+) -> Dict[str, Choice]:
     """The script of each part that is there: what the launch files' `nodes` start, scripts of the handout's names, or
     the only one that offers the action or listens to clicks.
 
-    `relays`: programs made by catkin_install_python. HostingError if two different scripts are equally likely.
+    `relays`: programs made by catkin_install_python. HostingError if two different scripts are equally likely, unless
+    not `expects_one`.
     """
-    installed = {Path(os.fsdecode(found[1])) for path in relays for found in RELAY.finditer(read_bytes(path))}
+    installed = {os.path.realpath(found[1]) for path in relays for found in RELAY.finditer(read_bytes(path))}
     candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.rank, it.path))
     chosen = {}
     for part in PARTS.values():
@@ -108,7 +112,7 @@ def choose(top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path]
         if own:
             best = own[0]
             equal = [it for it in own if it.rank == best.rank and read_bytes(it.path) != read_bytes(best.path)]
-            if equal:
+            if equal and expects_one:
                 names = " and ".join(str(it.path.relative_to(top)) for it in [best, *equal])
                 raise HostingError(
                     f"{names}: each of them could be the {part}, and nothing says which one is started: "
@@ -118,7 +122,7 @@ def choose(top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path]
     return chosen
 
 
-def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[Path]) -> Iterator[_Candidate]:
+def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[bytes]) -> Iterator[_Candidate]:
     launched: Dict[str, LaunchNode] = {}  # by type, the first of each
     for started in nodes:
         launched.setdefault(started.type, started)
@@ -138,8 +142,9 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[Pa
             part, is_sure = _part_by_content(content)
         if part and (is_sure or node is not None):
             is_aside, *place = best_place(path, top, "scripts")
-            rank = (node is None, is_aside, path.name not in PARTS, not is_sure, path not in installed, *place)
-            yield _Candidate(part, path, node, path in installed, rank)
+            is_installed = os.path.realpath(os.fsencode(path)) in installed
+            rank = (node is None, is_aside, path.name not in PARTS, not is_sure, not is_installed, *place)
+            yield _Candidate(part, path, node, is_installed, rank)
 
 
 def obstacles(path: Path) -> Iterator[Tuple[str, str]]:
@@ -147,7 +152,7 @@ def obstacles(path: Path) -> Iterator[Tuple[str, str]]:
     content = read_bytes(path)
     first, _, rest = content.partition(b"\n")
     if not os.access(path, os.X_OK):
-        yield "is not executable", f"chmod +x {path.name}"
+        yield NOT_EXECUTABLE, f"chmod +x {path.name}"
     if first.startswith(b"#!"):
         if first.endswith(b"\r"):
             yield "has Windows line endings (CRLF)", "save it with those of Unix"

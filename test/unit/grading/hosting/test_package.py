@@ -1,5 +1,6 @@
 """Hosted packages: found at a path."""
 
+import os
 from pathlib import Path
 from typing import Dict
 
@@ -7,7 +8,8 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.hosting.package import find_package
+from robocop_grading.hosting.package import find_package, started
+from robocop_grading.hosting.workspace import run_plain
 
 
 def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> None:
@@ -72,3 +74,52 @@ def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path
     inside = tree(tmp_path / "inside", {**lab, f"{folder}/launch/robocop_goto_as.launch": "<launch></launch>"})
     assert find_package(str(beside)).path == beside / "my_lab"
     assert find_package(str(inside)).launch_file == inside / "launch" / "robocop_goto_as.launch"
+
+
+def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
+    pytest.importorskip("roslaunch")
+    node = '<node pkg="{}" type="{}" name="n{}"/>\n'
+    nodes = [
+        (LAB, "robocop_goto_as.py"),
+        (LAB, "none.py"),
+        ("tf2_ros", "static"),
+        ("rviz", "rviz"),
+        ("other", "goto.py"),
+    ]
+    launch = "".join(node.format(*names, number) for number, names in enumerate(nodes))
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": f"<launch>{launch}</launch>",
+        "scripts/robocop_goto_as.py": "",
+        "scripts/goto.py": "move_base_simple",
+    }
+    package = find_package(str(tree(tmp_path / "ws" / "src" / LAB, files)))
+    found = started(package, tmp_path / "ws", dict(os.environ), run_plain)
+    place = "launch/robocop_goto_as.launch, line"
+    assert {part: choice.path.name for part, choice in found.choices.items()} == {
+        "server": "robocop_goto_as.py",
+        "bridge": "goto.py",
+    }
+    assert found.notes == [
+        f"{place} 2: roslaunch finds no none.py in this package",
+        f"{place} 3: node n2 (tf2_ros static) is not started: server and bridge are graded one at a time, each alone",
+        f"{place} 5: pkg='other' is not this package, whose name is '{LAB}'",
+    ]
+
+
+def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
+    pytest.importorskip("roslaunch")
+    node = f'<launch><node pkg="{LAB}" type="{{0}}" name="n"><param name="of" value="{{0}}"/></node></launch>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": node.format("robocop_goto_as.py"),
+        "launch/clicks.launch": node.format("second.py"),
+        "launch/gazebo.launch": '<launch><include file="$(find no_such)/x.launch"/></launch>',
+        "scripts/robocop_goto_as.py": "",
+        "scripts/first.py": "'move_base_simple'  # 1",
+        "scripts/second.py": "'move_base_simple'  # 2",
+    }
+    package = find_package(str(tree(tmp_path / "src" / LAB, files)))
+    found = started(package, tmp_path, dict(os.environ), run_plain)
+    assert found.choices["bridge"].path.name == "second.py"
+    assert (found.parameters, found.notes) == ({"/n/of": "robocop_goto_as.py"}, [])

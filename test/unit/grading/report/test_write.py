@@ -8,6 +8,7 @@ import pytest
 from grading_records import PLAN, RIGHT
 
 from aro_robocop_goto_as.errors import GradingSetupError
+from robocop_grading.cli import as_text
 from robocop_grading.judge import judge
 from robocop_grading.plan import load
 from robocop_grading.report import write as report
@@ -37,6 +38,15 @@ def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
     report.write(judge("anna", load(PLAN), records, {}), load(PLAN), records, tmp_path, kept)
     (command,) = re.findall(r"\./robocop replay ([^<]+)</code>", (tmp_path / "report.html").read_text())
     assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")
+
+
+def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):
+    file = "server: scripts/robocop_goto_as.py; not graded: backup/robocop_goto_as.py"
+    grade = replace(judge("anna", load(PLAN), {"server": {"left": RIGHT}}, {}), files=(file,))
+    report.write(grade, load(PLAN), {"server": {"left": RIGHT}}, tmp_path)
+    for name in ("report.html", "summary.md", "report.json", "results.json"):
+        assert file in (tmp_path / name).read_text(), name
+    assert f"graded: {file}" in as_text(grade, {}).splitlines()
 
 
 def test_folder_is_created_with_its_parents(tmp_path):
