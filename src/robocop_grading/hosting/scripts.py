@@ -101,10 +101,10 @@ def choose(
     """The script of each part that is there: what the launch files' `nodes` start, scripts of the handout's names, or
     the only one that offers the action or listens to clicks.
 
-    `relays`: programs made by catkin_install_python. HostingError if two different scripts are equally likely, unless
-    not `expects_one`.
+    `relays`: programs that the build has made, among them those of catkin_install_python. HostingError if two different
+    scripts are equally likely, unless not `expects_one`.
     """
-    installed = {os.path.realpath(found[1]) for path in relays for found in RELAY.finditer(read_bytes(path))}
+    installed = set(_relayed(relays))
     candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.rank, it.path))
     chosen = {}
     for part in PARTS.values():
@@ -120,6 +120,13 @@ def choose(
                 )
             chosen[part] = Choice(best.path, best.node, best.is_installed, [it.path for it in own[1:]])
     return chosen
+
+
+def _relayed(programs: Collection[Path]) -> Iterator[bytes]:
+    """The scripts that programs made by catkin_install_python start; other programs may be of any kind and size."""
+    for path in programs:
+        with contextlib.suppress(HostingError):
+            yield from (os.path.realpath(found[1]) for found in RELAY.finditer(read_bytes(path)))
 
 
 def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[bytes]) -> Iterator[_Candidate]:

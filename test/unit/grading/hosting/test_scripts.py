@@ -57,7 +57,8 @@ def test_what_is_launched_comes_first_then_what_is_executable(tmp_path: Path) ->
 
 def test_what_the_build_installs_is_started_whatever_its_mode(tmp_path: Path) -> None:
     tree(tmp_path, {f"src/{NAME}": "", f"scripts/{NAME}": "x", "relay": f"python_script = '{tmp_path}/src/{NAME}'\n"})
-    (found,) = choose(tmp_path, (), [tmp_path / "relay"]).values()
+    (tmp_path / "compiled").write_bytes(bytes(2_000_000))
+    (found,) = choose(tmp_path, (), [tmp_path / "compiled", tmp_path / "relay"]).values()
     assert (found.path, found.is_installed, found.others) == (
         tmp_path / "src" / NAME,
         True,
