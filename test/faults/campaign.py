@@ -83,7 +83,7 @@ class Campaign:
         self.stage = (SimulatedStage if simulator else MessageStage)(self.system, self.clients)
         kinds = ["", "simulator" if simulator else "messages"]
         if robots == [""]:
-            kinds += ["bridge", "lab"] if simulator else ["bridge"]
+            kinds += ["bridge"]
         self.faults = [fault for fault in FAULTS if fault.needs in kinds and re.match(select, fault.name)]
         self.last = [fault for fault in FAULTS if fault.needs == "last" and re.match(select, fault.name)]
         self.table = collections.defaultdict(collections.Counter)

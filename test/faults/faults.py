@@ -40,7 +40,7 @@ FAULTS = []
 def fault(group, needs="", costly=False):
     """Register a fault. `costly`: it takes seconds of wall time.
 
-    `needs`: "simulator" or "messages", "bridge" (one robot), "lab" (a simulator with one robot), "last" (nothing goes
+    `needs`: "simulator" or "messages", "bridge" (one robot), "last" (nothing goes
     on after it); empty: nothing.
     """
 

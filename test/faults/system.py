@@ -5,7 +5,6 @@ Whatever ends is started again by `restart`, and only that: everything else has 
 
 import contextlib
 import os
-import resource
 import signal
 import socket
 import subprocess
@@ -77,10 +76,10 @@ class System:
 
     # -- processes --
 
-    def _start(self, name, *command, output=None):
+    def _start(self, name, *command):
         log = self.folder / (name.strip("/").replace("/", "-") + ".log")
         self.log_offsets.setdefault(log, 0)
-        with open(output or log, "ab") as file:
+        with open(log, "ab") as file:
             self.processes[name] = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
@@ -90,13 +89,13 @@ class System:
                 preexec_fn=end_with_parent(signal.SIGKILL),  # it may be stopped
             )
 
-    def start(self, node, *arguments, output=None):
-        """Start a node by its full name; `output`: a file for its standard output instead of its log."""
+    def start(self, node, *arguments):
+        """Start a node by its full name."""
         namespace, _, name = node.rpartition("/")
         command = [roslib.packages.find_node(PACKAGE, SCRIPTS[name])[0]]
         if self.mistake is not None and name == SERVER:
             command = [sys.executable, str(BROKEN_SERVER), self.mistake]
-        self._start(node, *command, f"__name:={name}", f"__ns:={namespace or '/'}", *arguments, output=output)
+        self._start(node, *command, f"__name:={name}", f"__ns:={namespace or '/'}", *arguments)
 
     def take_over(self, node):
         """Start a second node of this name, upon which the first one has to end by itself."""
@@ -108,12 +107,6 @@ class System:
             first.kill()
             first.wait()
             raise Violation(f"{node} still runs {DEADLINE:g} s after another one took its name") from None
-
-    def limit_files(self, node, size):
-        """Have a node write no file beyond this size [bytes]: an error, as on a full disk; None: no limit."""
-        pid = self.processes[node].pid
-        _, hard = resource.prlimit(pid, resource.RLIMIT_FSIZE)
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, (hard if size is None else size, hard))
 
     def kill(self, node):
         """SIGKILL, if it still runs."""
