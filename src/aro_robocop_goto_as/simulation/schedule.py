@@ -29,12 +29,14 @@ class Schedule:
             tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
             for step in range(1, physics_rate + 1)
         ]
+        self.occurring = set(filter(None, names))  # what is due together on some steps
         self._after: List[Tuple[int, Tuple[str, ...]]] = []  # by the number of the step within its second
         following = next(filter(None, names))
         steps = names.index(following) + 1
-        for step in reversed(range(physics_rate)):
-            steps, following = (1, names[step]) if names[step] else (steps + 1, following)
-            self._after.insert(0, (steps, following))
+        for due_now in reversed(names):
+            steps, following = (1, due_now) if due_now else (steps + 1, following)
+            self._after.append((steps, following))
+        self._after.reverse()
 
     def after(self, step: int) -> Tuple[int, Tuple[str, ...]]:
         """How many steps after this one something is due, and what it is, in the order of the rates."""

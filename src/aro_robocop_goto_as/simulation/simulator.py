@@ -1,7 +1,7 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
 import math
-from typing import Dict, FrozenSet, Optional, Sequence, Set, Tuple
+from typing import FrozenSet, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -16,10 +16,10 @@ from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .observations import Due, Observations, Subscriptions
-from .rates import CLOCK, CONTROL, IMU, rates_of
+from .rates import CLOCK, CONTROL, IMU, ODOM, rates_of
 from .schedule import Schedule, stamp_ns
 
-DUE_OFTEN = {IMU}  # due on most steps and seldom subscribed to
+UNASKED = {CLOCK, CONTROL, ODOM}  # due also if nobody subscribes: odometry is integrated
 
 
 class Simulator:
@@ -35,12 +35,7 @@ class Simulator:
         self.engine = engine
         self.observed = Observations(p, world, engine)
         self.lidar = self.observed.lidar
-        rates = rates_of(p)
-        self._usual = Schedule({name: rate for name, rate in rates.items() if name not in DUE_OFTEN}, self.rate)
-        self._full = Schedule(rates, self.rate)
-        self._schedule = self._usual
-        self._subscriptions: Subscriptions = {}
-        self._dues: Dict[Tuple[str, ...], Due] = {}  # by the names of what is due, for these subscriptions
+        self._schedule_for({})
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
         self.reset()
@@ -84,13 +79,12 @@ class Simulator:
     def advance(self, subscriptions: Subscriptions, most: int) -> Optional[Observations]:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
         if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
-            self._subscriptions, self._dues = subscriptions, {}
-            self._schedule = self._full if any(map(subscriptions.get, DUE_OFTEN)) else self._usual
+            self._schedule_for(subscriptions)
         steps, names = self._schedule.after(self.steps)
         if steps > most:
             self._run(most)
             return None
-        due = self._dues.get(names) or self._due(names)
+        due = self._dues[names]
         imus = due.sensors.get(IMU)
         if imus:  # which compare the states before and after the step
             self._run(steps - 1)
@@ -114,12 +108,16 @@ class Simulator:
         if self.moving:
             self.observed.scanners.move(self.world_time)
 
+    def _schedule_for(self, subscriptions: Subscriptions) -> None:
+        """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
+        self._subscriptions = subscriptions
+        rates = {name: rate for name, rate in rates_of(self.p).items() if name in UNASKED or subscriptions.get(name)}
+        self._schedule = Schedule(rates, self.rate)
+        self._dues = {names: self._due(names) for names in self._schedule.occurring}
+
     def _due(self, names: Tuple[str, ...]) -> Due:
-        """What is done when these are due."""
         sensors = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
-        measures = self.observed.measures_of(names, sensors)
-        self._dues[names] = Due(CLOCK in names, CONTROL in names, sensors, measures)
-        return self._dues[names]
+        return Due(CLOCK in names, CONTROL in names, sensors, self.observed.measures_of(names, sensors))
 
     def due_at_control_ticks(self) -> FrozenSet[str]:
         """The sensors and ticks that are due on each control tick."""
