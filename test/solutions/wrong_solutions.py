@@ -861,7 +861,7 @@ ADVISED: Tuple[Wrong, ...] = (
         "reports_status",
         "its reports stop while a goal is PENDING",
         ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
-        ("        if self.sent:\n", "        if self.timer:\n"),
+        ("        if self.sent:\n", "        if self.timer:\n            self.timer.shutdown()\n"),
         ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
         (
             "        rospy.loginfo('server",
