@@ -27,11 +27,10 @@ def patient(self, *arguments, time_limit=None, **others):
 roslaunch.core.Test.__init__ = patient
 rostest.rostestmain()
 """
-# Most of these is also tested without processes, with two robots (many_robots), in a system of its own (goto_fails), or
-# with a fake robot and through the bridge (preempt).
+# Most of these is also tested without processes, or with two robots (many_robots).
 SLOW = (
-    *("camera", "documented_commands", "goto_fails", "localization_truth", "many_robots", "navigation_fast"),
-    *("navigation_lockstep", "parameters", "preempt", "real_robot", "real_time_factor", "teleop"),
+    *("camera", "documented_commands", "localization_truth", "many_robots", "navigation_fast"),
+    *("navigation_lockstep", "parameters", "real_robot", "real_time_factor", "teleop"),
 )
 
 

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""`./robocop goto X Y` in a running system: progress, result and exit status."""
+"""`./robocop goto X Y` in a running system: progress, result or the reason, and exit status."""
 
-from harness import Process, SystemTest, distance, run, script
+import signal
+
+from dynamic_reconfigure.client import Client
+from harness import SIMULATOR, Process, SystemTest, distance, run, script
 
 from aro_robocop_goto_as.geometry import Pose2D
 
@@ -14,6 +17,33 @@ class GotoCommand(SystemTest):
         self.assertRegex(command.output, r"(?m)^distance +0\.\d\d m +angle +[+-]0\.\d\d rad +rotating")
         self.assertRegex(command.output, r"(?m)^SUCCEEDED: REACHED: ")
         self.assertLess(distance(self.robot.wait_until_it_stands(), target), 0.12)
+
+    def test_goal_behind_an_obstacle_is_reported_with_exit_status_1(self):
+        with Process(script("robocop_goto.py"), 1.6, 0.73, "--frame", "odom") as command:  # behind pillar_1
+            self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: obstacle ")
+
+    def test_a_misspelt_frame_is_answered_with_the_one_meant(self):
+        with Process(script("robocop_goto.py"), "0.5", "0.0", "--frame", "base_footprnt") as command:
+            self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertIn("; did you mean base_footprint?", command.output)
+
+    def test_unknown_frame_is_reported_and_nothing_is_sent(self):
+        with Process(script("robocop_goto.py"), "0.5", "0.0", "--frame", "kitchen") as command:
+            self.assertNotEqual(command.wait_for_exit(), 0)
+        self.assertIn("no transform from 'kitchen' to 'odom'", command.output)
+        self.assertEqual(self.goals.sent.messages, [])
+
+    def test_interrupted_command_cancels_its_goal(self):
+        client = Client(SIMULATOR[1:], timeout=60)
+        client.update_configuration({"real_time_factor": 0.25})  # so that the robot still drives when it is interrupted
+        self.addCleanup(client.update_configuration, {"real_time_factor": 4.0})  # of the launch file
+        with Process(script("robocop_goto.py"), 2.0, 0.0) as command:
+            self.robot.wait_until_it_drives()
+            command.process.send_signal(signal.SIGINT)
+            self.assertEqual(command.wait_for_exit(), 1, command.output)
+        self.assertRegex(command.output, r"(?m)^PREEMPTED: PREEMPTED: ")
+        self.robot.wait_until_it_stands()
 
 
 if __name__ == "__main__":
