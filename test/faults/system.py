@@ -156,7 +156,8 @@ class System:
                 file.seek(offset)
                 text = file.read()
                 self.log_offsets[log] = file.tell()
-            if "Traceback" in text:
+            # The timer of actionlib's server may publish once more when rospy has closed its topics.
+            if text.count("Traceback") > text.count("ROSException: publish() to a closed topic"):
                 raise Violation(f"a traceback in {log.name}:\n{text[text.index('Traceback') :][:2000]}")
 
     def usage(self):

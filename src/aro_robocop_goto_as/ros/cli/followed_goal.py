@@ -18,7 +18,7 @@ from ...errors import FrameError
 from ...process import signals
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
-from ..client.goal_states import STATES
+from ..client.goal_states import ending
 from ..names import ACTION, absolute_if_named, place, prefixed
 from ..ticker import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
@@ -137,11 +137,11 @@ def _wait_or_explain(
 def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
     """Send a position in odom, show feedback, cancel on Ctrl-C."""
     progress, pause, done = _ProgressLine(), _PauseNotice(), threading.Event()
-    ending, is_reached, is_sent = "no answer from the server", False, False
+    answer, is_reached, is_sent = "no answer from the server", False, False
 
     def on_done(state: int, result: Optional[GoToPositionResult]) -> None:
-        nonlocal ending, is_reached
-        ending = f"{STATES[state]}: {result.message}" if result is not None and result.message else STATES[state]
+        nonlocal answer, is_reached
+        answer = ending(state, result)
         is_reached = result is not None and result.success
         done.set()
 
@@ -162,5 +162,5 @@ def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
         client.cancel_goal()
         done.wait(SERVER_PATIENCE)
     progress.close()
-    print(ending)
+    print(answer)
     return REACHED if is_reached else NOT_REACHED

@@ -23,7 +23,7 @@ from ..names import ACTION, BRIDGE, place
 from ..node_main import load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer
-from .goal_states import STATES, UNFINISHED
+from .goal_states import STATES, UNFINISHED, ending
 
 ADVICE_AFTER = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
@@ -125,7 +125,7 @@ class Bridge:
 
     def on_done(self, state: int, result: Optional[GoToPositionResult]) -> None:
         """Store how the goal ended; a callback."""
-        self.ending = f"{STATES[state]}: {result.message}" if result is not None and result.message else STATES[state]
+        self.ending = ending(state, result)
         rospy.loginfo("goal ended, %s", self.ending)
         self.has_ended.set()
 

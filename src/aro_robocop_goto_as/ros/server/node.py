@@ -138,10 +138,10 @@ class GotoNode:
     def answer_idle_ticks(self) -> None:
         """Answer the ticks at which no goal runs or is about to run; a thread of its own."""
         tick = self.ticks.answered
-        while not rospy.is_shutdown():
-            tick = self.ticks.wait_for_next(tick, rospy.is_shutdown)
+        while not self.stop_reason:
+            tick = self.ticks.wait_for_next(tick, lambda: bool(self.stop_reason))
             with self.executing:
-                if not (self.server.is_new_goal_available() or self.server.is_active()):
+                if not (self.stop_reason or self.server.is_new_goal_available() or self.server.is_active()):
                     self.ticks.answer(self.ticks.newest())
 
     # -- the node --
