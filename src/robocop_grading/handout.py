@@ -36,4 +36,4 @@ class Limits:
     stall: float = 8.0
     stall_distance: float = 0.01
     stall_angle: float = 0.05
-    goal_time: float = 120.0
+    goal_time: float = 400.0

@@ -272,6 +272,8 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         elif problem:
             verdict = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
         if isinstance(verdict, Failed):
+            if judged.explain and name in records:
+                verdict = judged.explain(records, [it for it in check.scenarios if it in records], verdict)
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
         if verdict is None:
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")

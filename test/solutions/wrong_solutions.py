@@ -90,7 +90,7 @@ WRONG = (
         "sign of angle_error is wrong",
         (ERROR, "angle_error = wrap(yaw - math.atan2(dy, dx))"),
     ),
-    _server("no_heading", "feedback_angle", "heading is left out", (ERROR, "angle_error = math.atan2(dy, dx)")),
+    _server("no_heading", "feedback_angle", "is the heading left out", (ERROR, "angle_error = math.atan2(dy, dx)")),
     _server(
         "heading_added",
         "feedback_angle",
@@ -104,14 +104,14 @@ WRONG = (
     _server(
         "sign_of_dy",
         "feedback_angle",
-        "A sign is wrong in atan2(dy, dx)",
+        "a sign were wrong in atan2(dy, dx)",
         (ERROR, "angle_error = wrap(math.atan2(-dy, dx) - yaw)"),
         alone=True,
     ),
     _server(
         "atan",
         "feedback_angle",
-        "atan is used instead of atan2",
+        "atan2(dy, dx) is needed",
         (ERROR, "angle_error = wrap(math.atan(dy / dx) - yaw)"),
     ),
     _server("quaternion_z", "feedback_angle", "orientation.z", (YAW, "yaw = q.z")),
@@ -150,13 +150,13 @@ WRONG = (
     _server(
         "distance_from_origin",
         "feedback_position",
-        "position is left out",
+        "position left out",
         ("dx = goal.position.x - x", "dx = goal.position.x"),
         ("dy = goal.position.y - y", "dy = goal.position.y"),
     ),
     _server("squared_distance", "feedback_position", "squared", ("math.hypot(dx, dy)", "dx * dx + dy * dy")),
-    _server("only_y", "feedback_position", "depends on y only", ("math.hypot(dx, dy)", "abs(dy)"), alone=True),
-    _server("only_x", "feedback_position", "depends on x only", ("math.hypot(dx, dy)", "abs(dx)")),
+    _server("only_y", "feedback_position", "position_error is |dy|", ("math.hypot(dx, dy)", "abs(dy)"), alone=True),
+    _server("only_x", "feedback_position", "position_error is |dx|", ("math.hypot(dx, dy)", "abs(dx)")),
     _server("no_feedback", "feedback_rate", "No feedback", (PUBLISH, "")),
     _server(
         "feedback_once_a_second",
@@ -169,7 +169,7 @@ WRONG = (
     _server(
         "unpaced_loop",
         "feedback_rate",
-        "not paced",
+        "more often than 10 times a second",
         ("            rate.sleep()\n", "            rospy.sleep(0)\n"),
         alone=True,
     ),
@@ -197,7 +197,7 @@ WRONG = (
     _server(
         "empty_feedback",
         "feedback_position",
-        "never filled",
+        "always zero",
         ("            feedback.position_error = position_error\n            feedback.angle_error = angle_error\n", ""),
     ),
     _server(
@@ -229,7 +229,7 @@ WRONG = (
     _server(
         "reached_too_late",
         "reaches_goal",
-        "the threshold is another one",
+        "threshold of position_error another one",
         ("position_error < 0.1:", "position_error < 0.05:"),
     ),
     _server(
@@ -265,7 +265,7 @@ WRONG = (
     _server(
         "preempt_request_is_kept",
         "next_goal",
-        "is all state that the first goal changed reset",
+        "is all state that a goal changes reset",
         (REQUESTED, "            self.count += self.server.is_preempt_requested()\n            if self.count:"),
         alone=True,
     ),
@@ -327,7 +327,7 @@ WRONG = (
     _server(
         "looks_left",
         "stops_at_obstacle",
-        "not those ahead",
+        "are the beams that count those ahead",
         ("ahead = np.concatenate([ranges[:30], ranges[-30:]])", "ahead = ranges[60:120]"),
     ),
     _server(
@@ -355,7 +355,7 @@ WRONG = (
         (OBSTACLE, "elif self.min_dist_ahead < 0.3 and abs(angle_error) < 0.05:"),
     ),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
-    _server("obstacle_too_early", "stops_at_obstacle", "not 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
+    _server("obstacle_too_early", "stops_at_obstacle", "farther than 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
     _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),
     _server(
         "success_on_abort",
@@ -476,7 +476,7 @@ WRONG = (
     _server(
         "preempted_goal_is_kept",
         "next_goal",
-        "is all state that the first goal changed reset",
+        "is all state that a goal changes reset",
         (BEGIN, f"        goal = self.goal = self.goal or goal\n{BEGIN}"),
         ("        self.count = 0\n", "        self.goal = None\n"),
         ("        self.stop()\n        result =", "        self.goal = None\n        self.stop()\n        result ="),
@@ -654,14 +654,14 @@ WRONG = (
     _server(
         "feedback_of_the_last_iteration",
         "feedback_position",
-        "an iteration old",
+        "in the feedback is old",
         (PUBLISH, f"            self.old, feedback = feedback, getattr(self, 'old', feedback)\n{PUBLISH}"),
         alone=True,
     ),
     _server(
         "feedback_after_the_sleep",
         "feedback_position",
-        "an iteration old",
+        "in the feedback is old",
         (PUBLISH, ""),
         (SLEEP, SLEEP + PUBLISH),
         alone=True,
@@ -669,7 +669,7 @@ WRONG = (
     _server(
         "only_the_angle_is_old",
         "feedback_angle",
-        "an iteration old",
+        "in the feedback is old",
         (
             "feedback.angle_error = angle_error",
             "self.old, feedback.angle_error = angle_error, getattr(self, 'old', angle_error)",
@@ -686,7 +686,7 @@ WRONG = (
     _server(
         "obstacle_at_half_a_metre",
         "stops_at_obstacle",
-        "not 0.3 m: the goal was aborted farther from the obstacle. Expected",
+        "farther than 0.3 m from the obstacle",
         (OBSTACLE, "elif self.min_dist_ahead < 0.5:"),
         alone=True,
     ),

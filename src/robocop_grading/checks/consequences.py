@@ -1,5 +1,7 @@
 """Whether a failure follows from that of another check: decided by what happened, and by what the server reported."""
 
+from typing import Mapping, Pattern
+
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until
 from ..texts import text
@@ -19,6 +21,7 @@ MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and drivin
 ENOUGH = 4  # fewer commands show nothing
 MOST_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
+ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
@@ -26,11 +29,33 @@ def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     return bool(failure.kind) and failure.kind == earlier.kind
 
 
-def logged_cause(record: Record) -> str:
-    """What the log says about why a goal ended wrongly; empty if it says nothing."""
-    if logged(record, EXCEPTION_LOGGED):
-        return text("The goal's callback raised an exception: {}", last_error(record))
-    return text("no_terminal_state") if logged(record, NO_STATE_LOGGED) else ""
+def logged_cause(record: Record, end: float) -> str:
+    """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
+    if logged(record, EXCEPTION_LOGGED, end):
+        return text("An exception was raised: {}", last_error(record, end))
+    return text("no_terminal_state") if logged(record, NO_STATE_LOGGED, end) else ""
+
+
+def end_of(record: Record, failure: Failed) -> float:
+    """Until when [s] what happened may be the reason of a failure: that of its goal, or its own time."""
+    end = active_until(record, failure.goal) if failure.goal else failure.time
+    return max(failure.time, end)
+
+
+def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether the node died before the goal ended."""
+    return any(death.time <= end_of(record, failure) for death in record.deaths)
+
+
+def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether an exception was logged before a goal ended otherwise than it should."""
+    return bool(failure.kind) and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
+
+
+def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
+    """The first topic with such a name that the node has waited for in vain since its start; empty if there is none."""
+    topics = [topic for record in records.values() for topic in record.unpublished]
+    return next(filter(name.search, topics), "")
 
 
 def silent(record: Record, goal: Goal) -> bool:
@@ -58,6 +83,14 @@ def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Whether an end far from the goal fits the position_error that the server reported itself."""
     own = [message.position_error for message in record.feedback if failure.goal and message.id == failure.goal.id]
     return bool(own) and own[-1] <= BELIEVED
+
+
+def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Whether no position_error that the server reported told it that it had reached the goal."""
+    goal = failure.goal
+    own = [message for message in record.feedback if goal and message.id == goal.id]
+    end = end_of(record, failure)
+    return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -88,14 +121,14 @@ def _fits(own: Feedback, v: float, w: float) -> bool:
     return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
-# A goal ended wrongly in a scenario in which an exception was logged.
-EXCEPTION = After("no_exception", lambda record, failure, _: bool(failure.kind) and logged(record, EXCEPTION_LOGGED))
+EXCEPTION = After("no_exception", raised)
 AT_FIRST = After("already_there", kind=MOVES_FIRST)
 MISLED = After("feedback_angle", misled)
 # What every goal's ending depends on.
 ENDING = (
     EXCEPTION,
-    After("stays_alive", lambda record, *_: bool(record.deaths), NO_RESULT),
+    After("stays_alive", died, NO_RESULT),
+    After("feedback_rate", unaware, SUCCESS_LATE),
     After("feedback_position", believed, SUCCESS),
     After("feedback_position", believed, STATUS_NAMES[SUCCEEDED]),
     After("feedback_position", misled, NO_RESULT),

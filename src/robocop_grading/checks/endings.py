@@ -11,6 +11,7 @@ from ..record import (
     TERMINAL,
     Goal,
     Record,
+    Result,
     errors_at,
     results_of,
     samples_between,
@@ -76,9 +77,12 @@ def _collision(record: Record, goal: Goal, end: float) -> str:
 
 
 def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
-    told = logged_cause(record)
+    end = results_of(record, goal)[0].time
+    told = logged_cause(record, end)
     if told:
         return told
+    if status == PREEMPTED and not _asked_to_end(record, goal, end):
+        return sentences(text("preempted_unasked"), text("preempted_at_once") if _at_once(record, goal) else "")
     if wanted == ABORTED and status == SUCCEEDED:
         return text("failure_as_success")
     if wanted == SUCCEEDED and status == ABORTED:
@@ -92,6 +96,12 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
     return "The server set the wrong terminal state"
 
 
+def _asked_to_end(record: Record, goal: Goal, end: float) -> bool:
+    """Whether a cancel request or a newer goal came before a time [s]."""
+    cancelled = any(cancel.time <= end and cancel.id in ("", goal.id) for cancel in record.cancels)
+    return cancelled or any(goal.time < newer.time <= end for newer in record.goals)
+
+
 def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that succeeded away from its position."""
     result = results_of(record, goal)[0]
@@ -99,18 +109,30 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
+    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time <= result.time]
     kind, cause = SUCCESS, text("success_too_far", GOAL_RADIUS)
-    if result.time - goal.time < AT_ONCE and any(other.time < goal.time for other in record.results):
+    if own and own[-1] < GOAL_RADIUS:
+        cause = text("success_believed", own[-1])
+    if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
         kind, cause = NOT_RESET, text("not_reset")
     seen = text("{} {:.2f} m away", SUCCESS, nearest)
     return Failed(text("success within {:g} m", GOAL_RADIUS), seen, result.time, cause, kind, goal)
+
+
+def _at_once(record: Record, goal: Goal) -> bool:
+    """Whether a goal has ended too soon to be driven to."""
+    return any(result.time - goal.time < AT_ONCE for result in results_of(record, goal)[:1])
+
+
+def _took_longer(record: Record, goal: Goal) -> bool:
+    return bool(results_of(record, goal)) and not _at_once(record, goal)
 
 
 EMPTY = "an empty message"
 MOVING = "moving"
 RESULT = (
     EXCEPTION,
-    After("one_ending", lambda record, failure, _: failure.seen == EMPTY and logged(record, NO_STATE_LOGGED)),
+    After("one_ending", lambda record, it, _: it.seen == EMPTY and logged(record, NO_STATE_LOGGED, it.time)),
 )
 
 
@@ -132,10 +154,10 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         return NotReached(text("the goal did not end as {}", status_name(status)))
     result = results[0]
     if result.success != success:
-        cause = text("contradicting_result" if result.message else "result_missing")
+        cause = text("contradicting_result" if result.message else "no_result_message")
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
     if not result.message:
-        cause = logged_cause(record) or text("no_result_message")
+        cause = logged_cause(record, result.time) or text("no_result_message")
         return Failed("a message", EMPTY, result.time, cause, EMPTY)
     return None
 
@@ -155,9 +177,16 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
             for sample in after:
                 if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
                     seen = text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w)
-                    cause = text("keeps_moving", status_name(result.status))
+                    cause = keeps_moving(record, result, sample.time)
                     return Failed("a robot at rest", seen, sample.time, cause, MOVING, goal)
     return None if judged else NotReached("no goal ended")
+
+
+def keeps_moving(record: Record, result: Result, until: float) -> str:
+    """Why a robot does not stop after a result until a time [s]: the last command, or further ones."""
+    commands = [it for it in record.commands if result.time + AT_ONCE < it.time <= until]
+    later = any((it.v, it.w) != (0.0, 0.0) for it in commands)
+    return text("commanded_later" if later else "keeps_moving", status_name(result.status))
 
 
 @check("states", after=(EXCEPTION,), needs=("reaches_goal",))

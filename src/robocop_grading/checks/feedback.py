@@ -1,20 +1,33 @@
 """Checks of the feedback: its rate, and its errors against the true ones."""
 
 import math
+from dataclasses import replace
 from functools import partial
-from typing import Callable, List, Optional, Sequence
+from typing import Callable, List, Mapping, Optional, Sequence
 
 import numpy as np
 
-from ..handout import Limits
+from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_between, wrapped
-from ..texts import Text, text
-from .consequences import nothing_came
-from .feedback_causes import ANGLE, OF_POSITION, POSITION, UNITS, Pair, likely_cause
+from ..texts import text
+from .consequences import died, nothing_came, unpublished
+from .feedback_causes import (
+    ANGLE,
+    OF_POSITION,
+    POSE_TOPIC,
+    POSITION,
+    TOLERANCES,
+    UNCHANGED,
+    UNITS,
+    Pair,
+    likely_cause,
+    names_in,
+)
 from .verdict import After, Failed, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
+INEXACT = 0.02  # [m] of the position in /odom, which turns the direction of a goal that is near
 MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
 LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
 AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
@@ -23,28 +36,36 @@ MOVING = 10  # fewer messages say nothing about their age
 CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
 MOST_DIFFERENT = 0.2  # [m], [rad] that counts of a difference
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
+# Kinds of failures.
+WRONG_POSITION = "of the position"
+UNTRUE = "untrue"
 
 
-@check(
-    "errors", after=(After("stays_alive", lambda record, *_: bool(record.deaths)), After("reaches_goal", nothing_came))
-)
+@check("errors", after=(After("stays_alive", died), After("reaches_goal", nothing_came)))
 def feedback_rate(record: Record, limits: Limits) -> Verdict:
     """While a goal is active, feedback is published about ten times a second."""
     judged = False
     for goal in record.goals:
-        end = min(active_until(record, goal), record.samples[-1].time if record.samples else goal.time)
+        end = min(active_until(record, goal), _arrival(record, goal))
         if end - goal.time < SHORTEST:
             continue
         judged = True
-        count = sum(message.id == goal.id for message in record.feedback)
+        count = sum(message.id == goal.id and message.time <= end for message in record.feedback)
         rate = count / (end - goal.time)
         if limits.feedback_low <= rate <= limits.feedback_high:
             continue
-        cause = "no_feedback" if not count else "not_paced" if rate > limits.feedback_high else "not_10_hz"
+        cause = "no_feedback" if not count else "too_often" if rate > limits.feedback_high else "not_10_hz"
         wanted = text("about 10 Hz ({:g} to {:g})", limits.feedback_low, limits.feedback_high)
         seen = text("{:.1f} Hz, {} messages in {:.1f} s", rate, count, end - goal.time)
         return Failed(wanted, seen, goal.time, text(cause), goal=goal)
     return None if judged else NotReached("no goal was active for a second")
+
+
+def _arrival(record: Record, goal: Goal) -> float:
+    """When [s] the robot came to the goal, or the recording ended: what the server does there is not its loop."""
+    samples = samples_between(record, goal.time, math.inf)
+    there = (sample.time for sample in samples if errors_at(sample, goal)[POSITION] < GOAL_RADIUS)
+    return next(there, samples[-1].time if samples else goal.time)
 
 
 def _pairs(record: Record) -> List[Pair]:
@@ -56,6 +77,11 @@ def _pairs(record: Record) -> List[Pair]:
         if message.id in goals and samples:
             pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
     return pairs
+
+
+def _compared(index: int, record: Record) -> List[Pair]:
+    """The pairs by which an error is judged."""
+    return [pair for pair in _pairs(record) if index == POSITION or pair.truth[POSITION] > NEAR]
 
 
 def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
@@ -80,25 +106,43 @@ def _deviation(index: int, pair: Pair) -> float:
     turned: Callable[[float], float] = wrapped if index == ANGLE else lambda it: it
     spread = [turned(truth - truths[0]) for truth in truths]  # around the first one
     middle = truths[0] + (min(spread) + max(spread)) / 2.0
-    return max(0.0, abs(turned(value - middle)) - (max(spread) - min(spread)) / 2.0)
+    inexact = INEXACT / max(NEAR, pair.truth[POSITION]) if index == ANGLE else 0.0
+    return max(0.0, abs(turned(value - middle)) - (max(spread) - min(spread)) / 2.0 - inexact)
 
 
-@check("errors", needs=("feedback_rate",))
+def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
+    """The failure with the causes that fit in all scenarios."""
+    if failure.kind not in (UNTRUE, WRONG_POSITION):
+        return failure
+    scenarios = [_compared(index, records[name]) for name in names]
+    tolerance = TOLERANCES[index]
+    wrong = [pair for pairs in scenarios for pair in _wrong(pairs, partial(_deviation, index), tolerance)]
+    cause = likely_cause(index, wrong, scenarios)
+    found = names_in(cause)
+    silent = unpublished(records, POSE_TOPIC)
+    if found & UNCHANGED and silent:
+        cause = text("pose_unpublished", silent)
+    return replace(failure, cause=cause, kind=WRONG_POSITION if found & OF_POSITION else UNTRUE)
+
+
+@check("errors", needs=("feedback_rate",), explain=partial(_explained, POSITION))
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
-    pairs = _pairs(record)
+    pairs = _compared(POSITION, record)
     if not pairs:
         return NotReached("there was no feedback")
     return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION)
 
 
-WRONG_POSITION = "of the position"
-
-
-@check("errors", after=(After("feedback_position", kind=WRONG_POSITION),), needs=("feedback_rate",))
+@check(
+    "errors",
+    after=(After("feedback_position", kind=WRONG_POSITION),),
+    needs=("feedback_rate",),
+    explain=partial(_explained, ANGLE),
+)
 def feedback_angle(record: Record, limits: Limits) -> Verdict:
     """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
-    pairs = [pair for pair in _pairs(record) if pair.truth[POSITION] > NEAR]
+    pairs = _compared(ANGLE, record)
     if not pairs:
         return NotReached("there was no feedback")
     beyond = [pair for pair in pairs if abs(pair.feedback.angle_error) > math.pi + 0.05]
@@ -149,7 +193,6 @@ def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Fai
     wrong = _wrong(pairs, partial(_deviation, index), tolerance)
     if not wrong:
         return None
-    first, cause = wrong[0], likely_cause(index, wrong, pairs)
-    kind = WRONG_POSITION if isinstance(cause, Text) and cause.name in OF_POSITION else ""
+    first, cause = wrong[0], likely_cause(index, wrong, [pairs])
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, cause, kind)
+    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, cause, UNTRUE)

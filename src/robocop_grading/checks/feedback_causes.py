@@ -1,21 +1,28 @@
 """Which mistake explains wrong values of the feedback: hypotheses that predict what a server would report with it."""
 
+import functools
 import math
+import re
 from dataclasses import replace
 from statistics import mean, median
-from typing import Callable, List, NamedTuple, Sequence, Tuple
+from typing import Callable, List, NamedTuple, Sequence, Set, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
 from ..record import ERRORS, Feedback, Goal, Sample, errors_at, wrapped
-from ..texts import text
+from ..texts import Text, text
 
-FITS = 0.1  # [m], [rad] largest median error of a hypothesis
+TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
+MOST_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
+LONGEST_WRONG = 0.45  # [s] no more values in a row may not fit
+MOST_UNEXPLAINED = 0.3  # share of all wrong values
+MOST_PAIRS = 100  # of a scenario that are compared
+LARGE = 7.0  # [m], [rad] values beyond it are squares or degrees, of which tolerances are ten times as large
 FAR = 1.0  # [m], [rad] that a miss counts at most
 OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
-EXACT = 0.003  # [m], [rad] a hypothesis that fits better than this explains a constant value; less is no difference
+LARGEST_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
 class Pair(NamedTuple):
@@ -53,47 +60,75 @@ class Pair(NamedTuple):
 
 
 Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause's text; the value that it would lead to
+
+
+def _misplaced(index: int) -> Sequence[Hypothesis]:
+    """Coordinates of the goal or the robot that are mistaken for others."""
+    return (
+        ("goal_swapped", lambda p: errors_at(p.now, replace(p.goal, x=p.goal.y, y=p.goal.x))[index]),
+        ("goal_x_missing", lambda p: errors_at(p.now, replace(p.goal, x=0.0))[index]),
+        ("goal_y_missing", lambda p: errors_at(p.now, replace(p.goal, y=0.0))[index]),
+        ("position_swapped", lambda p: errors_at(Pose2D(p.now.y, p.now.x, p.now.yaw), p.goal)[index]),
+        ("position_x_sign", lambda p: errors_at(Pose2D(-p.now.x, p.now.y, p.now.yaw), p.goal)[index]),
+        ("position_y_sign", lambda p: errors_at(Pose2D(p.now.x, -p.now.y, p.now.yaw), p.goal)[index]),
+    )
+
+
 FROM_ORIGIN = "angle_from_origin"
-NEVER_FILLED = {"distance_zero", "angle_zero"}
+NEVER_FILLED = ("distance_zero", "angle_zero")
 # Causes that explain both errors: the robot's or the goal's position is wrong.
-OF_POSITION = {"relative", "distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world"}
+OF_POSITION = {"relative", "distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world", "pose_of_start"}
+OF_POSITION |= {name for name, _ in _misplaced(POSITION)}
+# Causes of which the errors are those of a pose that does not change.
+UNCHANGED = {"distance_from_origin", "angle_without_heading", "pose_of_start"}
+POSE_TOPIC = re.compile("odom|pose|truth|position")  # in the name of a topic
 CAUSES: Tuple[Sequence[Hypothesis], ...] = (
     (
+        *_misplaced(POSITION),
         ("position_in_world", lambda p: math.hypot(p.goal.x - p.now.world_x, p.goal.y - p.now.world_y)),
         ("distance_from_origin", lambda p: math.hypot(p.goal.x, p.goal.y)),
         ("distance_squared", lambda p: sum(d * d for d in p.way)),
         ("distance_x_only", lambda p: abs(p.way[0])),
         ("distance_y_only", lambda p: abs(p.way[1])),
         ("distance_manhattan", lambda p: sum(abs(d) for d in p.way)),
+        ("distance_larger", lambda p: max(abs(d) for d in p.way)),
         ("distance_sign", lambda p: -p.truth[POSITION]),
-        ("distance_zero", lambda p: 0.0),
+        ("distance_rounded", lambda p: round(p.truth[POSITION])),
+        ("distance_rounded", lambda p: int(p.truth[POSITION])),
         ("distance_is_angle", lambda p: p.truth[ANGLE]),
+        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[POSITION]),
         ("relative", lambda p: p.misread(p.start.yaw)[POSITION]),
         ("relative", lambda p: p.misread(0.0)[POSITION]),
     ),
     (
+        *_misplaced(ANGLE),
         ("angle_in_degrees", lambda p: math.degrees(p.truth[ANGLE])),
-        # What has no sign comes before a wrong sign, which is as likely on the right, but is found on the left.
         ("angle_without_sign", lambda p: abs(p.truth[ANGLE])),
         ("angle_sign", lambda p: -p.truth[ANGLE]),
         ("angle_without_heading", lambda p: p.direction),
         ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
-        # Before two wrong signs, which are the same for goals behind, but are found with the first goal, ahead.
         ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),
+        ("asin", lambda p: math.atan2(p.way[1], abs(p.way[0])) - p.now.yaw),
+        ("modulo_pi", lambda p: (p.truth[ANGLE] + math.pi / 2.0) % math.pi - math.pi / 2.0),
+        ("modulo_pi", lambda p: p.truth[ANGLE] % math.pi),
+        ("modulo_pi", lambda p: math.fmod(p.direction - wrapped(p.now.yaw), math.pi)),
         ("direction_signs", lambda p: math.atan2(-p.way[1], p.way[0]) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(p.way[1], -p.way[0]) - p.now.yaw),
         ("direction_signs", lambda p: math.atan2(-p.way[1], -p.way[0]) - p.now.yaw),
-        ("heading_from_z", lambda p: p.direction - math.sin(p.now.yaw / 2.0)),
+        ("heading_from_z", lambda p: p.direction - math.sin(wrapped(p.now.yaw) / 2.0)),
+        ("heading_halved", lambda p: p.direction - wrapped(p.now.yaw) / 2.0),
         (
             "heading_in_world",
             lambda p: math.atan2(p.goal.y - p.now.world_y, p.goal.x - p.now.world_x) - p.now.world_yaw,
         ),
         (FROM_ORIGIN, lambda p: math.atan2(p.goal.y, p.goal.x) - p.now.yaw),
-        ("angle_zero", lambda p: 0.0),
+        ("angle_rounded", lambda p: round(p.truth[ANGLE])),
+        ("angle_rounded", lambda p: int(p.truth[ANGLE])),
         ("angle_is_distance", lambda p: p.truth[POSITION]),
         ("direction_once", lambda p: wrapped(errors_at(p.start, p.goal)[ANGLE] + p.start.yaw - p.now.yaw)),
+        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[ANGLE]),
         ("relative", lambda p: p.misread(p.start.yaw)[ANGLE]),
         ("relative", lambda p: p.misread(0.0)[ANGLE]),
     ),
@@ -101,57 +136,86 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
 OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
-def likely_cause(index: int, wrong: Sequence[Pair], pairs: Sequence[Pair]) -> str:
-    """The hypothesis that fits all values best, of those that fit most of the wrong ones and most of all.
+def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> str:
+    """All hypotheses that fit in every scenario, the wrong values as well as the right ones; if none does, what is wrong.
 
-    A few wrong values fit many hypotheses, which the right ones then contradict. `wrong` are among `pairs`.
+    `scenarios` are the pairs of each scenario, with the wrong ones among them.
     """
-    values = [pair.feedback.errors[index] for pair in wrong]
+    values = [pair.feedback.errors[index] for pairs in scenarios for pair in pairs]
     if not all(map(math.isfinite, values)):
         return text("Some values of {} are not finite", ERRORS[index])
-    knows_position = median(_misses(POSITION, pairs, lambda pair: pair.truth[POSITION])) < FITS
-    are_wrong = set(map(id, wrong))
-    best, least = text(OTHERWISE[index]), math.inf
+    thinned = [pairs[:: 1 + len(pairs) // MOST_PAIRS] for pairs in scenarios if pairs]
+    wrong = wrong[:: 1 + len(wrong) // MOST_PAIRS]
+    scale = 1.0 if max(map(abs, values)) < LARGE else 0.1
+    if len(set(values)) == 1 and len(values) > 5:
+        return text(NEVER_FILLED[index]) if not any(values) else text("always_the_same", ERRORS[index], values[0])
+    knows_position = all(_fits(_misses(POSITION, it, lambda p: p.truth[POSITION], 1.0), POSITION, 0.5) for it in thinned)
+    found: List[Tuple[float, str]] = []
     for cause, predict in CAUSES[index]:
-        impossible = knows_position if cause == FROM_ORIGIN else cause in NEVER_FILLED and any(values)
-        misses = _misses(index, pairs, predict)
-        of_wrong = [miss for pair, miss in zip(pairs, misses) if id(pair) in are_wrong]
-        if impossible or median(misses) >= FITS or median(of_wrong) >= FITS:
+        if cause == FROM_ORIGIN and knows_position:
             continue
-        miss = _mean(misses)
-        if miss < least - EXACT:
-            best, least = text(cause), miss
-    offset, misses = _offset(index, pairs)
-    if misses[9 * len(misses) // 10] < FITS and _mean(misses) < least - EXACT:
-        best, least = offset, _mean(misses)
-    if len(set(values)) == 1 and len(values) > 5 and values[0] != 0.0 and least > EXACT:
-        return text("always_the_same", ERRORS[index], values[0])
-    return best
+        misses = [_misses(index, pairs, predict, scale) for pairs in thinned]
+        if all(_fits(it, index) and _longest(it, pairs, index) < LONGEST_WRONG for it, pairs in zip(misses, thinned)):
+            if _fits(_misses(index, wrong, predict, scale), index, MOST_UNEXPLAINED):
+                found.append((_mean(misses), cause))
+    names = list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < LARGEST_MEAN))
+    if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
+        names = [name for name in names if name != "pose_of_start"]
+    return any_of([text(name) for name in names]) or _measured(index, thinned)
 
 
-def _offset(index: int, pairs: Sequence[Pair]) -> Tuple[str, List[float]]:
-    """The cause if most values differ from the true ones by the same amount; deviations from it, the smallest first."""
-    differences = [pair.feedback.errors[index] - pair.truth[index] for pair in pairs]
+def any_of(causes: Sequence[str]) -> str:
+    """Several causes that explain the same; the only one as it is."""
+    return functools.reduce(lambda one, other: text("{}; or: {}", one, other), causes) if causes else ""
+
+
+def names_in(cause: str) -> Set[str]:
+    """The names of the texts in a cause of any_of()."""
+    if not isinstance(cause, Text):
+        return set()
+    return {cause.name}.union(*(names_in(value) for value in cause.values if isinstance(value, str)))
+
+
+def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
+    """What is wrong with values that no hypothesis explains."""
+    differences = [pair.feedback.errors[index] - pair.truth[index] for pairs in scenarios for pair in pairs]
     if index == ANGLE:
         differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
-    middle = sorted(differences)[len(differences) // 2]
-    word = "large" if middle > 0.0 else "small"
-    cause = text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
-    if abs(middle) <= OFFSET:
-        return cause, [math.inf]
-    return cause, sorted(abs(difference - middle) for difference in differences)
+    middle = median(differences)
+    misses = [abs(difference - middle) for difference in differences]
+    if abs(middle) > OFFSET and _fits(misses, index):
+        word = "large" if middle > 0.0 else "small"
+        return text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
+    return text(OTHERWISE[index])
 
 
-def _misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float]) -> List[float]:
-    """Differences between values and predictions; of degrees and squares, which vary more, a tenth."""
-    values = [pair.feedback.errors[index] for pair in pairs]
-    misses = [value - predict(pair) for value, pair in zip(values, pairs)]
-    if index == ANGLE:
-        misses = [wrapped(miss) if abs(value) < 4.0 else miss for value, miss in zip(values, misses)]
-    scale = 1.0 if max(abs(value) for value in values) < 7.0 else 0.1
-    return [abs(miss) * scale for miss in misses]
+def _fits(misses: Sequence[float], index: int, most: float = MOST_WRONG) -> bool:
+    return sum(miss > TOLERANCES[index] for miss in misses) <= most * len(misses)
 
 
-def _mean(misses: Sequence[float]) -> float:
+def _longest(misses: Sequence[float], pairs: Sequence[Pair], index: int) -> float:
+    """How long [s] the longest row of values is that do not fit."""
+    longest, began = 0.0, math.inf
+    for miss, pair in zip(misses, pairs):
+        began = min(began, pair.feedback.time) if miss > TOLERANCES[index] else math.inf
+        longest = max(longest, pair.feedback.time - began)
+    return longest
+
+
+def _misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], scale: float) -> List[float]:
+    """How far each value is from what is predicted for any of the samples that it may be based on."""
+    misses = []
+    for pair in pairs:
+        value = pair.feedback.errors[index]
+        each = [value - predict(pair._replace(samples=[sample])) for sample in pair.samples]
+        turns = index == ANGLE and abs(value) < 4.0
+        if turns:
+            each = [wrapped(miss) for miss in each]
+        between = min(each) <= 0.0 <= max(each) and not (turns and max(each) - min(each) > math.pi)
+        misses.append(0.0 if between else min(map(abs, each)) * scale)
+    return misses
+
+
+def _mean(scenarios: Sequence[Sequence[float]]) -> float:
     """The mean, in which a single value counts for little, however far off it is."""
-    return mean(min(miss, FAR) for miss in misses)
+    return mean(min(miss, FAR) for misses in scenarios for miss in misses)

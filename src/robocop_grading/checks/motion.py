@@ -5,9 +5,20 @@ from dataclasses import replace
 from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
-from ..record import SUCCEEDED, Command, Goal, Record, active_until, errors_at, results_of, samples_between, wrapped
+from ..record import (
+    SUCCEEDED,
+    Command,
+    Goal,
+    Record,
+    Sample,
+    active_until,
+    errors_at,
+    results_of,
+    samples_between,
+    wrapped,
+)
 from ..texts import text
-from .consequences import AT_FIRST, ENDING, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
+from .consequences import AT_FIRST, ENDING, ITERATION, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
 from .endings import of_goals, success_too_far, wrong_ending
 from .topic_types import wrong_type
 from .verdict import After, Failed, NotReached, Verdict, check
@@ -18,6 +29,9 @@ MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
+LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
+STILL = 1e-3  # [m/s], [rad/s] slower commands are none
+AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
 LONG_TURN = "a long turn"
 TURN = f"{HEADING_TOLERANCE:g} rad"
 NOT_DRIVING = "linear.x 0 while angle_error is beyond {}"
@@ -109,6 +123,8 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
         cause = text("never_turned", angle, "angular.z stayed 0")
+        if len(still) < len(situations):
+            cause = text("stands_before_turn", angle)
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
     away = [it for it in situations if it.command.w * it.angle < 0.0 and abs(it.angle) < math.pi - 0.2]
     if len(away) > 0.15 * len(situations):
@@ -140,15 +156,16 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
     for goal in record.goals:
         aligned = _situations(record, goal, 0.0, limits.straight_within)
         nearly = _situations(record, goal, 0.0, limits.turn_beyond)
-        driving = [it for it in nearly if abs(it.command.v) > limits.driving]
-        idle = [it for it in nearly if abs(it.command.v) <= 1e-3 and abs(it.command.w) <= 1e-3]
+        moving = [it for it in nearly if abs(it.command.v) > STILL]
+        driving = [it for it in moving if abs(it.command.v) > limits.driving] or moving
+        idle = [it for it in nearly if abs(it.command.v) <= STILL and abs(it.command.w) <= STILL]
         if max(len(aligned), len(driving), len(idle) - LONG_IDLE) < ENOUGH:
             continue
         judged = True
         problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
         if problem is not None:
             return replace(problem, goal=goal)
-    return None if judged else NotReached("the robot never headed for the goal")
+    return None if judged else NotReached("the robot did not head for the goal for long enough")
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
@@ -200,20 +217,33 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
     for (before, far), (after, near) in zip(way, way[1:]):
         if near < GOAL_RADIUS <= far:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            if end - reached <= LATE:
-                return None
-            at_rest = all(abs(sample.v) < limits.standing_v for sample in samples_between(record, reached + LATE, end))
-            cause = text("waits_at_goal" if at_rest else "goes_on", GOAL_RADIUS)
+            cause = _cause_of_lateness(record, goal, samples_between(record, reached + LATE, end), limits)
+            name = getattr(cause, "name", "")
             least = min(distance for _, distance in way)
+            exact = name in ("waits_at_goal", "turns_at_goal") or least < 2.0 * GOAL_RADIUS - limits.reached
+            if end - reached <= (LATE_AT_REST if name == "waits_at_goal" else LATE) or not exact:
+                return None
             seen = text("success {:.2f} s later, {:.2f} m from the goal", end - reached, least)
             return Failed(text("success at {:g} m", GOAL_RADIUS), seen, reached, cause, SUCCESS_LATE, goal)
     return None
 
 
+def _cause_of_lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
+    """What the robot does meanwhile, and what the server has reported."""
+    if all(abs(sample.v) < limits.standing_v for sample in samples):
+        turns = any(abs(sample.w) > limits.standing_w for sample in samples)
+        return text("turns_at_goal" if turns else "waits_at_goal", GOAL_RADIUS)
+    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time < samples[-1].time - ITERATION]
+    if own and min(own) >= GOAL_RADIUS:
+        return text("unaware_of_goal", GOAL_RADIUS, own[-1])
+    return text("goes_on", GOAL_RADIUS)
+
+
 SWERVES = After("drives_straight", kind=LONG_TURN)
+OTHER_TURN = After("turns_to_goal", kind=LONG_TURN)
 
 
-@check("track", after=(*ENDING, SWERVES, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
+@check("track", after=(*ENDING, SWERVES, OTHER_TURN, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
     verdict = of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _long_turn(record, goal))
@@ -222,8 +252,10 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
 
 
 def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
-    """A robot that turned by much more than it needed to."""
+    """A robot that turned by much more than it needed to, until it came to the goal."""
     samples = samples_between(record, goal.time, _end(record, goal))
+    there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
+    samples = samples[:there]
     total = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
     needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
     if total <= needed + 2.0:
@@ -251,7 +283,7 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     end = _end(record, goal)
     samples = samples_between(record, goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
-    if end - goal.time <= 2.0 and moved <= 0.05:
+    if end - goal.time <= AT_ONCE and moved <= 0.05:
         return None
     seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
     if moved <= 0.05:

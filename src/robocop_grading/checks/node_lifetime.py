@@ -57,7 +57,7 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
     for number, line in enumerate(record.lines):
         if UNCAUGHT.search(line.text):
             error = first_error([it.text for it in record.lines[number : number + TRACEBACK]])
-            return Failed("no exception", error, line.time, last_error(record))
+            return Failed("no exception", error, line.time, last_error(record, line.time))
     return None
 
 

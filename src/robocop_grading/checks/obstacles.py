@@ -1,21 +1,33 @@
 """Checks of the reaction to obstacles."""
 
 import math
+import re
 from dataclasses import replace
-from typing import Optional
+from typing import Mapping, Optional, Sequence
 
 from ..handout import STOP_DISTANCE, Limits
 from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, active_until, results_of, samples_between
 from ..texts import sentences, text
-from .consequences import AT_FIRST, ENDING, MOVES_FIRST, TOO_EARLY, logged_cause
-from .endings import narrow_obstacle, of_goals, wrong_ending
+from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, logged_cause, unpublished
+from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
 from .verdict import After, Failed, NotReached, Verdict, check
 
+SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 
 
-@check("distances", after=(*ENDING, AT_FIRST), needs=("stays_alive",))
+STANDS = After("stands_at_end", kind=MOVING)
+
+
+def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
+    """The failure to notice an obstacle with its cause if no scan can come."""
+    silent = unpublished(records, SCAN_TOPIC)
+    unnoticed = failure.kind in (STATUS_NAMES[SUCCEEDED], SUCCESS, NO_RESULT, MOVES_FIRST)
+    return replace(failure, cause=text("scan_unpublished", silent)) if silent and unnoticed else failure
+
+
+@check("distances", after=(*ENDING, AT_FIRST, STANDS), needs=("stays_alive",), explain=_explained)
 def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     """An obstacle closer than 0.3 m ahead aborts the goal before the robot touches it."""
     if not record.goals:
@@ -30,19 +42,26 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         return problem
     end = results_of(record, goal)[0].time
     around = samples_between(record, end - 0.25, end + limits.stop_within)
-    if any(sample.touching for sample in around):
+    contact = next((sample.time for sample in around if sample.touching), math.inf)
+    if contact <= end:
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
         return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = text("an abort at {:g} m", STOP_DISTANCE)
-    if logged(record, EXCEPTION_LOGGED):
-        return Failed(wanted, "an exception", end, logged_cause(record), "an exception", goal)
+    if logged(record, EXCEPTION_LOGGED, end):
+        return Failed(wanted, "an exception", end, logged_cause(record, end), "an exception", goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
-        cause = text("aborted_far", STOP_DISTANCE)
-        return Failed(wanted, text("an abort at {:.2f} m", min(clearances)), end, cause, TOO_EARLY, goal)
+        nearest = min(sample.ahead for sample in samples_between(record, goal.time, end))
+        cause, kind = text("aborted_far", STOP_DISTANCE), TOO_EARLY
+        if nearest <= limits.abort_farthest:
+            cause, kind = text("aborted_later", nearest), ""
+        return Failed(wanted, text("an abort at {:.2f} m", min(clearances)), end, cause, kind, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or text("aborted_near", STOP_DISTANCE)
         return Failed(wanted, text("an abort at {:.2f} m", clearances[-1]), end, cause)
+    if contact < math.inf:
+        cause = keeps_moving(record, results_of(record, goal)[0], contact)
+        return Failed("a stop before the obstacle", "contact", contact, cause, MOVING, goal)
     return None
 
 
@@ -72,7 +91,7 @@ def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     return of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
 
 
-@check("distances", after=(*ENDING, AT_WALL))
+@check("distances", after=(*ENDING, AT_WALL, STANDS))
 def odd_scans(record: Record, limits: Limits) -> Verdict:
     """Ranges of inf, 0 and NaN are not obstacles, and do not hide obstacles."""
     if not record.goals:
@@ -83,7 +102,11 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return None
     problem = replace(problem, goal=goal)
-    if logged(record, EXCEPTION_LOGGED):
+    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == MOVING:
         return problem
-    hint = text("odd_range_as_obstacle" if wanted == SUCCEEDED else "odd_range_hides")
-    return replace(problem, cause=sentences(problem.cause, text("valid_range", hint)))
+    hint = ""
+    if problem.kind in (STATUS_NAMES[ABORTED], TOO_EARLY):
+        hint = text("odd_range_as_obstacle")
+    elif wanted == ABORTED and problem.kind in (STATUS_NAMES[SUCCEEDED], NO_RESULT, SUCCESS):
+        hint = text("odd_range_hides")
+    return replace(problem, cause=sentences(problem.cause, hint and text("valid_range", hint)))

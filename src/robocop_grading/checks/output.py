@@ -1,5 +1,6 @@
 """What the node's output and log say: actionlib's complaints, exceptions, the last error."""
 
+import math
 import os
 import re
 from typing import Iterator, Pattern, Sequence
@@ -25,21 +26,25 @@ PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
 # The path of a file that is not the node's: of a library, or of the agent under which it runs.
 LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop_grading/agent/")
 FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
+DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 
 
-def logged(record: Record, pattern: Pattern[str]) -> bool:
-    """Whether a line of the node's output matches."""
-    return any(pattern.search(line.text) for line in record.lines)
+def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
+    """Whether a line of the node's output matches that it printed until then [s]."""
+    return any(pattern.search(line.text) for line in record.lines if line.time <= until + DELAY)
 
 
-def last_error(record: Record) -> str:
+def last_error(record: Record, until: float = math.inf) -> str:
     """The last traceback's last line with the node's own innermost place, or the last line that is not information.
+
+    Lines that were printed later than `until` [s] do not count.
 
     A place in a library is named only if no traceback has a place outside of libraries.
     """
-    unstripped = [text for line in record.lines for text in line.text.splitlines() if text.strip()]
+    printed = [line.text for line in record.lines if line.time <= until + DELAY]
+    unstripped = [line for text in printed for line in text.splitlines() if line.strip()]
     lines, ends = [text.strip() for text in unstripped], set(_ends(unstripped))
     errors = [
         number

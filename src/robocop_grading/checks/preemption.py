@@ -74,17 +74,17 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
 )
 def next_goal(record: Record, limits: Limits) -> Verdict:
     """After a goal has ended, in any state, the next one is served."""
-    if len(record.goals) < 2 or not results_of(record, record.goals[0]):
+    if len(record.goals) < 2 or not results_of(record, record.goals[-2]):
         return NotReached("the first goal did not end")
     goal = record.goals[-1]
     answered = {status.id for status in record.statuses} | {result.id for result in record.results}
     if goal.id not in answered:
         cause = "The server no longer accepts goals"
-        return Failed("an answer to the second goal", "none", goal.time, cause, NO_ANSWER, goal)
+        return Failed("an answer to the next goal", "none", goal.time, cause, NO_ANSWER, goal)
     problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
     if problem is None:
         return None
-    if logged(record, EXCEPTION_LOGGED) or problem.kind == NOT_RESET:
+    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == NOT_RESET:
         return problem
-    first = status_name(results_of(record, record.goals[0])[0].status)
-    return replace(problem, cause=sentences(problem.cause, text("second_goal_fails", first)))
+    before = status_name(results_of(record, record.goals[-2])[0].status)
+    return replace(problem, cause=sentences(problem.cause, text("next_goal_fails", before)))

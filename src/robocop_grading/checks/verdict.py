@@ -4,7 +4,7 @@ A check that has tested its contract and found it kept has nothing to say: its v
 """
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
 from ..handout import Limits
 from ..record import Goal, Record
@@ -35,6 +35,7 @@ class Failed:
 
 Verdict = Union[NotReached, Failed, None]
 Judge = Callable[[Record, Limits], Verdict]
+Explain = Callable[[Mapping[str, Record], Sequence[str], Failed], Failed]  # all records, names of those to compare
 When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure
 
 
@@ -59,13 +60,14 @@ class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
     Its failure follows from the first one in `after` that applies. If it is not reached, the first one in `needs` that
-    has failed is the reason.
+    has failed is the reason. `explain` names the causes of a failure that fit all scenarios which the check examines.
     """
 
     judge: Judge
     plot: str
     after: Sequence[After] = ()
     needs: Sequence[str] = ()
+    explain: Optional[Explain] = None
 
     def __call__(self, record: Record, limits: Limits) -> Verdict:
         return self.judge(record, limits)
