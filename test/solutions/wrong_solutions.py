@@ -44,6 +44,8 @@ TURN = "self.drive(0.0, max(-0.8, min(0.8, 2.0 * angle_error)))"
 ERROR = "angle_error = wrap(math.atan2(dy, dx) - yaw)"
 YAW = "yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))"
 OBSTACLE = "elif self.min_dist_ahead < 0.3:"
+ABORT = f"{OBSTACLE}\n                success = False\n                break"
+POSE = "self.pose = (msg.pose.pose.position.x, msg.pose.pose.position.y, yaw)"
 PUBLISH = "            self.server.publish_feedback(feedback)\n"
 PREEMPTION = """            if self.server.is_preempt_requested():
                 self.stop()
@@ -222,7 +224,7 @@ WRONG = (
     _server("right_side_forgotten", "turns_to_goal", "never turned", (CONDITION, "if angle_error > 0.1:")),
     _server("drives_backward", "drives_straight", "backward", ("self.drive(0.2, 0.0)", "self.drive(-0.2, 0.0)")),
     _server("drives_bends", "drives_straight", "keeps turning", ("self.drive(0.2, 0.0)", "self.drive(0.2, 0.5)")),
-    _server("never_drives", "drives_straight", "stayed 0", ("self.drive(0.2, 0.0)", "self.drive(0.0, 0.0)")),
+    _server("never_drives", "drives_straight", "linear.x is 0", ("self.drive(0.2, 0.0)", "self.drive(0.0, 0.0)")),
     _server(
         "reached_at_half_a_metre", "reaches_goal", "threshold", ("if position_error < 0.1:", "if position_error < 0.5:")
     ),
@@ -286,7 +288,7 @@ WRONG = (
     _server("success_flag_forgotten", "success_result", "contradicts", ("result.success = success", "pass")),
     _server(
         "result_not_sent",
-        "failure_result",
+        "success_result",
         "No result",
         ("set_succeeded(result)", "set_succeeded()"),
         ("set_aborted(result)", "set_aborted()"),
@@ -355,7 +357,7 @@ WRONG = (
         (OBSTACLE, "elif self.min_dist_ahead < 0.3 and abs(angle_error) < 0.05:"),
     ),
     _server("no_obstacle_check", "stops_at_obstacle", "ran into an obstacle", (OBSTACLE, "elif False:")),
-    _server("obstacle_too_early", "stops_at_obstacle", "farther than 0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
+    _server("obstacle_too_early", "stops_at_obstacle", "farther than", (OBSTACLE, "elif self.min_dist_ahead < 0.6:")),
     _server("obstacle_too_late", "stops_at_obstacle", "0.3 m", (OBSTACLE, "elif self.min_dist_ahead < 0.15:")),
     _server(
         "success_on_abort",
@@ -880,5 +882,126 @@ ADVISED: Tuple[Wrong, ...] = (
         "reports_status",
         "reports ACTIVE while the goal is PENDING",
         (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
+    ),
+    _server(
+        "asin",
+        "feedback_angle",
+        "The sign of dx has no effect",
+        (ERROR, "angle_error = wrap(math.asin(dy / (position_error or 1.0)) - yaw)"),
+        alone=True,
+    ),
+    _server(
+        "wrapped_by_half_a_turn",
+        "feedback_angle",
+        "angle_error is taken modulo pi",
+        (ERROR, "angle_error = (math.atan2(dy, dx) - yaw + math.pi / 2) % math.pi - math.pi / 2"),
+        alone=True,
+    ),
+    _server("yaw_without_its_factor", "feedback_angle", "half of the true one", (YAW, "yaw = math.atan2(q.z, q.w)")),
+    _server(
+        "rounded_feedback",
+        "feedback_position",
+        "rounded to a whole number",
+        ("feedback.position_error = position_error", "feedback.position_error = round(position_error)"),
+    ),
+    _server(
+        "truncated_angle",
+        "feedback_angle",
+        "rounded to a whole number",
+        ("feedback.angle_error = angle_error", "feedback.angle_error = int(angle_error)"),
+        alone=True,
+    ),
+    _server(
+        "larger_of_dx_and_dy",
+        "feedback_position",
+        "the larger one of |dx| and |dy|",
+        ("math.hypot(dx, dy)", "max(abs(dx), abs(dy))"),
+        alone=True,
+    ),
+    _server(
+        "goal_coordinates_swapped",
+        "feedback_position",
+        "The goal's x and y are swapped",
+        ("dx = goal.position.x - x", "dx = goal.position.y - x"),
+        ("dy = goal.position.y - y", "dy = goal.position.x - y"),
+        alone=True,
+    ),
+    _server(
+        "scaled_odometry",
+        "reaches_goal",
+        "This follows from another failed check",
+        (POSE, "self.pose = (0.97 * msg.pose.pose.position.x, 0.97 * msg.pose.pose.position.y, yaw)"),
+    ),
+    _server(
+        "reverses_before_the_abort",
+        "stops_at_obstacle",
+        "only when it had moved away again",
+        (
+            ABORT,
+            ABORT.replace("break", "self.drive(-0.1, 0.0)\n                rospy.sleep(2.0)\n                break"),
+        ),
+        alone=True,
+    ),
+    _server(
+        "aborts_and_drives_on",
+        "stands_at_end",
+        "because the last /cmd_vel stays in force",
+        (ABORT, ABORT.replace("break", "self.drive(0.2, 0.0)\n                break")),
+        ("        self.stop()\n        result =", "        self.stop() if success else None\n        result ="),
+        alone=True,
+    ),
+    _server(
+        "preempt_request_without_parentheses",
+        "reaches_goal",
+        "Is is_preempt_requested() called, with its parentheses?",
+        (REQUESTED, REQUESTED.replace("()", "")),
+        alone=True,
+    ),
+    _server(
+        "odometry_callback_sleeps",
+        "feedback_angle",
+        "or not stored at once by the callback of /odom?",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.5)\n"),
+        alone=True,
+    ),
+    _server(
+        "other_odometry_topic",
+        "feedback_angle",
+        "subscribes to /odometry/filtered, which nobody publishes",
+        ("'/odom'", "'/odometry/filtered'"),
+        ("self.pose = None", "self.pose = (0.0, 0.0, 0.0)"),
+        alone=True,
+    ),
+    _server(
+        "other_scan_topic",
+        "stops_at_obstacle",
+        "subscribes to /laser, which nobody publishes",
+        ("'/scan'", "'/laser'"),
+        alone=True,
+    ),
+    _server(
+        "turns_by_the_goals_angle",
+        "turns_to_goal",
+        "turns away",
+        (TURN, TURN.replace("angle_error", "math.atan2(goal.position.y, goal.position.x)")),
+        alone=True,
+    ),
+    _server(
+        "pirouette_before_the_result",
+        "reaches_goal",
+        "turns at the goal",
+        (
+            "        self.stop()\n        result =",
+            "        self.drive(0.0, float(success))\n        rospy.sleep(6.5 * success)\n"
+            "        self.stop()\n        result =",
+        ),
+        alone=True,
+    ),
+    _server(
+        "exception_in_a_later_goal",
+        "no_exception",
+        "NameError",
+        (BEGIN, f"        if self.pose[0] < -1.0:\n            rospy.sleep(1.0)\n            undefined\n{BEGIN}"),
+        alone=True,
     ),
 )

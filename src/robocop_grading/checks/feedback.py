@@ -35,6 +35,8 @@ OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 
 MOVING = 10  # fewer messages say nothing about their age
 CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
 MOST_DIFFERENT = 0.2  # [m], [rad] that counts of a difference
+STEADY = 0.005  # [m], [rad] smaller changes of an error are none
+SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
 # Kinds of failures.
 WRONG_POSITION = "of the position"
@@ -163,10 +165,21 @@ def _old(record: Record, index: int) -> Optional[Failed]:
         return None
     means = rows.mean(axis=0)
     best = int(means.argmin())
-    if AGES[best] < OLD or means[best] > 0.5 * means[0]:
+    if AGES[best] < OLD or means[best] > 0.5 * means[0] or _is_shifted(record, index):
         return None
     name, seen = ERRORS[index], text("one of {:.2f} s ago", AGES[best])
     return Failed(text("the present {}", name), seen, record.feedback[0].time, text("old_feedback", name))
+
+
+def _is_shifted(record: Record, index: int) -> bool:
+    """Whether an error is also wrong while it does not change: then it is not an old one."""
+    differences = []
+    for pair in _compared(index, record):
+        truths = [errors_at(sample, pair.goal)[index] for sample in pair.samples]
+        if max(truths) - min(truths) < STEADY:
+            difference = pair.feedback.errors[index] - truths[-1]
+            differences.append(wrapped(difference) if index == ANGLE else difference)
+    return bool(differences) and abs(float(np.median(differences))) > SHIFT
 
 
 def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:

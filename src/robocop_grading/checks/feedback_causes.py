@@ -77,7 +77,14 @@ def _misplaced(index: int) -> Sequence[Hypothesis]:
 FROM_ORIGIN = "angle_from_origin"
 NEVER_FILLED = ("distance_zero", "angle_zero")
 # Causes that explain both errors: the robot's or the goal's position is wrong.
-OF_POSITION = {"relative", "distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world", "pose_of_start"}
+OF_POSITION = {
+    "relative",
+    "distance_from_origin",
+    FROM_ORIGIN,
+    "position_in_world",
+    "heading_in_world",
+    "pose_of_start",
+}
 OF_POSITION |= {name for name, _ in _misplaced(POSITION)}
 # Causes of which the errors are those of a pose that does not change.
 UNCHANGED = {"distance_from_origin", "angle_without_heading", "pose_of_start"}
@@ -137,7 +144,7 @@ OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
 def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> str:
-    """All hypotheses that fit in every scenario, the wrong values as well as the right ones; if none does, what is wrong.
+    """All causes that fit in every scenario, the wrong values as well as the right ones; if none does, what is wrong.
 
     `scenarios` are the pairs of each scenario, with the wrong ones among them.
     """
@@ -146,22 +153,29 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
         return text("Some values of {} are not finite", ERRORS[index])
     thinned = [pairs[:: 1 + len(pairs) // MOST_PAIRS] for pairs in scenarios if pairs]
     wrong = wrong[:: 1 + len(wrong) // MOST_PAIRS]
-    scale = 1.0 if max(map(abs, values)) < LARGE else 0.1
+    scale = 1.0 if max(abs(value) for value in values) < LARGE else 0.1
     if len(set(values)) == 1 and len(values) > 5:
         return text(NEVER_FILLED[index]) if not any(values) else text("always_the_same", ERRORS[index], values[0])
-    knows_position = all(_fits(_misses(POSITION, it, lambda p: p.truth[POSITION], 1.0), POSITION, 0.5) for it in thinned)
+    names = _fitting(index, wrong, thinned, scale)
+    if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
+        names = [name for name in names if name != "pose_of_start"]
+    return any_of([text(name) for name in names]) or _measured(index, thinned)
+
+
+def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[str]:
+    """The names of the hypotheses that fit, the best one first."""
+    positions = [_misses(POSITION, pairs, lambda p: p.truth[POSITION], 1.0) for pairs in scenarios]
+    knows_position = all(_fits(misses, POSITION, 0.5) for misses in positions)
     found: List[Tuple[float, str]] = []
     for cause, predict in CAUSES[index]:
         if cause == FROM_ORIGIN and knows_position:
             continue
-        misses = [_misses(index, pairs, predict, scale) for pairs in thinned]
-        if all(_fits(it, index) and _longest(it, pairs, index) < LONGEST_WRONG for it, pairs in zip(misses, thinned)):
-            if _fits(_misses(index, wrong, predict, scale), index, MOST_UNEXPLAINED):
-                found.append((_mean(misses), cause))
-    names = list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < LARGEST_MEAN))
-    if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
-        names = [name for name in names if name != "pose_of_start"]
-    return any_of([text(name) for name in names]) or _measured(index, thinned)
+        if not _fits(_misses(index, wrong, predict, scale), index, MOST_UNEXPLAINED):
+            continue
+        misses = [_misses(index, pairs, predict, scale) for pairs in scenarios]
+        if all(_fits(it, index) and _longest(it, pairs, index) < LONGEST_WRONG for it, pairs in zip(misses, scenarios)):
+            found.append((_mean(misses), cause))
+    return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < LARGEST_MEAN))
 
 
 def any_of(causes: Sequence[str]) -> str:
@@ -212,7 +226,7 @@ def _misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float],
         if turns:
             each = [wrapped(miss) for miss in each]
         between = min(each) <= 0.0 <= max(each) and not (turns and max(each) - min(each) > math.pi)
-        misses.append(0.0 if between else min(map(abs, each)) * scale)
+        misses.append(0.0 if between else min(abs(miss) for miss in each) * scale)
     return misses
 
 

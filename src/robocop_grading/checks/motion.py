@@ -18,7 +18,18 @@ from ..record import (
     wrapped,
 )
 from ..texts import text
-from .consequences import AT_FIRST, ENDING, ITERATION, MISLED, MOVES_FIRST, SUCCESS_LATE, alike, died_before, nothing_came
+from .consequences import (
+    AT_FIRST,
+    ENDING,
+    EXCEPTION,
+    ITERATION,
+    MISLED,
+    MOVES_FIRST,
+    SUCCESS_LATE,
+    alike,
+    died_before,
+    nothing_came,
+)
 from .endings import of_goals, success_too_far, wrong_ending
 from .topic_types import wrong_type
 from .verdict import After, Failed, NotReached, Verdict, check
@@ -30,6 +41,7 @@ LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; m
 ENOUGH = 4  # fewer commands are not judged
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
 LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
+LARGE_TURN = 0.5  # [rad] of a robot at the goal
 STILL = 1e-3  # [m/s], [rad/s] slower commands are none
 AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
 LONG_TURN = "a long turn"
@@ -76,7 +88,11 @@ def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Sit
 NO_NODE = After("stays_alive", died_before)
 
 
-@check("speeds", after=(MISLED, After("reaches_goal", nothing_came), AT_FIRST, NO_NODE), needs=("reaches_goal",))
+@check(
+    "speeds",
+    after=(EXCEPTION, MISLED, After("reaches_goal", nothing_came), AT_FIRST, NO_NODE),
+    needs=("reaches_goal",),
+)
 def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
     judged = False
@@ -145,7 +161,7 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = wrong_type(record, "/cmd_vel") or text("never_turned", angle, reason)
-        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause)
+        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, "unturned")
     return None
 
 
@@ -230,10 +246,12 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
 
 def _cause_of_lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
     """What the robot does meanwhile, and what the server has reported."""
-    if all(abs(sample.v) < limits.standing_v for sample in samples):
-        turns = any(abs(sample.w) > limits.standing_w for sample in samples)
-        return text("turns_at_goal" if turns else "waits_at_goal", GOAL_RADIUS)
-    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time < samples[-1].time - ITERATION]
+    begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
+    drives = any(abs(command.v) > STILL for command in record.commands if begin <= command.time < end)
+    if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
+        turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
+        return text("turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS)
+    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
         return text("unaware_of_goal", GOAL_RADIUS, own[-1])
     return text("goes_on", GOAL_RADIUS)

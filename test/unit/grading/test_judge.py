@@ -1,7 +1,8 @@
 """Outcomes, points, and what follows from what."""
 
+import math
 from dataclasses import replace
-from typing import Any, Dict, cast
+from typing import Any, Dict, Tuple, cast
 
 import pytest
 from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back
@@ -61,6 +62,35 @@ def test_robot_that_acts_on_its_wrong_angle_turns_wrongly_because_of_that() -> N
     wrong = replace(fed_back(angle=lambda a: -a), commands=commanded(lambda c: replace(c, w=-c.w)).commands)
     assert _failures(wrong) == {"feedback_angle": "", "turns_to_goal": "feedback_angle"}
     assert _failures(commanded(lambda c: replace(c, w=-c.w))) == {"turns_to_goal": ""}
+
+
+def test_cause_of_wrong_feedback_fits_in_all_scenarios() -> None:
+    rounded = fed_back(position=round)
+    shorter = _cause("feedback_position", left=fed_back(position=lambda d: d / math.sqrt(2.0)))
+    assert shorter.count("; or: ") == 2 and all(word in shorter for word in ("is |dx|", "is |dy|", "larger one"))
+    assert "rounded to a whole number" in _cause("feedback_position", left=rounded)
+    assert "is not the distance" in _cause("feedback_position", left=rounded, right=RIGHT)
+
+
+def test_pose_that_never_changes_is_explained_by_the_topic_that_nobody_publishes() -> None:
+    goals = {"left": GOAL, "right": replace(GOAL, x=-1.0)}
+    records = {name: changed(goals=(goal,), feedback=_unturned(goal)) for name, goal in goals.items()}
+    assert "as if the heading stayed 0" in _cause("feedback_angle", **records)
+    start = Record("start", "server", unpublished=("/odometry/filtered", "/laser"))
+    assert "subscribes to /odometry/filtered" in _cause("feedback_angle", start=start, **records)
+
+
+def _unturned(goal: rec.Goal) -> Tuple[rec.Feedback, ...]:
+    """The feedback of a server that leaves out the heading."""
+    errors = (rec.errors_at(replace(at, yaw=0.0), goal) for at in RIGHT.samples)
+    return tuple(replace(it, position_error=d, angle_error=a) for it, (d, a) in zip(RIGHT.feedback, errors))
+
+
+def _cause(check: str, **records: Record) -> str:
+    grade = judge("anna", load(PLAN), {"server": records}, {})
+    failure = next(it.failure for it in grade.checks if it.name == check)
+    assert failure is not None
+    return failure.cause
 
 
 def _failures(record: Record) -> Dict[str, str]:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import List, Tuple
+from typing import Any, List, Tuple
 
 import pytest
 from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
@@ -72,7 +72,11 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("reaches_goal", LATE, "stands at the goal, but the result comes later"),
     ("reaches_goal", changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
     ("reaches_goal", changed(results=(rec.Result(10.0, "g", rec.ABORTED, False, ""),)), "set_aborted is called"),
-    ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)), "No result or an empty one"),
+    (
+        "success_result",
+        changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, ""),)),
+        "No result or an empty one",
+    ),
     ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, ""),)), "empty"),
     ("stands_at_end", changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept moving"),
     ("one_ending", changed(results=RIGHT.results * 2), "two terminal states"),
@@ -214,3 +218,58 @@ def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: b
     assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause and words in verdict.cause
     never = CHECKS["cancel"](cancelled, LIMITS)
     assert isinstance(never, Failed) and "is not noticed" in never.cause
+
+
+@pytest.mark.parametrize("seconds, late", [(0.8, False), (1.4, True)])
+def test_result_of_a_robot_that_rests_at_the_goal_may_come_a_second_later(seconds: float, late: bool) -> None:
+    result = replace(RIGHT.results[0], time=10.0 + seconds)
+    verdict = CHECKS["reaches_goal"](changed(results=(result,), statuses=RIGHT.statuses[:1]), LIMITS)
+    assert isinstance(verdict, Failed) is late
+
+
+def test_robot_that_goes_on_is_told_what_its_own_feedback_said() -> None:
+    drives = tuple(replace(it, v=0.2, x=it.x * 1.05, y=it.y * 1.05) for it in RIGHT.samples)
+    later = changed(results=(replace(RIGHT.results[0], time=12.0),), statuses=RIGHT.statuses[:1], samples=drives)
+    for offset, words in ((0.0, "threshold of position_error another one"), (0.035, "the last position_error in the")):
+        feedback = tuple(replace(it, position_error=it.position_error + offset) for it in RIGHT.feedback)
+        verdict = CHECKS["reaches_goal"](replace(later, feedback=feedback), LIMITS)
+        assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def _aborted(**changes: Any) -> Record:
+    """A goal that is aborted 0.3 m before an obstacle, at 10 s."""
+    goal, result = replace(RIGHT.goals[0], ends="ABORTED"), rec.Result(10.0, "g", rec.ABORTED, False, "obstacle")
+    samples = tuple(replace(it, ahead=max(0.3, 1.3 - it.time / 10.0)) for it in RIGHT.samples)
+    return changed(**{"goals": (goal,), "results": (result,), "samples": samples, **changes})
+
+
+@pytest.mark.parametrize("time, words", [(9.9, "KeyError"), (11.0, "")])
+def test_exception_after_a_goal_is_not_charged_to_it(time: float, words: str) -> None:
+    lines = rec.Line(time, "Traceback (most recent call last):"), rec.Line(time, "KeyError: 'x'")
+    verdict = CHECKS["stops_at_obstacle"](_aborted(lines=lines), LIMITS)
+    assert verdict is None if not words else isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_contact_after_an_abort_in_time_is_of_a_robot_that_was_not_stopped() -> None:
+    samples = tuple(replace(it, touching=it.time > 10.5) for it in _aborted().samples)
+    verdict = CHECKS["stops_at_obstacle"](_aborted(samples=samples), LIMITS)
+    assert isinstance(verdict, Failed) and "kept moving after the result (ABORTED)" in verdict.cause
+    commands = (*RIGHT.commands, rec.Command(10.4, 0.2, 0.0))
+    verdict = CHECKS["stops_at_obstacle"](_aborted(samples=samples, commands=commands), LIMITS)
+    assert isinstance(verdict, Failed) and "still commanded to move after the result" in verdict.cause
+
+
+def test_abort_after_driving_back_is_not_said_to_have_another_threshold() -> None:
+    samples = tuple(replace(it, ahead=0.6 if it.time > 9.0 else 0.3) for it in RIGHT.samples)
+    verdict = CHECKS["stops_at_obstacle"](_aborted(samples=samples), LIMITS)
+    assert isinstance(verdict, Failed) and "only when it had moved away again" in verdict.cause
+
+
+def test_preempted_goal_that_nobody_cancelled_is_called_so() -> None:
+    preempted = changed(results=(rec.Result(0.1, "g", rec.PREEMPTED, False, "x"),))
+    verdict = CHECKS["reaches_goal"](preempted, LIMITS)
+    assert isinstance(verdict, Failed) and "with its parentheses" in verdict.cause
+    late = replace(preempted, results=(replace(preempted.results[0], time=9.0),))
+    verdict = CHECKS["reaches_goal"](late, LIMITS)
+    assert isinstance(verdict, Failed) and "neither a cancel request" in verdict.cause
+    assert "parentheses" not in verdict.cause
