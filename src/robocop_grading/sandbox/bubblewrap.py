@@ -10,6 +10,7 @@ runner.py the wall time.
 import importlib.util
 import os
 import shutil
+import stat
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -30,10 +31,8 @@ CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an externa
 WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
-SYSTEM = """
-/usr /bin /sbin /lib /lib32 /lib64 /opt /etc/ros
-/etc/alternatives /etc/catkin /etc/group /etc/hosts /etc/ld.so.cache /etc/localtime /etc/nsswitch.conf /etc/passwd
-""".split()
+SYSTEM = "/usr /bin /sbin /lib /lib32 /lib64 /opt /etc".split()
+NAME = "student"  # of the user in the sandbox; libraries look up the current user, such as getpass and matplotlib
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")
@@ -90,6 +89,7 @@ class Sandbox:
         for parent in _parents([*map(Path, SYSTEM), *self.reads, *reads, folder]):
             wrap += ["--perms", "0755", "--dir", str(parent)]
         wrap += [*_mounts("--ro-bind-try", map(Path, SYSTEM)), *_mounts("--ro-bind", [*self.reads, *reads])]
+        wrap += [*_hidden(Path("/etc")), *_accounts(environment.get("HOME", str(folder)))]
         wrap += [*place, *SEALED, "--chdir", str(folder), "--"]
         return [*wrap, *_restrictions(environment, cpu_time), *command]
 
@@ -111,6 +111,11 @@ def user() -> int:
     return FIRST_USER + os.getpid() % USERS if os.geteuid() == 0 else os.geteuid()
 
 
+def group() -> int:
+    """The gid in the sandbox."""
+    return user() if os.geteuid() == 0 else os.getegid()
+
+
 def change_owner(folder: Path, owner: int) -> None:
     """Give a folder and its content to a user, without following links. Only root can do it, and only root has to."""
     if os.geteuid() == 0:
@@ -120,14 +125,42 @@ def change_owner(folder: Path, owner: int) -> None:
 
 def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
+    environment = {"USER": NAME, "LOGNAME": NAME, **environment}
     limits = {"as": ADDRESS_SPACE, "nproc": TASKS, "nofile": FILES, "fsize": FILE_SIZE, "core": 0}
     limits_of = [f"--{name}={limit}" for name, limit in limits.items()]
     drop = ["--clear-groups", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
     return [
-        *(["setpriv", f"--reuid={user()}", f"--regid={user()}", *drop, "--"] if os.geteuid() == 0 else []),
+        *(["setpriv", f"--reuid={user()}", f"--regid={group()}", *drop, "--"] if os.geteuid() == 0 else []),
         *["prlimit", *limits_of, f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}", "--"],
         *["env", "-i", *(f"{name}={value}" for name, value in environment.items())],
     ]
+
+
+def _hidden(folder: Path) -> List[str]:
+    """Options that hide what not everybody may read in a folder that is shown, such as /etc/shadow.
+
+    When root starts the sandbox, the kernel denies it anyway; another user may be in a group that may read it.
+    """
+    options: List[str] = []
+    for entry in sorted(os.scandir(folder), key=lambda it: it.name):
+        if entry.is_symlink():
+            continue  # where it leads is shown or not by itself
+        readable = (stat.S_IROTH | stat.S_IXOTH) if entry.is_dir() else stat.S_IROTH
+        if entry.stat().st_mode & readable == readable:
+            options += _hidden(Path(entry.path)) if entry.is_dir() else []
+        elif entry.is_dir():
+            options += ["--perms", "0000", "--tmpfs", entry.path]
+        else:
+            options += ["--ro-bind", "/dev/null", entry.path]  # a device can't be opened there
+    return options
+
+
+def _accounts(home: str) -> List[str]:
+    """Options for lists of users and groups in which the sandbox's user has a name and a home."""
+    users = f"{NAME}:x:{user()}:{group()}::{home}:/bin/sh\n{Path('/etc/passwd').read_text()}"
+    groups = f"{NAME}:x:{group()}:\n{Path('/etc/group').read_text()}"
+    readable = ["--perms", "0644", "--ro-bind-data"]
+    return [*readable, users, "/etc/passwd", *readable, groups, "/etc/group"]
 
 
 def _parents(paths: Sequence[Path]) -> List[Path]:

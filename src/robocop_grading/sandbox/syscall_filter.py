@@ -8,6 +8,8 @@ x86-64, kill the process.
 
 Usage: python syscall_filter.py bwrap ARGUMENT...
 
+bwrap's option --ro-bind-data has a text here in place of a descriptor.
+
 It imports nothing of this package, because the environment of bubblewrap is bare.
 """
 
@@ -15,7 +17,8 @@ import errno
 import os
 import socket
 import sys
-from typing import Any, Iterator, Tuple
+from functools import partial
+from typing import Any, Callable, Iterator, List, Sequence, Tuple
 
 # Calls of all of ROS's architectures; libseccomp leaves out those that one does not have.
 ALLOWED = """
@@ -103,23 +106,42 @@ def rules() -> Iterator[Rule]:
 
 
 def filter_file() -> int:
-    """Descriptor of a file with the filter as a BPF program, at its beginning, which a started program inherits."""
+    """Descriptor of a file with the filter as a BPF program."""
     import seccomp
 
     calls = seccomp.SyscallFilter(seccomp.ERRNO(errno.ENOSYS))
     for action, name, *conditions in rules():
         if seccomp.resolve_syscall(seccomp.Arch(), name) != -1:  # newer than this libseccomp
             calls.add_rule(action, name, *conditions)
-    file = os.memfd_create("filter", 0)
+    return memory_file(calls.export_bpf)
+
+
+def memory_file(write: Callable[[Any], object]) -> int:
+    """Descriptor of a file with what `write` writes to it, at its beginning, which a started program inherits."""
+    file = os.memfd_create("sandbox", 0)
     with os.fdopen(os.dup(file), "wb") as out:
-        calls.export_bpf(out)
+        write(out)
     os.lseek(file, 0, os.SEEK_SET)
     return file
+
+
+def with_descriptors(arguments: Sequence[str]) -> List[str]:
+    """bwrap's arguments, each text in place of a descriptor as a file."""
+    words, option = [], ""
+    for word in arguments:
+        words.append(str(memory_file(partial(_write, word))) if option == "--ro-bind-data" else word)
+        option = word if option != "--" else option
+    return words
+
+
+def _write(text: str, file: Any) -> None:
+    file.write(text.encode(errors="surrogateescape"))
 
 
 def main() -> None:
     """Become bubblewrap."""
     program, *arguments = sys.argv[1:]
+    arguments = with_descriptors(arguments)
     os.execvp(program, [program, "--seccomp", str(filter_file()), *arguments])
 
 

@@ -1,0 +1,102 @@
+"""What of the system a program in the sandbox finds."""
+
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from aro_robocop_goto_as.errors import GradingError
+from robocop_grading.sandbox.bubblewrap import NAME, open_sandbox
+
+SHARE = Path(os.environ["ROBOCOP_SHARE"])
+PATIENCE = 600.0  # [s, wall]
+MODULE = re.compile(r"/usr/lib/python3/dist-packages/(\w+)(?:/__init__\.py|\.py|\.[\w-]+\.so)$", re.MULTILINE)
+# Imports each module in a process of its own, and prints as JSON which could not be imported, and why.
+IMPORTS = """
+import importlib, json, os, sys
+failures = {}
+for name in sys.argv[1:]:
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.dup2(2, 1)
+        try:
+            importlib.import_module(name)
+        except BaseException as error:
+            os.write(writer, repr(error).encode()[:4000])
+        os._exit(0)
+    os.close(writer)
+    status = os.waitpid(child, 0)[1]
+    failure = os.read(reader, 4000).decode() or ("" if status == 0 else f"status {status}")
+    os.close(reader)
+    if failure:
+        failures[name] = failure
+print(json.dumps(failures))
+"""
+
+
+@pytest.fixture(scope="module")
+def inside():
+    """Makes the command line that runs a command in the sandbox, where the machine lets it run."""
+    try:
+        sandbox = open_sandbox(False)
+    except GradingError as error:
+        pytest.skip(str(error))
+    environment = {"HOME": "/tmp/home", "PATH": "/usr/bin:/bin"}
+    return lambda command: sandbox.probe_command(sandbox.node_command(command, environment, (), Path("/tmp/home")))
+
+
+def output(command):
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=PATIENCE)
+    assert done.returncode == 0
+    return done.stdout
+
+
+def debian_modules():
+    """The Python modules of the lists of Debian's packages, as far as they are installed."""
+    lists = [path.read_text() for path in (SHARE / "deb-packages").glob("*.txt")]
+    packages = sorted(set(re.findall(r"^python3-[\w.+-]+", "\n".join(lists), re.MULTILINE)))
+    files = subprocess.run(["dpkg", "-L", *packages], capture_output=True, text=True).stdout
+    return sorted(set(MODULE.findall(files)) - {"__pycache__"})
+
+
+@pytest.mark.timeout(2 * PATIENCE)
+def test_debian_modules_can_be_imported_inside_as_outside(inside):
+    modules = debian_modules()
+    assert {"matplotlib", "rospy", "numpy", "PIL"} <= set(modules)
+    imports = ["/usr/bin/python3", "-c", IMPORTS, *modules]
+    assert json.loads(output(inside(imports))) == json.loads(output(["env", "-i", "HOME=/tmp", *imports]))
+
+
+def test_current_user_has_a_name_a_home_and_fonts(inside):
+    code = (
+        "import getpass, grp, os, pwd\nimport matplotlib.pyplot as plt\n"
+        "user = pwd.getpwuid(os.getuid())\n"
+        "group = grp.getgrgid(os.getgid()).gr_name\n"
+        "print(getpass.getuser(), user.pw_name, user.pw_dir, group, os.path.expanduser('~'))\n"
+        "plt.title('fonts')\nplt.savefig('figure.png')\n"
+        "print(os.path.exists('figure.png'), os.listdir('/etc/fonts') != [])\n"
+    )
+    done = subprocess.run(inside(["/usr/bin/python3", "-c", code]), capture_output=True, text=True, timeout=PATIENCE)
+    assert done.stdout.splitlines() == [f"{NAME} {NAME} /tmp/home {NAME} /tmp/home", "True True"], done.stderr
+    assert done.stderr in ("", "Matplotlib is building the font cache; this may take a moment.\n")  # after 5 s
+
+
+def test_files_of_etc_that_not_everybody_may_read_are_hidden(inside):
+    code = (
+        "import os\n"
+        "for folder, folders, files in os.walk('/etc'):\n"
+        "    for path in (os.path.join(folder, name) for name in folders + files):\n"
+        "        mode = 0 if os.path.islink(path) else os.stat(path).st_mode\n"
+        "        if mode and not mode & 0o004 or '/shadow' in path or path == '/etc/ssl/private':\n"
+        "            try:\n"
+        "                print('SUCCESS', path, os.listdir(path) if os.path.isdir(path) else open(path).read())\n"
+        "            except OSError:\n"
+        "                print('refused', path)\n"
+    )
+    lines = output(inside(["/usr/bin/python3", "-c", code])).splitlines()
+    assert "refused /etc/shadow" in lines
+    assert not [line for line in lines if line.startswith("SUCCESS")]
