@@ -1,11 +1,14 @@
 """What the scheduler does not see: threads that wait in another way, and other processes of the hand-in.
 
 Both are found in /proc. A thread that the kernel shows asleep, not for a disk, and that has not run between two looks,
-counts as waiting. Other processes hold simulated time as long as they work, and count with their processor time.
+counts as waiting. So does one that has slept for most of a second in which no other one had a turn, such as one that
+polls in C, until it waits in a known way. Other processes hold simulated time as long as they work, and count with
+their processor time.
 """
 
 import contextlib
 import glob
+import math
 import os
 import re
 import sys
@@ -18,21 +21,28 @@ from .threads import native_ids
 STARTS = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")  # audit events
 TICK = os.sysconf("SC_CLK_TCK")
 ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
-_process_time, _thread_time = time.process_time, time.thread_time
+WINDOW = 1.0  # [s, wall]
+_process_time, _thread_time, _wall_time = time.process_time, time.thread_time, time.monotonic
 _asleep: Dict[int, str] = {}  # threads at the previous look, with how often they have run
+_pollers: Set[int] = set()  # threads that have slept for most of a window
+_window: Optional["_Window"] = None
 
 
 def all_asleep() -> Optional[Set[int]]:
     """The threads that run, if each was asleep at this look and the previous one, and did not run; else None."""
-    global _asleep
+    global _asleep, _window
     with scheduler.guard:
         threads = set(scheduler.running)
         if scheduler.starting or threads & scheduler.calling.keys():
             return None
     found = {thread: _sleep_of(native_ids.get(thread, 0)) for thread in threads}
-    same = all(switches and _asleep.get(thread) == switches for thread, switches in found.items())
+    same = {thread for thread, switches in found.items() if switches and _asleep.get(thread) == switches}
     _asleep = found
-    return threads if same else None
+    _pollers.intersection_update(scheduler.unawaited)  # the others have waited in a known way since
+    if _window is None or not _window.look(found):
+        _window = _Window(threads)
+    _pollers.update(_window.pollers())
+    return threads if threads <= same | _pollers else None
 
 
 def _sleep_of(native_id: int) -> str:
@@ -43,6 +53,42 @@ def _sleep_of(native_id: int) -> str:
     except OSError:  # it has ended
         return "ended"
     return asleep.group(1) if asleep else ""
+
+
+class _Window:
+    """A time in which the same threads run, to see which of them sleep for most of it."""
+
+    def __init__(self, threads: Set[int]) -> None:
+        self.turn, self.since = scheduler.turns, _wall_time()
+        self._work = {thread: _work_of(native_ids.get(thread, 0)) for thread in threads}
+        self._awake = dict.fromkeys(threads, 0)  # at how many looks, also of one that waits for a disk
+        self._looks = 0
+
+    def look(self, found: Dict[int, str]) -> bool:
+        """Note what a look has found; return whether it belongs to this window."""
+        if self.turn != scheduler.turns or self._awake.keys() != found.keys():
+            return False
+        self._looks += 1
+        for thread, asleep in found.items():
+            self._awake[thread] += not asleep
+        return True
+
+    def pollers(self) -> Set[int]:
+        """The threads that sleep for most of the window, once it is over."""
+        length = _wall_time() - self.since
+        if length < WINDOW:
+            return set()
+        seldom = {thread for thread, awake in self._awake.items() if awake < self._looks / 2}
+        return {it for it in seldom if _work_of(native_ids.get(it, 0)) - self._work[it] < length / 2.0}
+
+
+def _work_of(native_id: int) -> float:
+    """For how long [s] a thread has run or waited for the processor; not a number where the kernel does not tell."""
+    try:
+        with open(f"/proc/self/task/{native_id}/schedstat") as file:
+            return sum(map(int, file.read().split()[:2])) / 1e9
+    except (OSError, ValueError):
+        return math.nan
 
 
 class Others:

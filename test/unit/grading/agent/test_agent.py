@@ -198,6 +198,14 @@ def test_thread_that_waits_in_an_unknown_way_does_not_stop_time(tmp_path):
     assert printed(tmp_path, f"{text}time.sleep(1.0)\nprint({AFTER})")[-1] == "1.0"
 
 
+def test_thread_that_polls_in_c_stops_time_for_some_seconds_only(tmp_path):
+    polls = "import ctypes, threading\ndef poll():\n    while True: ctypes.CDLL(None).usleep(2000)\n"
+    text = f"{polls}threading.Thread(target=poll, daemon=True).start()\ntime.sleep(1.0)\nprint({AFTER})"
+    started = time.monotonic()
+    assert printed(tmp_path, text)[-1] == "1.0"
+    assert time.monotonic() - started < 50.0
+
+
 def test_other_process_that_works_holds_time_and_one_that_sleeps_does_not(tmp_path):
     works = "import subprocess, sys\nsubprocess.run([sys.executable, '-c', 'for i in range(10**6): pass'])\n"
     assert float(printed(tmp_path, f"{works}print({AFTER})", 60.0)[-1]) < 1.0
