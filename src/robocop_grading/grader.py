@@ -1,5 +1,6 @@
 """Runs, judges and reports one submission."""
 
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,8 @@ from .submission import Script, Submission
 ATTEMPTS = 2
 KILLED = " by a SIGKILL that did not come from the grader"
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
+MISSING = "Python's module {} is not installed here; if the lab has it, name its package in the plan, under packages"
+_NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
@@ -37,6 +40,7 @@ def grade(
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
+            notes += [f"{script.part}: {MISSING.format(name)}" for name in _missing_modules(recorded.records)]
         judged = judge.judge(submission.name, plan, records, problems)
         judged = replace(judged, files=tuple(submission.files), problems=(*judged.problems, *notes))
         folder.mkdir(parents=True, exist_ok=True)
@@ -46,6 +50,11 @@ def grade(
                 shutil.copyfile(bag, folder / bag.name)
         report.write(judged, plan, records, folder, keep)
     return judged
+
+
+def _missing_modules(records: Mapping[str, Record]) -> List[str]:
+    lines = [line.text for record in records.values() for line in record.lines]
+    return sorted({name for line in lines for name in _NO_MODULE.findall(line)})
 
 
 def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:

@@ -15,6 +15,7 @@ from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, P
 
 from .checks import CHECKS
 from .handout import Limits
+from .packages import NAME, Packages
 from .texts import ENGLISH, Texts, read_yaml
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
@@ -115,6 +116,7 @@ class Plan:
     seed: int = MIDDLE  # with which the scenarios' numbers were drawn
     texts: Texts = ENGLISH
     is_whole: bool = True  # not only some of the file's checks
+    packages: Packages = Packages()  # that the lab has in addition
 
     @property
     def points(self) -> float:
@@ -159,7 +161,7 @@ def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
     if not MIDDLE <= seed <= LARGEST_SEED:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {LARGEST_SEED}")
     raw = read_yaml(path)
-    _expect(raw, set(SECTIONS), str(path), set(SECTIONS))
+    _expect(raw, {*SECTIONS, "packages"}, str(path), set(SECTIONS))
     raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
     for name, kind in SECTIONS.items():
         if not isinstance(raw[name], kind):
@@ -176,7 +178,8 @@ def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
             raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
     known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
     checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
-    return Plan(path, limits, scenarios, checks, seed, texts)
+    packages = _packages(raw.get("packages"), f"{path}: packages")
+    return Plan(path, limits, scenarios, checks, seed, texts, packages=packages)
 
 
 def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[str] = frozenset()) -> None:
@@ -271,6 +274,17 @@ def _step(raw: Any, where: str) -> Step:
         cancel=bool(raw.get("cancel", False)),
         place=_numbers(raw["place"], 3, f"{where}: place") if "place" in raw else (),
     )
+
+
+def _packages(raw: Any, where: str) -> Packages:
+    if raw is None:  # all are commented out
+        return Packages()
+    _expect(raw, {"debian", "pypi"}, where)
+    lists = {kind: _list(names, f"{where}: {kind}", "names") for kind, names in raw.items()}
+    for name in (it for names in lists.values() for it in names):
+        if not isinstance(name, str) or not re.fullmatch(NAME, name, re.ASCII):
+            raise PlanError(f"{where}: expected the name of a package, got {name!r}")
+    return Packages(**{kind: tuple(names) for kind, names in lists.items()})
 
 
 def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:

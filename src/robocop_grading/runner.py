@@ -16,6 +16,7 @@ from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
+from .packages import provide
 from .plan import Plan
 from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
@@ -72,15 +73,19 @@ class Runner:
     def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
         """Run the scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
 
-        NoTimeError if the machine has no time for it, UngradableError where it or the ROS master can't be started.
+        NoTimeError if the machine has no time for it, UngradableError where it, the ROS master or the plan's packages
+        can't be had.
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
         environment = self._environment(out)
-        command = script.command()
+        command, packages = script.command(), provide(self.plan.packages, self.state)
+        reads = [*submission.reads, AGENT, *([packages] if packages is not None else [])]
+        known = public(submission.environment)
         node_environment = {
-            **public(submission.environment),
+            **known,
             **script.variables,
+            "PYTHONPATH": ":".join(map(str, filter(None, (known.get("PYTHONPATH"), packages)))),
             "ROS_HOME": str(home),
             # An existing directory: rospy would chown a new one, which the sandboxed user may not, and log nothing.
             "ROS_LOG_DIR": str(home),
@@ -93,7 +98,7 @@ class Runner:
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
         else:
-            command = self.sandbox.node_command(command, node_environment, [*submission.reads, AGENT], home)
+            command = self.sandbox.node_command(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
         rec.write(

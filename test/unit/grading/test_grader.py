@@ -9,7 +9,7 @@ from support import ROOT
 from aro_robocop_goto_as.errors import UngradableError
 from robocop_grading.grader import grade
 from robocop_grading.plan import load
-from robocop_grading.record import Death, Record
+from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner
 from robocop_grading.sandbox import memory_group
 from robocop_grading.submission import Script, Submission
@@ -70,3 +70,13 @@ def test_the_kernel_tells_how_many_processes_it_has_killed(tmp_path, monkeypatch
 )
 def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outside):
     assert death.is_unexplained == outside
+
+
+def test_module_that_is_not_installed_is_named_as_one_that_the_lab_may_have(tmp_path, monkeypatch):
+    lines = ["Traceback (most recent call last):", "ModuleNotFoundError: No module named 'cv2'"]
+    record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
+    (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).problems
+    assert problem == (
+        "server: Python's module cv2 is not installed here; if the lab has it, name its package in the plan, under "
+        "packages"
+    )

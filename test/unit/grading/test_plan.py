@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
+from robocop_grading.packages import Packages
 from robocop_grading.plan import LARGEST_SEED, drawn, load, world_of
 
 SEEDS = st.integers(1, LARGEST_SEED)
@@ -87,6 +88,8 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
         ),
         ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
         ("  - [1.6..1.8, 0.2, -0.35, 1.0]", "  - [1.6..1.8, 0.2]", "far: pushes: expected 4 numbers"),
+        ("packages:", "packages: {pypi: [--index-url=http://here]}", "expected the name of a package, got '--index"),
+        ("packages:", "packages: {conda: [numpy]}", "packages: unknown: conda"),
         ("box: [0.9..1.5, 0.3, 0.29, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
     ],
 )
@@ -96,6 +99,13 @@ def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, er
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
     with pytest.raises((PlanError, ParameterError), match=error):
         load(tmp_path / "plan.yaml")
+
+
+def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:
+    lists = "packages: {debian: [python3-scipy, g++], pypi: ['numpy-stl==3.1', filterpy]}"
+    (tmp_path / "plan.yaml").write_text(PLAN.read_text().replace("packages:", lists))
+    assert load(tmp_path / "plan.yaml").packages == Packages(("python3-scipy", "g++"), ("numpy-stl==3.1", "filterpy"))
+    assert load(PLAN).packages == Packages()
 
 
 @given(SEEDS, st.tuples(NUMBERS, NUMBERS).map(sorted))
