@@ -81,10 +81,9 @@ class Runner:
         environment = self._environment(out)
         command, packages = script.command(), provide(self.plan.packages, self.state)
         reads = [*submission.reads, AGENT, *([packages] if packages is not None else [])]
-        known = public(submission.environment)
+        known = {**public(submission.environment), **script.variables}
         node_environment = {
             **known,
-            **script.variables,
             "PYTHONPATH": ":".join(map(str, filter(None, (known.get("PYTHONPATH"), packages)))),
             "ROS_HOME": str(home),
             # An existing directory: rospy would chown a new one, which the sandboxed user may not, and log nothing.

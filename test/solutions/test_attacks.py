@@ -58,6 +58,14 @@ def test_killing_the_ros_master_ends_the_run_with_a_reason(tmp_path):
     assert list((tmp_path / "mine").rglob("server-already_there.bag"))  # of the scenario that was cut short
 
 
+@pytest.mark.parametrize("name", attacks.LIES)
+def test_node_that_deceives_the_grader_is_ended_with_a_reason(name, tmp_path):
+    code, reason = attacks.LIES[name]
+    run, _ = attacked(f"{attacks.LIE}{code}\n", tmp_path / "mine")
+    reasons = [death.reason for record in run.records.values() for death in record.deaths]
+    assert reason in f"{run.problem} {reasons}"
+
+
 @pytest.mark.parametrize(
     "name, times",
     [

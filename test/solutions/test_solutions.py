@@ -9,7 +9,7 @@ import subprocess
 import time
 
 import pytest
-from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded
+from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded, recorded
 from processes import busy_processes, processes_mentioning
 from wrong_solutions import ADVISED, WRONG
 
@@ -56,6 +56,17 @@ def test_what_works_with_the_handouts_server_gets_full_marks_and_advice(advised,
     grade = graded(advised.name, advised.text(), tmp_path)
     assert grade.failed() == []
     assert any(advised.words in problem for problem in grade.problems), grade.problems
+
+
+@pytest.mark.slow
+def test_node_that_connects_while_goals_run_leaves_the_same_records_each_time(tmp_path):
+    def records(number):
+        run = recorded(RIGHT["connects_while_driving"].read_text(), tmp_path / str(number), only=("reaches_goal",))
+        return {it.name: (it.samples, it.feedback, it.commands, it.results) for it in run.records.values()}
+
+    first = records(0)
+    assert {len(results) for _, _, _, results in first.values()} == {0, 1}
+    assert all(records(number) == first for number in range(1, 10))
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ def traffic_of(connection: socket.socket) -> Traffic:
     traffic = readers.received.get(file)
     if traffic is None or traffic.link is None:
         link = None
-        if connection.family in (socket.AF_INET, socket.AF_INET6):
+        if connection.family in (socket.AF_INET, socket.AF_INET6) and connection.type == socket.SOCK_STREAM:
             try:
                 link = connection.getsockname()[1], connection.getpeername()[1]
             except OSError:  # it is not connected yet
@@ -167,12 +167,28 @@ def install() -> None:
     cls.recvfrom = _receiving(cls.recvfrom, lambda result: len(result[0]), 1)
     cls.recvmsg = _receiving(cls.recvmsg, lambda result: len(result[0]), 2)
     cls.send, cls.sendall = _sending(cls.send), _sending(cls.sendall)
-    accept, close, init = cls.accept, cls._real_close, cls.__init__
+    accept, close, init, connect, listen = cls.accept, cls._real_close, cls.__init__, cls.connect, cls.listen
 
     @functools.wraps(accept)
     def accept_when_ready(listening: socket.socket) -> Any:
         _await(listening)
-        return accept(listening)
+        accepted, address = accept(listening)
+        link = traffic_of(accepted).link
+        if link is not None:
+            readers.accept(link)
+        return accepted, address
+
+    @functools.wraps(connect)
+    def connect_and_count(connecting: socket.socket, *arguments: Any) -> None:
+        connect(connecting, *arguments)
+        traffic = traffic_of(connecting)
+        traffic.accepted = any(it.link == (traffic.link or ())[::-1] for it in tuple(readers.received.values()))
+
+    @functools.wraps(listen)
+    def listen_and_count(listening: socket.socket, *arguments: Any) -> None:
+        listen(listening, *arguments)
+        if listening.family in (socket.AF_INET, socket.AF_INET6):
+            readers.received[listening.fileno()] = Traffic((listening.getsockname()[1], 0))
 
     @functools.wraps(close)
     def forget_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
@@ -185,6 +201,7 @@ def install() -> None:
         _forget(opened)  # of an earlier one that was collected as garbage
 
     cls.accept, cls._real_close, cls.__init__ = accept_when_ready, forget_and_close, forget_and_init
+    cls.connect, cls.listen = connect_and_count, listen_and_count
     module: Any = select
     module.poll, module.epoll, module.select = Poll, Epoll, simulated_select
     known: Any = selectors

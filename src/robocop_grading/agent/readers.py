@@ -22,6 +22,7 @@ reading: Dict[int, Waiter] = {}  # threads that wait
 received: Dict[int, "Traffic"] = {}  # by descriptor
 closed: List["Traffic"] = []  # since the last answer
 expected: Dict[Link, int] = {}  # bytes that the grader has sent
+counts_own = True  # what the process sends to itself is waited for
 _order: Dict[Link, int] = {}  # of the connections that it sends by
 
 
@@ -37,10 +38,11 @@ _poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not relea
 class Traffic:
     """What a socket has received and sent."""
 
-    __slots__ = ("link", "received", "sent", "reported")
+    __slots__ = ("link", "accepted", "received", "sent", "reported")
 
     def __init__(self, link: Optional[Link]) -> None:
-        self.link = link
+        self.link = link  # of a socket that listens: its port and 0
+        self.accepted = False  # by this process itself
         self.received = self.sent = self.reported = 0  # bytes
 
 
@@ -134,12 +136,31 @@ def wake(topics: bool = True) -> bool:
 
 
 def more_is_expected() -> bool:
-    """Whether something is on its way to a thread that waits for it."""
+    """Return whether something is on its way to a thread that waits for it.
+
+    On a busy machine, what a process sends to itself arrives some time later, too.
+    """
+    sent = dict(expected)
+    connecting: Set[int] = set()  # ports of this process
+    if counts_own:
+        for traffic in (*closed, *received.values()):
+            if traffic.link is not None:
+                sent[traffic.link[::-1]] = traffic.sent
+                connecting.update([] if traffic.accepted else traffic.link[1:])
     for file, _ in _wanted():
-        traffic = received.get(file)
-        if traffic is not None and traffic.link in expected and traffic.received < expected[traffic.link]:
+        waiting = received.get(file)
+        if waiting is None or waiting.link is None:
+            continue
+        if waiting.received < sent.get(waiting.link, 0) or (not waiting.link[1] and waiting.link[0] in connecting):
             return True
     return False
+
+
+def accept(link: Link) -> None:
+    """Note that this process has accepted a connection, perhaps of its own."""
+    for traffic in tuple(received.values()):
+        if traffic.link == link[::-1]:
+            traffic.accepted = True
 
 
 def _wanted() -> Files:

@@ -36,9 +36,11 @@ def main() -> None:
     progress.start()
     job = read(Job, Path(sys.argv[1]))
     ros_internals.install()
-    if start_master(int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0)) is None:
+    master = start_master(int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0))
+    if master is None:
         progress.tell("busy another program has taken the ROS master's port")
         sys.exit(1)
+    ros_internals.update_at_once(master.handler)
     rospy.set_param("/use_sim_time", True)
     # rospy asks the master for it with every line it logs, unless it is set.
     rospy.set_param("/rosout_disable_topics_generation", True)

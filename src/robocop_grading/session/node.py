@@ -10,11 +10,11 @@ import socket
 import time
 from pathlib import Path
 from subprocess import PIPE, STDOUT
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 import rospy
 
-from aro_robocop_goto_as.errors import NoTimeError
+from aro_robocop_goto_as.errors import GraderLostError, NoTimeError
 from aro_robocop_goto_as.process import child
 
 from ..sandbox.guard import Guard
@@ -30,6 +30,8 @@ SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
 SOON = 5e-4  # [s, wall] between two looks at whether connections have been made
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
 MOST_STILL = 20  # looks at which the node did not run and did not want to, until it is not waited for any more
+MAX_STALLS = 2  # times that the node did nothing while what it had told of did not come
+MAX_ROUNDS = 5000  # answers to requests to go on until the same time
 MOST_SWITCHES = 10_000  # times that the threads of a process without agent run; one that ends needs a hundred
 NO_TIME = 900.0  # [s, wall] for one answer
 
@@ -48,6 +50,23 @@ class _Answer(NamedTuple):
     is_busy: bool
     sent: List[Tuple[ros_internals.Link, int]]  # bytes
     topics: Dict[str, Any]
+
+
+def _read(line: bytes) -> _Answer:
+    """Read an answer; KeyError, OverflowError, RecursionError, TypeError or ValueError if it is none."""
+    numbers, _, text = line.decode().partition("\t")
+    done_ns, next_ns, is_busy, *sent = map(int, numbers.split())
+    links = [((port, of), count) for port, of, count in zip(*[iter(sent)] * 3)]
+    told = json.loads(text) if text else {}
+    topics: Dict[str, Any] = told and {
+        "node": str(told["node"]),
+        "published": [(str(name), str(checksum), str(kind)) for name, checksum, kind in told["published"]],
+        "subscribed": [
+            (str(name), str(checksum), str(kind), list(map(int, ports)))
+            for name, checksum, kind, ports in told["subscribed"]
+        ],
+    }
+    return _Answer(done_ns, next_ns, bool(is_busy), links, topics)
 
 
 class Node:
@@ -85,11 +104,13 @@ class Node:
         self._buffer = b""
         self._sent: Dict[ros_internals.Link, int] = {}  # bytes, as the agent has been told
         self._topics: Dict[str, Any] = {"node": "", "published": [], "subscribed": []}  # as the agent has told last
-        self._has_new_topics = False  # it has told of some, which may not be connected yet
+        self._has_called = False  # the master or a topic of this process, and may not be connected yet
         self.next_ns = now_ns  # when the node will do something without having received a message
         self.is_busy = False  # it computes without an end, as a loop without pauses
         self.ended = ""  # why the node was ended here, if it was
         self._lost = False  # the agent has ended
+        self._stalls = 0  # times that something the node had told of did not come
+        self._lost_links: Set[ros_internals.Link] = set()  # on which it did not
         self.guard = Guard(self._process.pid, processor_time=_own_limit())
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
@@ -116,10 +137,13 @@ class Node:
         `clock_ns`: the time on /clock, which its loops see when they have handled all messages. `meanwhile` is called
         once, while the node works.
         """
-        again = not self._lost
+        again, rounds = not self._lost, 0
         self._request(until_ns, clock_ns)
         meanwhile()
         while again:
+            rounds += 1
+            if rounds > MAX_ROUNDS:
+                raise GraderLostError("the node's time did not go on")
             answer = self._answer()
             if answer is None:
                 self._lose()
@@ -127,7 +151,7 @@ class Node:
             self.next_ns = min(NEVER, answer.next_ns + self._started_ns)
             self.is_busy = answer.is_busy
             if answer.topics:
-                self._topics, self._has_new_topics = answer.topics, True
+                self._topics, self._has_called = answer.topics, True
             self._await(answer.sent)
             again = self._connect() or answer.done_ns + self._started_ns < until_ns
             if again:
@@ -141,12 +165,15 @@ class Node:
         with contextlib.suppress(OSError):  # the answer will tell
             self._channel.sendall(f"{request}\n".encode())
 
-    def _wait(self, done: Callable[[], bool], pause: float = POLL, most_switches: float = math.inf) -> bool:
+    def _wait(
+        self, done: Callable[[], bool], pause: float = POLL, most_switches: float = math.inf, spare: int = 0
+    ) -> bool:
         """Wait until `done` is true; False if that can't be expected any more, as the node does nothing at all.
 
-        Or, with `most_switches`, if its threads have run that often. NoTimeError if the machine has no time for it.
+        Or, with `most_switches`, if its threads have run that often, or, with `spare`, if no more threads than this
+        run. NoTimeError if the machine has no time for it.
         """
-        deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid)
+        deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid, spare)
         while not done():
             self._answer_calls()
             if stillness.look() >= MOST_STILL or stillness.switches > most_switches:
@@ -156,18 +183,26 @@ class Node:
             time.sleep(pause)
         return True
 
+    def _expect(self, done: Callable[[], bool], pause: float) -> bool:
+        """Wait for what the node has told of; return whether it came. GraderLostError if it never comes."""
+        came = self._wait(done, pause)
+        self._stalls += not came
+        if self._stalls > MAX_STALLS:
+            raise GraderLostError("the node told the grader of messages or topics that did not come")
+        return came
+
     def _answer(self) -> Optional[_Answer]:
-        """The agent's answer; None if there is none, or nothing that an agent would say."""
-        if not self._wait(self._has_answer, pause=0.0) or b"\n" not in self._buffer:
+        """The agent's answer; None if there is none. GraderLostError if it is nothing that an agent says."""
+        # One thread looks whether the others wait. Where no other one runs, it does so for ever.
+        if not self._wait(self._has_answer, pause=0.0, spare=1):
+            self._give_up()
+        if b"\n" not in self._buffer:
             return None
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
-            numbers, _, topics = line.decode().partition("\t")
-            done_ns, next_ns, is_busy, *sent = map(int, numbers.split())
-            links = [((port, of), count) for port, of, count in zip(*[iter(sent)] * 3)]
-            return _Answer(done_ns, next_ns, bool(is_busy), links, json.loads(topics) if topics else {})
-        except ValueError:
-            return None
+            return _read(line)
+        except (KeyError, OverflowError, RecursionError, TypeError, ValueError) as error:
+            raise GraderLostError("the node's answer to the grader can't be read") from error
 
     def _has_answer(self) -> bool:
         """Wait a moment for the agent; whether there is a line from it, or never will be. Output is read meanwhile."""
@@ -192,22 +227,27 @@ class Node:
         """The agent does not answer: because the process ends, or because the hand-in has ended or stopped it."""
         self._lost, self.next_ns = True, NEVER
         if not self._wait(self._has_ended, most_switches=MOST_SWITCHES):
-            self.ended = "it stopped answering the grader, which has ended it"
-            self.end()
+            self._give_up()
         name = self._topics["node"]
         self._wait(lambda: not ros_internals.hears_from(name), SHORTLY)  # what it has sent before its end counts
         self._handle_arrived()
         self._output.pass_on()
+
+    def _give_up(self) -> None:
+        self.ended = "it stopped answering the grader, which has ended it"
+        self.end()
 
     # -- messages and connections --
 
     def _await(self, sent: List[Tuple[ros_internals.Link, int]]) -> None:
         """Wait until what the node has sent has arrived, and has been made use of."""
 
-        def arrived() -> bool:
-            return not any(-1 < ros_internals.handled(link) < count for link, count in sent)
+        def missing() -> Set[ros_internals.Link]:
+            links = {link for link, count in sent if -1 < ros_internals.handled(link) < count}
+            return links - self._lost_links
 
-        self._wait(arrived, SHORTLY)
+        if not self._expect(lambda: not missing(), SHORTLY):
+            self._lost_links |= missing()
         self._handle_arrived()
         self._output.pass_on()
 
@@ -217,17 +257,19 @@ class Node:
         It learns of them from the master, which nothing else waits for.
         """
         if not self.is_busy:  # else it does nothing until it is to go on
-            self._wait(lambda: self._hears() and self._reaches() or self._has_ended(), SOON)
+            self._expect(lambda: self._hears() and self._reaches() or self._has_ended(), SOON)
             self._handle_arrived()
 
     def _connect(self) -> bool:
-        """Wait until the node is connected with whom it has told the master; whether it was not before."""
-        connects = self._has_new_topics and not self._is_connected()
-        self._has_new_topics = False
-        if connects:
-            self._wait(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
+        """Wait until all nodes know what this one has told the master; return whether it has to go on at once.
+
+        It may have connected to itself, and then has threads that have something to do before time goes on.
+        """
+        has_called, self._has_called = self._has_called, False
+        if has_called:
+            self._expect(lambda: self._is_connected() or self._has_ended() or rospy.is_shutdown(), SOON)
             self._handle_arrived()
-        return connects and not self._has_ended()
+        return has_called and not self.is_busy and not self._has_ended()
 
     def _hears(self) -> bool:
         return all(ros_internals.hears(self._topics["node"], *topic[:2]) for topic in self._topics["published"])
@@ -236,9 +278,13 @@ class Node:
         return all(ros_internals.reaches(self._topics["node"], *topic[:2]) for topic in self._topics["subscribed"])
 
     def _is_connected(self) -> bool:
-        return self._hears() and all(
-            ros_internals.is_connected(topic, checksum, set(ports) - {0})
-            for topic, checksum, _type, ports in self._topics["subscribed"]
+        return (
+            ros_internals.all_updated()
+            and self._hears()
+            and all(
+                ros_internals.is_connected(topic, checksum, set(ports) - {0})
+                for topic, checksum, _type, ports in self._topics["subscribed"]
+            )
         )
 
     def other_types(self) -> List[Tuple[str, str, str]]:

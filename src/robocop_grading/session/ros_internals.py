@@ -3,7 +3,8 @@
 import contextlib
 import functools
 import socket
-from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
 
 import actionlib
 import rospy
@@ -12,6 +13,7 @@ from rospy.impl import tcpros_base
 Link = Tuple[int, int]  # a TCP connection, by the node's port and this process's
 _handled: Dict[Link, int] = {}  # bytes received and made use of
 _received: Dict[Link, int] = {}
+_updates: "List[Future[Any]]" = []  # calls of nodes by the master that may not have returned yet
 
 
 def install() -> None:
@@ -40,6 +42,28 @@ def install() -> None:
     setattr(socket, "setdefaulttimeout", lambda _: None)  # noqa: B010  rospy would give the master and nodes 60 s
     setattr(socket.socket, "recv", recv)  # noqa: B010  mypy refuses to assign to a method
     rospy.topics.QueuedConnection = lambda connection, _size: connection
+
+
+class _Updater:
+    """In place of the master's thread pool, whose threads look for work every 0.1 s and do not tell when it is done."""
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(1)  # one thread: in the order in which the nodes have called
+
+    def queue_task(self, _node: str, task: Callable[..., Any], arguments: Tuple[Any, ...]) -> None:
+        _updates[:] = [update for update in _updates if not update.done()]
+        _updates.append(self._thread.submit(task, *arguments))
+
+
+def update_at_once(master: Any) -> None:
+    """Have a master of this process call nodes about new topics and parameters without delay."""
+    master.thread_pool.join_all(wait_for_tasks=False, wait_for_threads=False)
+    master.thread_pool = master.reg_manager.thread_pool = _Updater()
+
+
+def all_updated() -> bool:
+    """Return whether the master has called all nodes about the topics and parameters that it has been told of."""
+    return all(update.done() for update in list(_updates))
 
 
 def set_time(now_ns: int) -> None:

@@ -64,3 +64,12 @@ def test_process_that_runs_now_and_then_is_not_still_and_is_seen_to_run(started)
 
     wait_for(has_run, "has run")
     assert most == 0
+
+
+def test_thread_that_is_spared_may_run_now_and_then_and_a_second_one_not(started):
+    code = "import time\nfrom threading import Thread\ndef run():\n    while True: time.sleep(0.005)\n"
+    watched = Stillness(started(f"{code}run()").pid, spare=1)
+    wait_for(lambda: watched.look() >= ENOUGH, "still")
+    watched = Stillness(started(f"{code}Thread(target=run).start()\nrun()").pid, spare=1)
+    wait_for(lambda: watched.look() or watched.switches > 50, "seen to run")
+    assert watched.looks == 0
