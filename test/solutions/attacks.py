@@ -301,7 +301,7 @@ LIES = {  # code after LIE, and what the report says
         "",  # it is graded: what does not come is waited for once for each connection
     ),
     "topics": (
-        'text = \'{"node": "/me", "published": [["/cmd_vel", "*"]], "subscribed": []}\'\nchannel.json = Json',
+        'text = \'{"node": "/me", "published": [["/cmd_vel", "*", "*"]], "subscribed": []}\'\nchannel.json = Json',
         UNTRUE,
     ),
 }
