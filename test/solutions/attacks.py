@@ -289,7 +289,7 @@ class Json:
 def write(answer):
     channel.Channel._write = lambda self, data: os.write(self._descriptor, answer(data))
 """
-UNTRUE, UNREADABLE = "messages or topics that did not come", "answer to the grader can't be read"
+UNREADABLE = "answer to the grader can't be read"
 LIES = {  # code after LIE, and what the report says
     "silence": ("def answer(data):\n    while True: scheduler.sleep(0.01)\nwrite(answer)", "it stopped answering"),
     "nested": ("text = '[' * 400_000\nchannel.json = Json", UNREADABLE),
@@ -299,9 +299,5 @@ LIES = {  # code after LIE, and what the report says
         "true = channel.Channel._sent\n"
         "channel.Channel._sent = lambda self: [it * 10**9 if n % 3 == 2 else it for n, it in enumerate(true(self))]",
         "",  # it is graded: what does not come is waited for once for each connection
-    ),
-    "topics": (
-        'text = \'{"node": "/me", "published": [["/cmd_vel", "*", "*"]], "subscribed": []}\'\nchannel.json = Json',
-        UNTRUE,
     ),
 }
