@@ -854,35 +854,6 @@ WRONG = (
         ("import LaserScan\n", "import LaserScan, PointCloud2\n"),
         alone=True,
     ),
-)
-
-# Solutions that get full marks, and advice with these words.
-ADVISED: Tuple[Wrong, ...] = (
-    _bridge(
-        "bridge_pending_is_stopped",
-        "reports_status",
-        "its reports stop while a goal is PENDING",
-        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
-        ("        if self.sent:\n", "        if self.timer:\n            self.timer.shutdown()\n"),
-        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
-        (
-            "        rospy.loginfo('server",
-            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
-            "            self.timer = None\n            return\n        rospy.loginfo('server",
-        ),
-    ),
-    _bridge(
-        "bridge_pending_is_not_cancelled",
-        "cancels_older",
-        "it does not cancel an older goal that is PENDING",
-        ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
-    ),
-    _bridge(
-        "bridge_pending_is_active",
-        "reports_status",
-        "reports ACTIVE while the goal is PENDING",
-        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
-    ),
     _server(
         "asin",
         "feedback_angle",
@@ -929,7 +900,7 @@ ADVISED: Tuple[Wrong, ...] = (
     _server(
         "scaled_odometry",
         "reaches_goal",
-        "This follows from another failed check",
+        "but the last position_error in the feedback is",
         (POSE, "self.pose = (0.97 * msg.pose.pose.position.x, 0.97 * msg.pose.pose.position.y, yaw)"),
     ),
     _server(
@@ -1003,5 +974,34 @@ ADVISED: Tuple[Wrong, ...] = (
         "NameError",
         (BEGIN, f"        if self.pose[0] < -1.0:\n            rospy.sleep(1.0)\n            undefined\n{BEGIN}"),
         alone=True,
+    ),
+)
+
+# Solutions that get full marks, and advice with these words.
+ADVISED: Tuple[Wrong, ...] = (
+    _bridge(
+        "bridge_pending_is_stopped",
+        "reports_status",
+        "its reports stop while a goal is PENDING",
+        ("        rospy.Timer(rospy.Duration(2), self.report_cb)\n", "        self.timer = None\n"),
+        ("        if self.sent:\n", "        if self.timer:\n            self.timer.shutdown()\n"),
+        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
+        (
+            "        rospy.loginfo('server",
+            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
+            "            self.timer = None\n            return\n        rospy.loginfo('server",
+        ),
+    ),
+    _bridge(
+        "bridge_pending_is_not_cancelled",
+        "cancels_older",
+        "it does not cancel an older goal that is PENDING",
+        ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
+    ),
+    _bridge(
+        "bridge_pending_is_active",
+        "reports_status",
+        "reports ACTIVE while the goal is PENDING",
+        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
     ),
 )
