@@ -20,7 +20,7 @@ from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
 from ..names import ACTION, absolute_if_named, place, prefixed
-from ..ticker import wait_until
+from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own

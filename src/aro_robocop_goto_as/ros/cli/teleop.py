@@ -20,7 +20,7 @@ from ...geometry import STANDSTILL, Twist2D
 from ...process import signals
 from ..names import absolute
 from ..publishing import publisher
-from ..ticker import wait_until
+from ..waiting import wait_until
 
 LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models
 PERIOD = 0.1  # [s, wall] between two commands, well below the simulator's command timeout

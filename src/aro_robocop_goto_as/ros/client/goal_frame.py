@@ -14,7 +14,7 @@ from ...errors import FrameError
 from ...geometry import Pose2D, compose
 from ...suggestions import did_you_mean
 from .. import convert
-from ..ticker import wait_until
+from ..waiting import wait_until
 
 MAX_STAMP = 2**31 - 1  # [s] at a later one tf2 ends the process: the difference of two is more than 32 bits
 

@@ -19,7 +19,7 @@ from ...simulation.simulation import Simulation
 from .. import convert, graph
 from ..names import prefixed
 from ..rospy_internals import is_topic_connected_to, publishers_of, sender, socket_from
-from ..ticker import wait_until
+from ..waiting import wait_until
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
 POLL = 0.02  # [s, wall] between two checks of a node's connections

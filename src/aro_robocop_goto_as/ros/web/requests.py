@@ -8,7 +8,7 @@ import rospy
 
 from ...web.state import SharedState
 from ..names import SIMULATOR, absolute
-from ..ticker import wait_until
+from ..waiting import wait_until
 from .daemon import start_daemon
 
 SERVICE_PATIENCE, CONNECT_PATIENCE = 2.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect

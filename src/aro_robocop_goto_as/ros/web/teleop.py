@@ -11,7 +11,7 @@ from ...geometry import Twist2D
 from ...web.dead_man import RATE, DeadMan
 from .. import convert
 from ..names import absolute
-from ..ticker import wait_until
+from ..waiting import wait_until
 from .daemon import start_daemon
 from .goals import cancel
 from .part import Context, Part

@@ -3,7 +3,7 @@
 import threading
 
 from aro_robocop_goto_as.ros.sim.command_topics import AnsweringNodes
-from aro_robocop_goto_as.ros.ticker import wait_until
+from aro_robocop_goto_as.ros.waiting import wait_until
 
 
 def test_node_is_answering_once_its_connections_are_complete():
