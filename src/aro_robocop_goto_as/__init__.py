@@ -51,13 +51,13 @@ From ./robocop COMMAND to the program that does the work:
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 
-Only `ros` and `bench` import rospy. `sim_params` declares each of the simulator's parameters once, in a group for the
+Only `ros` imports rospy. `sim_params` declares each of the simulator's parameters once, in a group for the
 component that reads it; limits and timeouts are parameters first, so look for them there and in `config/` before the
 code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
 name, C computes, and Python has its figures and calls it. `compiled` loads the libraries that CMake builds from these.
 `reading` is what all readers of user-written files share, `process` is about operating system processes, `bootstrap`
-runs before anything is installed, and `bench` measures the simulator. The package `robocop_grading` beside this one
-builds, runs and judges other people's packages.
+runs before anything is installed. The package `robocop_grading` beside this one builds, runs and judges other people's
+packages.
 """
 
 from pkgutil import extend_path

@@ -69,13 +69,6 @@ class WebError(RobocopError):
     """The web page can't be served at its address."""
 
 
-# -- Measurements: name a case that exists, or look at the process that the message names. --
-
-
-class BenchError(RobocopError):
-    """A measurement can't be made."""
-
-
 # -- Other people's packages. --
 
 

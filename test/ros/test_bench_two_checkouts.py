@@ -16,7 +16,7 @@ DEADLINE = 240.0  # [s, wall] on a busy machine
 @pytest.mark.slow
 def test_two_checkouts_are_measured_in_turn_and_nothing_is_left_behind(tmp_path):
     done = subprocess.run(
-        [sys.executable, str(ROOT / "scripts" / "robocop_bench.py"), "--quick", "--json", "--seconds", "0.5"]
+        [sys.executable, str(ROOT / "test" / "robocop_bench.py"), "--quick", "--json", "--seconds", "0.5"]
         + ["--against", str(ROOT), "--cases", "kinematic:rospy", "kinematic:server"],
         env={**os.environ, "BENCH_TEST": str(tmp_path)},
         text=True,

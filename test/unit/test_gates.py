@@ -25,7 +25,7 @@ PROSE_FOLDERS = ("action", "cfg", "compat", "config", "launch", "msg", "skeleton
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
 READER = f"{GRADER}.hosting.roslaunch_reader"
-MAY_IMPORT_ROS = ("ros", "bench", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.hosting.main", READER)
+MAY_IMPORT_ROS = ("ros", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.hosting.main", READER)
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
 ORDER = {
@@ -64,7 +64,6 @@ ORDER = {
     "ros.web": "bootstrap errors geometry param_loading ros ros.client ros.names trail web web_params",
     "ros.cli": "bootstrap errors farthest geometry param_loading sim_params process reading robot.model_names ros "
     "ros.client ros.names suggestions web web_params world",
-    "bench": "compiled errors geometry param_loading sim_params process ros ros.sim simulation",
     f"{GRADER}.agent": "",
     f"{GRADER}.hosting": "errors process ros.cli ros.names",
     GRADER: f"errors geometry {GRADER}.hosting param_loading process sim_params web web_params world",

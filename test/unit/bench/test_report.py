@@ -2,21 +2,19 @@
 
 import json
 
-from aro_robocop_goto_as.bench import report
-from aro_robocop_goto_as.bench.cases import Case
-from aro_robocop_goto_as.bench.measure import Run
-from aro_robocop_goto_as.bench.report import Measured
+from bench import report
+from bench.cases import Case
+from bench.measure import Run
+from bench.report import Measured
 
 WHERE = ["Some CPU, 2 cores", "5 s per measurement"]
 
 
-def measured(name, repeats, checkout="", baselines=(), error=None):
+def measured(name, repeats, checkout="", error=None):
     """A case with (factor, CPU time at factor 1 [s/s]) of each repeat, which loses five messages of each run."""
     one = Measured(Case(*name.split(":")), checkout, error=error)
-    for number, (factor, cpu) in enumerate(repeats):
-        runs = [Run(at, cpu, 60_000_000, 0.5, 5000, 4995, 0.25) for at in (factor, 1.0)]
-        baseline = {"baseline": baselines[number], "step_us": 13.9, "message_us": 3.4} if baselines else {}
-        one.add(*runs, baseline)
+    for factor, cpu in repeats:
+        one.add(*(Run(at, cpu, 60_000_000, 0.5, 5000, 4995, 0.25) for at in (factor, 1.0)))
     return one
 
 
@@ -30,20 +28,16 @@ def rows_of(text):
 
 def test_table_shows_medians_and_spreads_and_sums_of_messages():
     repeats = [(500.0, 0.0041), (600.0, 0.0052), (540.0, 0.0045)]
-    text = report.table([[measured("kinematic:1", repeats, "", (1000.0, 1200.0, 1100.0))]], WHERE)
+    text = report.table([[measured("kinematic:1", repeats)]], WHERE)
     assert text.startswith("Some CPU, 2 cores\n5 s per measurement\n\n|")
     assert rows_of(text) == [
         {
             "drive": "kinematic 30 Hz",
             "robots": "1",
             "factor": "540 (500-600)",
-            "baseline": "1100 (1000-1200)",
-            "of baseline": "0.50 (0.49-0.50)",
             "CPU at 1 [ms/s]": "4.50 (4.10-5.20)",
             "memory [MB]": "60.0 (60.0-60.0)",
             "first scan [s]": "0.50 (0.50-0.50)",
-            "bare step [us]": "13.9 (13.9-13.9)",
-            "bare message [us]": "3.40 (3.40-3.40)",
             "client busy": "0.25 (0.25-0.25)",
             "messages": "29970",
             "lost": "30",
@@ -58,7 +52,7 @@ def test_repeats_of_two_checkouts_are_compared_in_pairs():
     assert [row[""] for row in rows] == ["other", "this", "ratio"]
     assert [row["factor"] for row in rows] == ["75.0 (50.0-100.0)", "200 (100-300)", "2.50 (2.00-3.00)"]
     assert rows[2]["CPU at 1 [ms/s]"] == "0.38 (0.25-0.50)"
-    assert "baseline" not in rows[0] and rows[2]["lost"] == "-"
+    assert rows[2]["lost"] == "-"
 
 
 def test_a_case_that_was_interrupted_before_the_second_checkout_has_no_ratios():
@@ -79,7 +73,7 @@ def test_failed_case_has_a_row_without_figures_and_a_reason():
 
 def test_busy_client_and_missed_factor_are_noted():
     result = Measured(Case("wheels", "50"))
-    result.add(Run(1.2, 0.9, 1, 1.0, 10, 10, 0.51), Run(0.8, 1.1, 1, 1.0, 10, 10, 0.1), {})
+    result.add(Run(1.2, 0.9, 1, 1.0, 10, 10, 0.51), Run(0.8, 1.1, 1, 1.0, 10, 10, 0.1))
     assert result.notes() == [
         "wheels:50: the client was busy for 0.51 of the time, so it may limit the factor",
         "wheels:50: only 0.80 of the requested factor 1 reached",

@@ -178,6 +178,13 @@ def test(arguments: List[str]) -> None:
     program.start(*program.module("pytest", "-o", f"cache_dir={program.state()}/pytest", *workers, *arguments))
 
 
+def bench(arguments: List[str]) -> None:
+    """Measure the simulator."""
+    program.need()
+    python, *_ = program.module("")
+    program.start(python, str(ROOT / "test" / "robocop_bench.py"), *arguments)
+
+
 def docs(arguments: List[str]) -> None:
     """Build the documentation; a link that leads nowhere is an error."""
     if arguments not in ([], ["--serve"]):
@@ -268,7 +275,7 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "grade-class": to_script("robocop_grade_class.py", "hosting", "grade", "class"),
     "grade-worker": grade_worker,
     "test": test,
-    "bench": to_script("robocop_bench.py"),
+    "bench": bench,
     "shell": shell,
     "setup": setup,
     "docs": docs,

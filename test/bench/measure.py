@@ -9,12 +9,12 @@ from typing import Iterator
 
 import rosgraph
 
-from ..errors import BenchError
-from ..simulation.schedule import NANOSECONDS
+from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
+
+from . import BenchError
 from .cases import Case
-from .checkout import Checkout
-from .client import subscribed
-from .processes import Child
+from .client import Client
+from .processes import Checkout, Child
 
 SETTLE = 0.3  # [s, wall] from the last connection to the start of the measurement
 
@@ -32,16 +32,15 @@ class Run:
     client_busy: float  # share of a processor; near 1 the client limits the speed
 
 
-def simulate(case: Case, world: str, factor: float, seconds: float, checkout: Checkout, directory: Path) -> Run:
+def simulate(case: Case, factor: float, seconds: float, checkout: Checkout, directory: Path) -> Run:
     """Run a checkout's simulator and a client for `seconds` of wall time; BenchError when one of them fails."""
     master = rosgraph.Master("/robocop_bench")
-    master.setParam("/robocop_sim", case.params(factor, world))
+    master.setParam("/robocop_sim", case.params(factor))
     master.setParam("/use_sim_time", case.lockstep)
-    topics = case.topics()
-    with controller(case, checkout, directory) as control, subscribed(list(topics)) as client:
+    with controller(case, checkout, directory) as control, Client(case.topics(), directory) as client:
         with _node("the simulator", "robocop_sim.py", checkout, directory) as simulator:
             ready = "messages on every topic and control of every robot"
-            simulator.wait_until(lambda: control.says("running") and len(client.first_at()) == len(topics), ready)
+            simulator.wait_until(lambda: client.reads_all() and control.says("running"), ready)
             time.sleep(SETTLE)
             start, stamp, cpu, client_cpu = time.monotonic(), client.newest_ns, simulator.cpu(), client.cpu
             time.sleep(seconds)
@@ -49,10 +48,10 @@ def simulate(case: Case, world: str, factor: float, seconds: float, checkout: Ch
             cpu, client_cpu = simulator.cpu() - cpu, client.cpu - client_cpu
             simulator.require_running()
             memory = simulator.peak_memory()
-        expected, delivered = client.deliveries(topics)
+        expected, delivered = client.deliveries()
     if simulated <= 0.0:
         raise BenchError(f"simulated time did not advance in {wall:.1f} s")
-    first_scan = min(at for topic, at in client.first_at().items() if topic.endswith("scan")) - simulator.started
+    first_scan = client.first_scan_at() - simulator.started
     return Run(simulated / wall, cpu / simulated, memory, first_scan, expected, delivered, client_cpu / wall)
 
 
@@ -66,7 +65,7 @@ def controller(case: Case, checkout: Checkout, directory: Path) -> Iterator[Chil
     with contextlib.ExitStack() as processes:
         if case.kind == "server":
             processes.enter_context(_node("the server", "robocop_goto_as.py", checkout, directory))
-        program = [sys.executable, "-m", "aro_robocop_goto_as.bench.controllers"]
+        program = [sys.executable, str(Path(__file__).with_name("controllers.py"))]
         command = [*program, *([case.kind] if case.lockstep else case.namespaces)]
         control = processes.enter_context(Child("the controller", command, directory / "controller.log"))
         control.wait_until(lambda: control.says("ready"), "the controller's start")

@@ -6,14 +6,12 @@ from typing import Any, Dict, List
 
 import actionlib
 import rospy
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal
 from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal
-
-from .cases import ANGULAR, LINEAR
-
+LINEAR, ANGULAR = 0.1, 0.5  # [m/s], [rad/s] as in cases.py
 RATE = 10  # [Hz] of simulated time
 FIRST = 5  # cycles before the simulator waits for the loop
 POLL = 0.05  # [s, wall]

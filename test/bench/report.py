@@ -7,28 +7,25 @@ from dataclasses import asdict, dataclass, field
 from importlib import metadata
 from pathlib import Path
 from statistics import median
-from typing import Dict, List, Mapping, Optional, Sequence
+from typing import Dict, List, Optional, Sequence
 
-from .cases import ODOM_RATE, SCAN_RATE, SCAN_SAMPLES, Case
+from .cases import ODOM_RATE, PHYSICS_RATES, SCAN_RATE, SCAN_SAMPLES, Case
 from .measure import Run
 
 BUSY = 0.5  # share of a processor from which on the client may limit the speed
 KEPT_UP = 0.95  # a lower share of the requested real-time factor is noted
 COLUMNS = {  # titles -> figures
     "factor": "factor",
-    "baseline": "baseline",
-    "of baseline": "of_baseline",
     "CPU at 1 [ms/s]": "cpu_ms",
     "memory [MB]": "memory_mb",
     "first scan [s]": "first_scan_s",
-    "bare step [us]": "step_us",
-    "bare message [us]": "message_us",
     "client busy": "client_busy",
     "messages": "messages",
     "lost": "lost",
 }
 COMPARED = ("factor", "cpu_ms", "memory_mb", "first_scan_s")
 Figures = Dict[str, List[float]]  # with a value for each repeat
+PACKAGES = ("numpy", "pybullet", "pybullet-arm64")
 
 
 @dataclass
@@ -40,10 +37,9 @@ class Measured:
     figures: Figures = field(default_factory=dict)
     error: Optional[str] = None
 
-    def add(self, fastest: Run, paced: Run, baseline: Mapping[str, float]) -> None:
-        """A repeat: a run as fast as possible, one at real-time factor 1, the figures of the baseline."""
+    def add(self, fastest: Run, paced: Run) -> None:
+        """A repeat: a run as fast as possible, and one at real-time factor 1."""
         figures = {
-            **baseline,
             "factor": fastest.factor,
             "cpu_ms": paced.cpu * 1e3,
             "memory_mb": max(fastest.memory, paced.memory) / 1e6,
@@ -53,8 +49,6 @@ class Measured:
             "lost": fastest.expected + paced.expected - fastest.delivered - paced.delivered,
             "paced_factor": paced.factor,
         }
-        if baseline:
-            figures["of_baseline"] = fastest.factor / baseline["baseline"]
         for name, value in figures.items():
             self.figures.setdefault(name, []).append(value)
 
@@ -69,7 +63,6 @@ class Measured:
         return [f"{self.case.name}{self.checkout and ', ' + self.checkout}: {note}" for note in notes]
 
 
-PACKAGES = ("numpy", "pybullet", "pybullet-arm64")
 Row = Sequence[Measured]  # a case in this checkout, or in the other and in this one
 
 
@@ -110,9 +103,9 @@ def table(rows: Sequence[Row], where: Sequence[str]) -> str:
     """The results as text: an aligned Markdown table without empty columns, and notes."""
     lines = []
     for row in rows:
-        entries = [(one.checkout, {} if one.error else one.figures) for one in row]
+        case, entries = row[0].case, [(one.checkout, {} if one.error else one.figures) for one in row]
         for name, figures in [*entries, *([("ratio", ratios(row))] if len(row) == 2 else [])]:
-            label = [f"{row[0].case.drive} {row[0].case.physics_rate} Hz", row[0].case.kind, name]
+            label = [f"{case.drive} {PHYSICS_RATES[case.drive]} Hz", case.kind, name]
             lines.append([*label, *(cell(figures.get(column, ())) for column in COLUMNS.values())])
     columns = [column for column in zip(["drive", "robots", "", *COLUMNS], *lines) if set(column[1:]) - {"", "-"}]
     padded = [[text.ljust(max(map(len, column))) for text in column] for column in columns]
