@@ -53,13 +53,14 @@ class GazeboServices:
         # Gazebo's reset_simulation also sets time back to zero; here time goes on.
         self._serve_empty("reset_simulation", simulation.reset)
         self._serve_empty("reset_world", simulation.reset)
-        self._serve("get_model_state", srv.GetModelState, self._in_owner(self._model_state))
-        self._serve("get_world_properties", srv.GetWorldProperties, self._in_owner(self._world_properties))
-        self._serve(
-            "set_model_state", srv.SetModelState, self._in_owner(lambda r: self._set_model_state(r.model_state))
-        )
-        self._serve("spawn_sdf_model", srv.SpawnModel, self._spawn)
-        self._serve("delete_model", srv.DeleteModel, self._delete)
+        for name, kind, answer in (
+            ("get_model_state", srv.GetModelState, self._model_state),
+            ("get_world_properties", srv.GetWorldProperties, self._world_properties),
+            ("set_model_state", srv.SetModelState, lambda request: self._set_model_state(request.model_state)),
+        ):
+            serve(f"/gazebo/{name}", kind, self._in_owner(answer), "status_message")
+        serve("/gazebo/spawn_sdf_model", srv.SpawnModel, self._spawn, "status_message", "SpawnModel: ")
+        serve("/gazebo/delete_model", srv.DeleteModel, self._delete, "status_message", "DeleteModel: ")
         rospy.Service("/gazebo/delete_light", srv.DeleteLight, _delete_light)
         for name, (kind, reason) in REFUSED.items():
             rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
@@ -73,15 +74,6 @@ class GazeboServices:
             return EmptyResponse()
 
         rospy.Service(f"/gazebo/{name}", Empty, respond)
-
-    def _serve(self, name: str, kind: Any, answer: Callable[[Any], Fields]) -> None:
-        begin = f"{kind.__name__}: "
-
-        def begun(request: Any) -> Fields:
-            fields = answer(request)
-            return {**fields, "status_message": begin + fields["status_message"]}
-
-        serve(f"/gazebo/{name}", kind, begun, "status_message", begin)
 
     def _in_owner(self, answer: Callable[[Any], Fields]) -> Callable[[Any], Fields]:
         return lambda request: self._simulation.jobs.call(lambda: answer(request))
@@ -101,11 +93,12 @@ class GazeboServices:
         reference = request.relative_entity_name
         pose, twist = relative(self._model(request.model_name), self._model(reference))
         header = Header(0, convert.to_time(self._simulator.stamp_ns), reference or "world")
-        return {"header": header, "pose": pose, "twist": twist, "status_message": "got properties"}
+        return {"header": header, "pose": pose, "twist": twist, "status_message": "GetModelState: got properties"}
 
     def _world_properties(self, _request: Any) -> Fields:
         names = [name for name, _, _ in models(self._simulator)]
-        return {"sim_time": self._simulator.time, "model_names": names, "status_message": "got properties"}
+        text = "GetWorldProperties: got properties"
+        return {"sim_time": self._simulator.time, "model_names": names, "status_message": text}
 
     def _in_world(self, pose: Pose, reference: str) -> Pose3D:
         """A pose in the simulator's world, of one that is relative to a model or to Gazebo's world."""
@@ -116,7 +109,7 @@ class GazeboServices:
     def _set_model_state(self, requested: ModelState) -> Fields:
         target = self._in_world(requested.pose, requested.reference_frame)
         self._changes()
-        name, done = requested.model_name, "set model state done"
+        name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
             self._simulation.change_world(lambda world: with_model_at(world, name, target))
             return {"status_message": done}
@@ -138,12 +131,12 @@ class GazeboServices:
         changes = self._changes()
         if request.model_name in self._names:
             raise WorldError(f"model name [{request.model_name}] is already used by a robot")
-        return {"status_message": changes.spawn(request.model_name, request.model_xml, "", pose)}
+        return {"status_message": "SpawnModel: " + changes.spawn(request.model_name, request.model_xml, "", pose)}
 
     def _delete(self, request: Any) -> Fields:
         if request.model_name in self._names:
             raise WorldError(f"[{request.model_name}] is a robot; robots cannot be deleted")
-        return {"status_message": self._changes().delete(request.model_name)}
+        return {"status_message": "DeleteModel: " + self._changes().delete(request.model_name)}
 
 
 def _delete_light(request: Any) -> Tuple[bool, str]:
