@@ -7,9 +7,9 @@ from support import ORIGIN, kept, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.awaited_answers import ControllerId
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulation import Simulation
 
@@ -52,11 +52,10 @@ class Owner:
         p = SimParams.of(drive="kinematic", cmd_vel_timeout=0.0, **params)
         self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
         self.clock, self.end = FakeClock(), end
-        self.nodes: Set[str] = set()  # that are connected; names with /answering answer control ticks
+        self.nodes: Set[str] = set()  # that are connected to the robot's topics
         self.observed: List[Observations] = []
         self.events: List[object] = []
         self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
-        self.is_kept: Callable[[ControllerId, float], bool] = lambda *_: False
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
         self.simulation = Simulation(self.simulator, self.clock, lambda: self.is_stopped())
 
@@ -68,7 +67,6 @@ class Owner:
         simulator, time, controllers = self.simulator, self.simulation.time_control, self.simulation.controllers
         time.pacer.restart(simulator.steps)
         self._pace()
-        controllers.enroll(self._answering)
         while not self.is_stopped():
             seen = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
             if seen is not None:
@@ -76,9 +74,9 @@ class Owner:
                 if seen.due.control:
                     self.on_tick(seen.stamp_ns)
                 if seen.due.control and controllers.in_lockstep:
-                    controllers.begin_tick()
-                    self._hold(lambda: controllers.lockstep.hold(self._connected, self.is_kept))
-                    report = controllers.end_tick(self._answering)
+                    controllers.begin_tick(self._connected)
+                    self._hold(lambda: controllers.hold(self._connected))
+                    report = controllers.end_tick()
                     self.events += [("late", report.late)] if report.late else []
                     self.events += [("gone", controller) for controller in report.gone]
             if time.end_span(simulator.steps) or (seen is not None and seen.due.clock):
@@ -95,12 +93,8 @@ class Owner:
             self.simulation.jobs.run_next(wait)
             if self.simulation.time_control.repetition_due():
                 self.events.append("clock repeated")
-                self.simulation.controllers.enroll(self._answering)
             wait = hold()
         self.simulation.time_control.pacer.waited(self.clock.now() - started)
 
-    def _connected(self, _robot: int) -> AbstractSet[str]:
-        return self.nodes
-
-    def _answering(self, _robot: int) -> AbstractSet[str]:
-        return {node for node in self.nodes if node.startswith("/answering")}
+    def _connected(self) -> AbstractSet[ControllerId]:
+        return {ControllerId(0, node) for node in self.nodes}

@@ -60,13 +60,6 @@ def unpublished_topics() -> List[str]:
     return sorted(topic for topic, nodes in subscribers if {*nodes} - {rospy.get_name()} and topic not in published)
 
 
-def topics_between(publisher: str, subscriber: str) -> List[str]:
-    """Names of the topics from one node to another, connected or not; raises what published_topics raises."""
-    publishers, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
-    published = {topic for topic, nodes in publishers if publisher in nodes}
-    return [topic for topic, nodes in subscribers if subscriber in nodes and topic in published]
-
-
 def action_servers() -> Dict[str, str]:
     """Action type of each action server, by name: {"/robocop_goto_as": "aro_robocop_goto_as/GoToPositionAction"}."""
     return _actions(RESULT)

@@ -21,21 +21,9 @@ def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
     return set() if topic is None else {link.callerid_pub for link in topic.connections}
 
 
-def socket_from(subscriber: rospy.Subscriber, node: str) -> Optional[socket.socket]:
-    """The socket on which a subscriber receives from a node, if it is connected; rospy keeps it to itself."""
-    links = [link for link in subscriber.impl.connections if link.callerid_pub == node]
-    return getattr(links[0], "socket", None) if links else None
-
-
 def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
     """Whether a publisher is connected to this node; rospy's public API only counts connections."""
     return bool(publisher.impl.has_connection(node))
-
-
-def is_topic_connected_to(topic: str, node: str) -> bool:
-    """Whether this process publishes a topic, by its resolved name, and is connected to this node for it."""
-    implementation = rospy.topics.get_topic_manager().get_publisher_impl(topic)
-    return implementation is not None and bool(implementation.has_connection(node))
 
 
 def connections_of(publisher: rospy.Publisher) -> List[Tuple[Any, socket.socket]]:

@@ -1,85 +1,132 @@
-"""Lockstep: simulated time is held at each control tick until the controllers have answered, or have had their time."""
+"""Lockstep: simulated time stops at each control tick until the controllers have answered, or have had their time.
 
-import math
+A tick is the number of a control period. A node that answers ticks (`tick_answer`) names the tick of each answer. Any
+other node that is connected to cmd_vel has answered a tick when a command of its has arrived since the tick before.
+A node that has answered two ticks in a row is expected to answer the next one, and so is a node that answers ticks from
+its first answer on. An expected node is waited for until the timeout, any other one for SILENCE_TIMEOUT only.
+"""
+
 from dataclasses import dataclass, field
-from typing import AbstractSet, Callable, List, Tuple
+from typing import AbstractSet, Callable, Dict, List, NamedTuple, Set
 
-from .awaited_answers import FIRST, AwaitedAnswers, ControllerId
 from .jobs import Clock
 
-DISCONNECT_POLL = 0.05  # [s, wall] between two checks for disconnected controllers while waiting for their answers
+SILENCE_TIMEOUT = 0.02  # [s, wall] for a node that is not expected to answer
+EXPECTED_AFTER = 2  # ticks that a node has answered in a row
+DISCONNECT_PERIOD = 0.05  # [s, wall] between two checks for disconnected nodes while time is held
 
-SECOND_LOOK = 0.005  # [s, wall] during which what has arrived meanwhile is processed
-# [s, wall] rospy.sleep() looks at the time, then waits for up to 0.5 s: a clock message in between does not wake it up.
-STILL = 0.6
 
-NodesOf = Callable[[int], AbstractSet[str]]  # names of nodes, by the robot that they are connected to
-# Whether a controller is kept from answering, for want of a processor, of which it may use so much [s].
-IsKept = Callable[[ControllerId, float], bool]
+class ControllerId(NamedTuple):
+    """A node that commands a robot."""
+
+    robot: int
+    node: str
+
+
+Connected = Callable[[], AbstractSet[ControllerId]]
 
 
 @dataclass
 class TickReport:
     """How a control tick ended."""
 
-    late: List[ControllerId] = field(default_factory=list)  # did not answer in time: time goes on without them
-    gone: List[ControllerId] = field(default_factory=list)  # disconnected: their robots are stopped
-    slower: List[Tuple[ControllerId, float]] = field(default_factory=list)  # with the rates of their loops [Hz]
+    late: List[ControllerId] = field(default_factory=list)  # for the first time, did not answer before the timeout
+    gone: List[ControllerId] = field(default_factory=list)  # were expected and have disconnected
+
+
+@dataclass
+class _Controller:
+    last: int  # newest tick that it has answered
+    answers_ticks: bool = False
+    in_a_row: int = 0  # ticks that it has answered without a gap
+
+    def note(self, tick: int) -> None:
+        if tick > self.last:
+            self.in_a_row = self.in_a_row + 1 if tick == self.last + 1 else 1
+            self.last = tick
+
+    @property
+    def is_expected(self) -> bool:
+        return self.in_a_row >= EXPECTED_AFTER
 
 
 class Lockstep:
-    """How long to wait for answers; between begin_tick() and the next one, `report` is that of this tick."""
+    """Which controllers simulated time waits for at a tick, and for how long."""
 
-    def __init__(
-        self, answers: AwaitedAnswers, timeout: float, clock: Clock, on_gone: Callable[[ControllerId], None]
-    ) -> None:
-        """`timeout` [s, wall] for the answer of a controller whose turn it is; `on_gone`: one has disconnected."""
+    def __init__(self, timeout: float, clock: Clock) -> None:
+        """`timeout` [s, wall] for the answer of a node that is expected to answer."""
         self.timeout = timeout
-        self.report = TickReport()
-        self._answers, self._clock, self._on_gone = answers, clock, on_gone
-        self._held_since = self._next_look = 0.0  # [s, wall]
+        self.misses = 0  # answers of expected nodes that did not come in time
+        self.report = TickReport()  # of the tick since the last begin_tick()
+        self._clock = clock
+        self._controllers: Dict[ControllerId, _Controller] = {}
+        self._warned: Set[ControllerId] = set()
+        self._held_since = self._next_check = 0.0  # [s, wall]
         self._is_released = False
-        self._silent_since = math.inf  # [s, wall] at all looks since then, nobody was kept from answering
 
-    def begin_tick(self) -> None:
-        """Simulated time has reached a control tick, and is held."""
-        self.report, self._is_released, self._silent_since = TickReport(), False, math.inf
+    def commanded(self, name: ControllerId, tick: int) -> None:
+        """Note a velocity command that arrived after the tick before `tick`, from a node that names no ticks."""
+        self._controllers.setdefault(name, _Controller(tick - 1)).note(tick)
+
+    def answered(self, name: ControllerId, tick: int) -> None:
+        """Note an answer that names its tick; the first one makes its node one that answers ticks."""
+        known = self._controllers.get(name)
+        if known is None or not known.answers_ticks:
+            self._controllers[name] = _Controller(tick, answers_ticks=True, in_a_row=EXPECTED_AFTER)
+        else:
+            known.note(tick)
+
+    def answers_ticks(self, name: ControllerId) -> bool:
+        """Return whether this node answers ticks."""
+        known = self._controllers.get(name)
+        return known is not None and known.answers_ticks
+
+    def expected(self) -> List[ControllerId]:
+        """The nodes that are expected to answer the next tick, sorted."""
+        return sorted(name for name, known in self._controllers.items() if known.is_expected)
+
+    def begin_tick(self, tick: int, connected: Connected) -> None:
+        """Simulated time has reached a tick, and is held for the nodes that are connected."""
+        self.report, self._is_released = TickReport(), False
         self._held_since = self._clock.now()
-        self._next_look = self._held_since + DISCONNECT_POLL
+        self._update(tick, connected())
 
     def release(self) -> None:
         """Wait for nobody any more at this tick."""
         self._is_released = True
 
-    def hold(self, connected: NodesOf, is_kept: IsKept) -> float:
-        """How long to hold simulated time [s, wall] before asking again; 0: nobody is waited for any more.
-
-        After the timeout, a controller is given up only if it is not kept from answering, at each look for some time.
-        """
-        while not self._is_released and self._answers.missing():
+    def hold(self, tick: int, connected: Connected) -> float:
+        """How long to hold simulated time at a tick [s, wall] before asking again; 0: nobody is waited for."""
+        while True:
+            missing = [known for known in self._controllers.values() if known.last < tick]
+            if self._is_released or not missing:
+                return 0.0
             now = self._clock.now()
-            if now >= self._next_look:
-                self._forget_disconnected(connected)
-                self._next_look = now + DISCONNECT_POLL
-                continue
-            share = self._answers.patience()
-            patience = share * self.timeout
-            remaining = self._held_since + patience - now
-            if remaining > 0.0:
-                return min(remaining, self._next_look - now)
-            if any(is_kept(controller, patience) for controller in self._answers.missing()):
-                self._silent_since = math.inf
-                return self._next_look - now
-            self._silent_since = min(self._silent_since, now)
-            remaining = self._silent_since + (STILL if share >= FIRST else SECOND_LOOK) - now
-            if remaining > 0.0:
-                return min(remaining, self._next_look - now)
-            self.report.late = self._answers.give_up()
-        return 0.0
+            timeout = self.timeout if any(known.is_expected for known in missing) else SILENCE_TIMEOUT
+            remaining = self._held_since + timeout - now
+            if remaining <= 0.0:
+                self._give_up(tick)
+                return 0.0
+            if now < self._next_check:
+                return min(remaining, self._next_check - now)
+            self._update(tick, connected())
 
-    def _forget_disconnected(self, connected: NodesOf) -> None:
-        for controller in self._answers.missing():
-            if controller.node not in connected(controller.robot):
-                self.report.gone.append(controller)
-                self._answers.gone(controller)
-                self._on_gone(controller)
+    def _update(self, tick: int, connected: AbstractSet[ControllerId]) -> None:
+        """Add the nodes that have connected, and forget those that have disconnected."""
+        self._next_check = self._clock.now() + DISCONNECT_PERIOD
+        for name in self._controllers.keys() - connected:
+            if self._controllers.pop(name).is_expected:
+                self.report.gone.append(name)
+        for name in connected - self._controllers.keys():
+            self._controllers[name] = _Controller(tick - 1)
+
+    def _give_up(self, tick: int) -> None:
+        """Let time go on without the nodes that are missing, none of which is expected at the next tick."""
+        for name, known in self._controllers.items():
+            if known.last < tick:
+                if known.is_expected:
+                    self.misses += 1
+                    if name not in self._warned:
+                        self._warned.add(name)
+                        self.report.late.append(name)
+                known.in_a_row = 0

@@ -36,11 +36,6 @@ def test_topic_that_only_this_node_subscribes_to_is_nobody_elses_loss():
     assert graph.unpublished_topics() == ["/cmd_vel", "/old"]
 
 
-def test_topics_between_two_nodes_need_both():
-    assert graph.topics_between("/sim", "/server") == ["/odom"]
-    assert graph.topics_between("/server", "/sim") == []
-
-
 def test_action_server_is_known_by_the_type_of_its_result():
     assert graph.action_servers() == {"/go": "p/GoAction"}
 

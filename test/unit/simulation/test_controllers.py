@@ -1,22 +1,38 @@
 """Commands, and how long a control tick in lockstep is held for its answers."""
 
+from typing import Callable, Optional
+
 import pytest
 from fakes import Owner
 from support import ORIGIN
 
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.simulation.awaited_answers import ControllerId
-from aro_robocop_goto_as.simulation.lockstep import SECOND_LOOK, STILL
+from aro_robocop_goto_as.simulation.lockstep import SILENCE_TIMEOUT, ControllerId
 
-NODE, ANSWERING = ControllerId(0, "/controller"), ControllerId(0, "/answering")
-AHEAD = Twist2D(0.1, 0.0)
+NODE, OTHER, ANSWERING = (ControllerId(0, name) for name in ("/controller", "/other", "/answering"))
+AHEAD, BACK = Twist2D(0.1, 0.0), Twist2D(-0.1, 0.0)
+TICK = 10**8  # [ns]
 
 
-def lockstep(end: float, *nodes: str, **params: object) -> Owner:
-    """As fast as possible, with these nodes connected."""
-    owner = Owner(end, real_time_factor=0.0, sync="lockstep", **params)
-    owner.nodes = set(nodes)
+def lockstep(end: float, *nodes: ControllerId, **params: object) -> Owner:
+    """As fast as possible, with these nodes connected, and a timeout of 3 s."""
+    owner = Owner(end, real_time_factor=0.0, sync="lockstep", lockstep_timeout=3.0, **params)
+    owner.nodes = {node.node for node in nodes}
     return owner
+
+
+def sends(owner: Owner, node: ControllerId, delay: float, twist: Optional[Twist2D] = AHEAD) -> Callable[[], None]:
+    """Have a node send a command after a delay [s, wall] from now."""
+    return lambda: owner.post(delay, lambda: owner.simulation.controllers.command(node, twist))
+
+
+def answers(owner: Owner, node: ControllerId, stamp: int, delay: float, twist: Optional[Twist2D] = AHEAD) -> None:
+    owner.post(delay, lambda: owner.simulation.controllers.answer(node, stamp, twist))
+
+
+def waited(owner: Owner) -> float:
+    """Wall time of a run [s]."""
+    return owner.clock.time - 100.0
 
 
 @pytest.mark.parametrize("sync", ["free", "lockstep"])
@@ -30,135 +46,161 @@ def test_refused_command_leaves_the_previous_one_in_force(sync: str) -> None:
 
 
 def test_refused_command_is_an_answer_in_lockstep() -> None:
-    owner = lockstep(0.55, NODE.node)
-    owner.simulation.controllers.command(NODE, None)
-    owner.on_tick = lambda _stamp: owner.post(0.3, lambda: owner.simulation.controllers.command(NODE, None))
+    owner = lockstep(0.35, NODE)
+    owner.on_tick = lambda _stamp: sends(owner, NODE, 0.01, None)()
     owner.run()
-    assert owner.clock.time == pytest.approx(101.5)
+    assert waited(owner) == pytest.approx(0.03)
     assert owner.events == [] and owner.simulator.world_from_footprint() == ORIGIN
 
 
-def test_tick_waits_for_each_answer_without_a_miss() -> None:
-    owner = lockstep(0.55, "/answering")
-    stamps = []
-
-    def answer(stamp: int) -> None:
-        stamps.append(stamp)
-        owner.post(0.3, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD))
-
-    owner.on_tick = answer
+def test_silent_node_costs_its_timeout_at_each_tick_and_is_no_miss() -> None:
+    owner = lockstep(0.55, NODE)
     owner.run()
-    assert stamps == [tick * 10**8 for tick in range(1, 6)]
-    assert owner.clock.time == pytest.approx(101.5)
-    assert owner.simulation.controllers.answers.misses == 0 and owner.events == []
-    assert owner.simulation.controllers.answers.awaited() == [ANSWERING]
+    assert waited(owner) == pytest.approx(5 * SILENCE_TIMEOUT)
+    assert owner.events == [] and owner.simulation.controllers.lockstep.misses == 0
+
+
+def test_nobody_connected_costs_nothing() -> None:
+    owner = lockstep(0.55)
+    owner.run()
+    assert waited(owner) == 0.0
+
+
+def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_slow_it_is() -> None:
+    owner = lockstep(1.05, NODE)
+    owner.on_tick = lambda stamp: sends(owner, NODE, 0.01 if stamp <= 2 * TICK else 2.0)()
+    owner.run()
+    assert waited(owner) == pytest.approx(2 * 0.01 + 8 * 2.0)
+    assert owner.simulation.controllers.lockstep.misses == 0
+    assert owner.simulation.controllers.lockstep.expected() == [NODE]
+
+
+def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between() -> None:
+    owner = lockstep(1.05, NODE)
+    owner.on_tick = lambda stamp: None if stamp // TICK % 2 else sends(owner, NODE, 0.01)()
+    owner.run()
+    assert waited(owner) == pytest.approx(5 * 0.01 + 5 * SILENCE_TIMEOUT)
+    assert owner.events == [] and owner.simulation.controllers.lockstep.misses == 0
+
+
+def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_again() -> None:
+    owner = lockstep(4.05, NODE)
+    owner.on_tick = lambda stamp: None if 5 <= stamp // TICK < 35 else sends(owner, NODE, 0.01)()
+    owner.run()
+    assert owner.events == [("late", [NODE])] and owner.simulation.controllers.lockstep.misses == 1
+    assert waited(owner) == pytest.approx(4 * 0.01 + 3.0 + 29 * SILENCE_TIMEOUT + 6 * 0.01)
+    assert owner.simulation.controllers.lockstep.expected() == [NODE]
+
+
+def test_command_between_two_ticks_is_the_answer_to_the_second_one() -> None:
+    owner = lockstep(0.15, NODE, real_time_factor=1.0)
+    sends(owner, NODE, 0.05)()
+    owner.run()
+    assert waited(owner) < 0.15 + SILENCE_TIMEOUT
+
+
+@pytest.mark.parametrize("first, second, forward", [(NODE, OTHER, False), (OTHER, NODE, False)])
+def test_of_several_nodes_the_last_by_name_commands_the_robot(
+    first: ControllerId, second: ControllerId, forward: bool
+) -> None:
+    owner = lockstep(0.55, NODE, OTHER)
+    twists = {NODE: AHEAD, OTHER: BACK}
+
+    def both(_stamp: int) -> None:
+        sends(owner, first, 0.001, twists[first])()
+        sends(owner, second, 0.002, twists[second])()
+
+    owner.on_tick = both
+    owner.run()
+    assert (owner.simulator.velocity().v > 0.0) == forward
+
+
+def test_node_that_answers_ticks_is_waited_for_from_its_first_answer_on() -> None:
+    owner = lockstep(0.55, ANSWERING)
+    owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.01 if stamp == TICK else 2.0)
+    owner.run()
+    assert waited(owner) == pytest.approx(0.01 + 4 * 2.0)
+    assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
+    assert owner.simulation.controllers.lockstep.expected() == [ANSWERING]
     assert owner.simulator.world_from_footprint().x > 0.03
 
 
-def test_time_goes_on_without_a_silent_controller() -> None:
-    owner = lockstep(0.3, "/answering", lockstep_timeout=3.0)
+def test_node_that_answers_while_time_stands_still_is_waited_for_at_the_first_tick() -> None:
+    owner = lockstep(0.15, ANSWERING, start_paused=True)
+    answers(owner, ANSWERING, 0, 0.5, None)
+    owner.post(1.0, lambda: owner.simulation.set_paused(False))
+    owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 2.0)
     owner.run()
-    assert owner.events == [("late", [ANSWERING])]
-    assert owner.simulation.controllers.answers.misses == 1
-    assert owner.clock.time == pytest.approx(103.0 + STILL)
+    assert waited(owner) == pytest.approx(3.0) and owner.simulation.controllers.lockstep.misses == 0
 
 
-def test_controller_that_gets_no_processor_is_waited_for() -> None:
-    owner = lockstep(0.15, "/answering", lockstep_timeout=3.0)
-    asked = []
-    owner.is_kept = lambda controller, patience: not asked.append((controller, patience))
-    owner.on_tick = lambda stamp: owner.post(60.0, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD))
-    owner.run()
-    assert set(asked) == {(ANSWERING, 3.0)}
-    assert owner.simulation.controllers.answers.misses == 0 and owner.events == []
-    assert owner.clock.time == pytest.approx(160.0)
-
-
-@pytest.mark.parametrize("later", [SECOND_LOOK / 2, 0.55])  # [s] it was on its way, or rospy.sleep() missed a clock
-def test_answer_that_comes_between_the_looks_is_no_miss(later: float) -> None:
-    owner = lockstep(0.15, "/answering", lockstep_timeout=3.0)
-    owner.on_tick = lambda stamp: owner.post(
-        3.0 + later, lambda: owner.simulation.controllers.answer(ANSWERING, stamp, AHEAD)
-    )
-    owner.run()
-    assert owner.simulation.controllers.answers.misses == 0
-
-
-def test_robot_of_a_controller_that_disconnects_is_stopped() -> None:
-    owner = lockstep(1.0, "/answering")
-    owner.post(0.1, lambda: owner.simulation.controllers.answer(ANSWERING, 10**8, AHEAD))
-    owner.clock.at(0.2, owner.nodes.clear)
-    owner.run()
-    assert ("gone", ANSWERING) in owner.events
-    assert owner.simulator.world_from_footprint().x < 0.03, "one tick at most, and braking"
-    assert owner.clock.time == pytest.approx(100.25, abs=0.06)
-
-
-def test_another_controllers_command_outlives_one_that_disconnects() -> None:
-    owner = lockstep(0.15, "/answering")
-    owner.post(0.01, lambda: owner.simulation.controllers.command(NODE, AHEAD))
-    owner.clock.at(0.02, owner.nodes.clear)
-    owner.run()
-    assert ("gone", ANSWERING) in owner.events
-    assert owner.simulator.world_from_footprint().x > 0.0
-
-
-def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
-    owner = lockstep(0.35, "/answering")
-    controllers = owner.simulation.controllers
-    controllers.answers.enroll(ANSWERING)
-    controllers.answer(ANSWERING, 100 * 10**9, AHEAD)
-    owner.on_tick = lambda stamp: owner.post(0.1, lambda: controllers.answer(ANSWERING, stamp, None))
-    owner.run()
-    assert owner.clock.time == pytest.approx(100.3), "every tick waits for its own answer"
-    assert owner.simulator.world_from_footprint() == ORIGIN
-
-
-def test_reset_while_controllers_are_waited_for_asks_nobody_twice() -> None:
-    owner = lockstep(0.35, "/answering_a", "/answering_b")
-    controllers = owner.simulation.controllers
-    first, second = ControllerId(0, "/answering_a"), ControllerId(0, "/answering_b")
+def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_answers() -> None:
+    owner = lockstep(0.85, ANSWERING)
 
     def answer(stamp: int) -> None:
-        owner.post(0.1, lambda: controllers.answer(first, stamp, None))
-        if stamp == 10**8:
-            owner.post(0.15, owner.simulation.reset)
-        owner.post(0.2, lambda: controllers.answer(second, stamp, None))
+        if not 3 <= stamp // TICK < 5:
+            answers(owner, ANSWERING, stamp, 0.01 if stamp // TICK < 7 else 2.0)
 
     owner.on_tick = answer
     owner.run()
-    assert controllers.answers.misses == 0
-    assert owner.clock.time < 101.0
+    assert owner.events == [("late", [ANSWERING])] and owner.simulation.controllers.lockstep.misses == 1
+    assert waited(owner) == pytest.approx(2 * 0.01 + 3.0 + SILENCE_TIMEOUT + 2 * 0.01 + 2 * 2.0)
 
 
-def test_controllers_that_connect_while_time_stands_still_are_waited_for_from_the_first_tick() -> None:
-    owner = lockstep(0.15, start_paused=True)
-    controllers = owner.simulation.controllers
-    owner.clock.at(0.5, lambda: owner.nodes.add("/answering"))
-    owner.post(1.0, lambda: owner.simulation.set_paused(False))
-    owner.on_tick = lambda stamp: owner.post(0.3, lambda: controllers.answer(ANSWERING, stamp, None))
+def test_commands_of_an_answering_node_are_ignored() -> None:
+    owner = lockstep(0.35, ANSWERING)
+
+    def answer(stamp: int) -> None:
+        sends(owner, ANSWERING, 0.001, BACK)()
+        answers(owner, ANSWERING, stamp, 0.002)
+
+    answers(owner, ANSWERING, 0, 0.0)
+    owner.on_tick = answer
     owner.run()
-    assert owner.clock.time == pytest.approx(101.3) and controllers.answers.misses == 0
+    assert owner.simulator.velocity().v > 0.0
 
 
-@pytest.mark.parametrize("ticks", [1.0, 1.5])
-def test_controller_that_connects_while_time_stands_is_awaited_at_the_next_tick(ticks: float) -> None:
-    owner = lockstep(0.1 * ticks)
+def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
+    owner = lockstep(0.35, ANSWERING)
     controllers = owner.simulation.controllers
+    controllers.answer(ANSWERING, 0, None)
+    controllers.answer(ANSWERING, 100 * 10**9, AHEAD)
+    owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.1, None)
     owner.run()
-    controllers.command(NODE, AHEAD)  # notes the tick towards which time runs
-    controllers.enroll(lambda robot: {ANSWERING.node})
-    controllers.begin_tick()
-    controllers.answers.gone(NODE)
-    controllers.answers.tick = 2
-    assert controllers.answers.missing() == [ANSWERING]
+    assert waited(owner) == pytest.approx(0.3), "every tick waits for its own answer"
+    assert owner.simulator.world_from_footprint() == ORIGIN
 
 
-def test_command_of_an_answer_counts_once_its_sender_is_enrolled() -> None:
-    owner = lockstep(0.05)
-    controllers = owner.simulation.controllers
-    for enrolled in (False, True):
-        if enrolled:
-            controllers.enroll(lambda robot: {ANSWERING.node})
-        controllers.answer(ANSWERING, 0, AHEAD)
-        assert bool(controllers._pending) == enrolled
+def test_expected_node_that_disconnects_is_not_waited_for_and_its_robot_is_stopped() -> None:
+    owner = lockstep(1.0, ANSWERING)
+    owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.0) if stamp == TICK else None
+    owner.clock.at(0.2, owner.nodes.clear)
+    owner.run()
+    assert owner.events == [("gone", ANSWERING)]
+    assert owner.simulator.world_from_footprint().x < 0.03, "one tick at most, and braking"
+    assert waited(owner) == pytest.approx(0.25, abs=0.06)
+
+
+def test_another_nodes_command_outlives_one_that_disconnects() -> None:
+    owner = lockstep(0.35, NODE, ANSWERING)
+    answers(owner, ANSWERING, 0, 0.0)
+    owner.on_tick = lambda _stamp: sends(owner, NODE, 0.01)()
+    owner.clock.at(0.02, lambda: owner.nodes.discard(ANSWERING.node))
+    owner.run()
+    assert ("gone", ANSWERING) in owner.events
+    assert owner.simulator.velocity().v > 0.0
+
+
+def test_reset_while_time_is_held_waits_for_nobody_at_this_tick() -> None:
+    owner = lockstep(0.35, NODE, ANSWERING)
+    answers(owner, ANSWERING, 0, 0.0, None)
+
+    def answer(stamp: int) -> None:
+        if stamp == TICK:
+            owner.post(0.01, owner.simulation.reset)
+        answers(owner, ANSWERING, stamp, 0.1, None)
+
+    owner.on_tick = answer
+    owner.run()
+    assert owner.simulation.controllers.lockstep.misses == 0
+    assert waited(owner) < 0.5

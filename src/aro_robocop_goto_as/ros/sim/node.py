@@ -101,10 +101,9 @@ class SimNode:
     def _await_controllers(self) -> None:
         """Hold simulated time until the controllers have answered this tick, and apply their commands."""
         controllers, commands = self._simulation.controllers, self._commands
-        controllers.begin_tick()
-        commands.begin_tick()
-        self._hold(lambda: controllers.lockstep.hold(commands.connected, commands.is_kept))
-        self._status.warn_of(controllers.end_tick(commands.answering))
+        controllers.begin_tick(commands.connected)
+        self._hold(lambda: controllers.hold(commands.connected))
+        self._status.warn_of(controllers.end_tick())
 
     def _hold(self, hold: Callable[[], float]) -> None:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
@@ -116,7 +115,6 @@ class SimNode:
             self._publish(self._simulation.take_changes())
             if time.repetition_due():  # for nodes that start while simulated time stands still
                 self._topics.publish_clock(self._simulator.stamp_ns)
-                self._simulation.controllers.enroll(self._commands.answering)
             self._report()
             wait = hold()
         time.pacer.waited(time.pacer.now() - started)

@@ -9,8 +9,7 @@ from std_msgs.msg import Float64, Header
 
 from aro_robocop_goto_as.msg import SimStatus
 
-from ...simulation.awaited_answers import ControllerId
-from ...simulation.lockstep import TickReport
+from ...simulation.lockstep import ControllerId, TickReport
 from ...simulation.simulation import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
@@ -26,7 +25,7 @@ class StatusTopics:
         self._report = FactorReport(0.0, simulation.time_control.pacer.factor, 0.0, 0.0)
         self._running = 0  # reports while simulated time ran
         self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
-        self._awaited: List[ControllerId] = []
+        self._drivers: List[ControllerId] = []
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
         self._diagnostics = publisher("/diagnostics", DiagnosticArray)
@@ -41,7 +40,7 @@ class StatusTopics:
             self.publish()
             if not self._simulation.time_control.paused:
                 self._count(report)
-        elif self._simulation.controllers.answers.awaited() != self._awaited:
+        elif self._simulation.controllers.lockstep.expected() != self._drivers:
             self.publish()
         return report is not None
 
@@ -65,17 +64,11 @@ class StatusTopics:
 
     def warn_of(self, tick: TickReport) -> None:
         """Log what went wrong in a control tick in lockstep."""
-        controllers, control_rate = self._simulation.controllers, self._simulation.simulator.p.rates.control_rate
         for controller in tick.gone:
             rospy.logwarn("lockstep: %s disconnected; the robot is stopped", self._name(controller))
-        if tick.late:
-            names, timeout = ", ".join(map(self._name, tick.late)), controllers.lockstep.timeout
-            rospy.logwarn(f"lockstep: no answer from {names} within {timeout:g} s; simulated time continues without it")
-        for controller, rate in tick.slower:
-            text = (
-                "lockstep: %s runs at %g Hz, control_rate is %g Hz: it is waited for only at its own ticks from now on"
-            )
-            rospy.logwarn(text, self._name(controller), rate, control_rate)
+        for controller in tick.late:
+            text = "lockstep: no answer from %s within %g s; it is waited for again once it answers at each tick"
+            rospy.logwarn(text, self._name(controller), self._simulation.controllers.lockstep.timeout)
 
     def _name(self, controller: ControllerId) -> str:
         """How messages name a controller: by its node, and among several robots also by the one that it commands."""
@@ -85,7 +78,7 @@ class StatusTopics:
     def publish(self) -> None:
         """Publish the newest report now."""
         simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        self._awaited = simulation.controllers.answers.awaited()
+        self._drivers = simulation.controllers.lockstep.expected()
         status = SimStatus(
             stamp=convert.to_time(simulator.stamp_ns),
             world=simulator.world.name,
@@ -98,8 +91,8 @@ class StatusTopics:
             factor_reached=report.reached,
             step_time=report.step_time,
             behind=report.lag,
-            drivers=sorted(map(self._name, self._awaited)),
-            lockstep_misses=simulation.controllers.answers.misses,
+            drivers=sorted(map(self._name, self._drivers)),
+            lockstep_misses=simulation.controllers.lockstep.misses,
         )
         self._status.publish(status)
         if self._diagnostics.get_num_connections():
