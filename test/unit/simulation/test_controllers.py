@@ -92,13 +92,6 @@ def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_agai
     assert owner.simulation.controllers.lockstep.expected() == [NODE]
 
 
-def test_command_between_two_ticks_is_the_answer_to_the_second_one() -> None:
-    owner = lockstep(0.15, NODE, real_time_factor=1.0)
-    sends(owner, NODE, 0.05)()
-    owner.run()
-    assert waited(owner) < 0.15 + SILENCE_TIMEOUT
-
-
 @pytest.mark.parametrize("first, second, forward", [(NODE, OTHER, False), (OTHER, NODE, False)])
 def test_of_several_nodes_the_last_by_name_commands_the_robot(
     first: ControllerId, second: ControllerId, forward: bool
