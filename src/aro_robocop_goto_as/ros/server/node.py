@@ -46,10 +46,9 @@ class GotoNode:
         self.clock_error = ""
         self.executing = threading.Lock()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
-        rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
-        # After these, as a simulator in lockstep then waits for the answers:
-        self.ticks = Ticks(1.0 / p.control_rate, self.on_clock_set_back)
+        odom = rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
+        scan = rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
+        self.ticks = Ticks(1.0 / p.control_rate, (odom, scan), self.on_clock_set_back)
         self.server = actionlib.SimpleActionServer(ACTION, GoToPositionAction, self.execute, auto_start=False)
         self.server.register_preempt_callback(self.ticks.wake)
         rospy.on_shutdown(self.shut_down)

@@ -1,7 +1,7 @@
 """The ticks of the control loop: whole multiples of its period of ROS time, 0.1 s, 0.2 s, ..."""
 
 import threading
-from typing import Callable, Optional
+from typing import Callable, Optional, Sequence
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -19,18 +19,23 @@ class Ticks:
     Unlike rospy.Rate, the wait can be interrupted, as by a cancel while /clock is paused.
     """
 
-    def __init__(self, period: float, on_set_back: Callable[[str], None]) -> None:
-        """`period` [s]; `on_set_back` is called with the reason when simulated time was set back."""
+    def __init__(self, period: float, inputs: Sequence[rospy.Subscriber], on_set_back: Callable[[str], None]) -> None:
+        """`period` [s]; `on_set_back` is called with the reason when simulated time was set back.
+
+        The first answer, from which on a simulator in lockstep waits for this node, is sent once its `inputs` are
+        connected.
+        """
         self.command: Optional[Twist2D] = None  # since the last answer
         self._period_ns = round(period * NANOSECONDS)
-        self._on_set_back = on_set_back
+        self._inputs, self._on_set_back = inputs, on_set_back
+        self._has_joined = False
         self._changed = threading.Condition()
         self._clock = rospy.Time()
         self._is_simulated = rospy.get_param("/use_sim_time", False)
-        # rospy sets its time before it calls this, as its own subscriber was there first.
-        rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
         self.answers = rospy.Publisher("tick_answer", TickAnswer, queue_size=10)
         self.answered = self.newest()  # the newest tick [ns] that is done
+        # rospy sets its time before it calls this, as its own subscriber was there first.
+        rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
 
     def _on_clock(self, message: Clock) -> None:
         before, self._clock = self._clock, message.clock
@@ -38,6 +43,10 @@ class Ticks:
             self._on_set_back(
                 f"simulated time was set back from {before.to_sec():.1f} to {message.clock.to_sec():.1f} s"
             )
+        topics = (self.answers, *self._inputs)
+        if not self._has_joined and all(topic.get_num_connections() for topic in topics):
+            self._has_joined = True
+            self._publish(self.answered, None)
         self.wake()
 
     def wake(self) -> None:
@@ -62,5 +71,9 @@ class Ticks:
         if tick_ns > self.answered:
             self.answered = tick_ns
             command, self.command = self.command, None
-            twist = convert.to_twist_msg(command or STANDSTILL)
-            self.answers.publish(TickAnswer(convert.to_time(tick_ns), command is not None, twist))
+            if self._has_joined:
+                self._publish(tick_ns, command)
+
+    def _publish(self, tick_ns: int, command: Optional[Twist2D]) -> None:
+        twist = convert.to_twist_msg(command or STANDSTILL)
+        self.answers.publish(TickAnswer(convert.to_time(tick_ns), command is not None, twist))

@@ -2,6 +2,7 @@
 
 import threading
 import time as wall
+from types import SimpleNamespace
 from typing import Any, List
 
 import pytest
@@ -27,7 +28,13 @@ class Time:
             rospy, "Subscriber", lambda topic, kind, callback, **_: setattr(self, "_callback", callback)
         )
         monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: self)
-        self.ticks = Ticks(0.1, self.set_back.append)
+        self.connections = {"answers": 1, "odom": 1}
+        odom: Any = SimpleNamespace(get_num_connections=lambda: self.connections["odom"])
+        self.ticks = Ticks(0.1, [odom], self.set_back.append)
+
+    def get_num_connections(self) -> int:
+        """As a publisher."""
+        return self.connections["answers"]
 
     def publish(self, answer: Any) -> None:
         """As a publisher."""
@@ -82,17 +89,30 @@ def test_wait_ends_by_an_interruption_while_the_clock_stands(time: Time) -> None
 def test_on_the_wall_clock_nobody_has_to_tell_of_a_tick(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
     monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time()))
-    ticks = Ticks(0.01, time.set_back.append)
+    ticks = Ticks(0.01, [], time.set_back.append)
     last = ticks.newest()
     assert ticks.wait_for_next(last, never) > last
 
 
 def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time: Time) -> None:
+    time.reach(0)
     for tick in (100, 100, 200):
         time.ticks.command = Twist2D(0.1, 0.0) if tick == 100 else None
         time.ticks.answer(tick * MS)
     time.ticks.answer(100 * MS)
-    assert time.answers == [(100, True, 0.1), (200, False, 0.0)]
+    assert time.answers == [(0, False, 0.0), (100, True, 0.1), (200, False, 0.0)]
+
+
+@pytest.mark.parametrize("missing", ["answers", "odom"])
+def test_the_first_answer_waits_for_all_connections_also_while_time_stands_still(time: Time, missing: str) -> None:
+    time.connections[missing] = 0
+    time.reach(50)
+    time.ticks.answer(0)
+    assert time.answers == []
+    time.connections[missing] = 1
+    time.reach(50)
+    time.reach(50)
+    assert time.answers == [(0, False, 0.0)]
 
 
 def test_clock_that_was_set_back_is_told_with_both_times(time: Time) -> None:
