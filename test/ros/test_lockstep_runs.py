@@ -4,6 +4,7 @@ Every run has new processes on one master. They are plain processes rather than 
 started and stopped many times and one of them is frozen by SIGSTOP.
 """
 
+import itertools
 import json
 import os
 import signal
@@ -253,20 +254,23 @@ def poses_at(ros, trajectory, seconds):
     return trajectory.read_text().splitlines()
 
 
-def start_metronome(ros, remote, rate=10):
-    controller = ros.script("metronome.py", f"_rate:={rate}")
-    remote.wait_for_driver("/metronome", controller)
-    return controller
+def start_metronome(ros, remote):
+    """A plain controller that lockstep waits for, and how many seconds were simulated until it does."""
+    controller = ros.script("metronome.py")
+    steps = itertools.count(1)
+    ros.wait(lambda: remote.step(0.1) or "/metronome" in remote.status()["drivers"] or not next(steps), "it drives")
+    return controller, 0.1 * next(steps)
 
 
 def run_metronome(ros):
-    """Ten seconds with a plain controller: the true poses, and how often it missed lockstep's timeout."""
+    """Fifteen seconds with a plain controller: the true poses, and how often it missed lockstep's timeout."""
     simulator = ros.simulator(cmd_vel_timeout=0.0)
     remote = Remote(ros, simulator)
     trajectory = start_recorder(ros, simulator, remote)
-    start_metronome(ros, remote)
-    remote.step(10.0)
-    poses = poses_at(ros, trajectory, 11.0)
+    _, seconds = start_metronome(ros, remote)
+    assert seconds < 4.0, "it has been driving before lockstep waits for it"
+    remote.step(15.0 - seconds)
+    poses = poses_at(ros, trajectory, 16.0)
     misses = remote.status()["lockstep_misses"]
     ros.stop_nodes()
     return poses, misses
@@ -285,7 +289,7 @@ def test_controller_that_hangs_causes_one_miss_and_is_waited_for_again_when_it_c
     simulator = ros.simulator(lockstep_timeout=0.5)
     remote = Remote(ros, simulator)
     remote.step(1.0)
-    controller = start_metronome(ros, remote)
+    controller, _ = start_metronome(ros, remote)
     remote.step(1.0)
     controller.send_signal(signal.SIGSTOP)
     try:
@@ -312,7 +316,9 @@ def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again
         server.send_signal(signal.SIGCONT)
     again = f"{SERVER} (/scan) reads again"
     ros.wait(lambda: remote.step(0.1) or again in simulator.log.read_text(), again, (simulator, server))
-    remote.wait_for_driver(SERVER, server)
+    ros.wait(
+        lambda: remote.step(0.1) or SERVER in remote.status()["drivers"], "it answers each tick", (simulator, server)
+    )
     topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
     goal = ros.start("rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
     ros.wait(lambda: remote.step(0.5) or "REACHED" in server.log.read_text(), "the goal", (simulator, server, goal))

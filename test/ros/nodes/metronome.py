@@ -7,6 +7,8 @@ import rospy
 from geometry_msgs.msg import Twist
 from harness import wait_for
 
+STARTS_AT = 5.0  # [s] it commands standstill before, as lockstep follows a loop from its third command on
+
 
 def main():
     rospy.init_node("metronome")
@@ -15,8 +17,9 @@ def main():
     rate = rospy.Rate(rospy.get_param("~rate", 10))
     while not rospy.is_shutdown():
         command = Twist()
-        command.linear.x = 0.1 + 0.1 * math.sin(rospy.get_time())
-        command.angular.z = 0.5 * math.cos(rospy.get_time() / 2.0)
+        if rospy.get_time() >= STARTS_AT:
+            command.linear.x = 0.1 + 0.1 * math.sin(rospy.get_time())
+            command.angular.z = 0.5 * math.cos(rospy.get_time() / 2.0)
         publisher.publish(command)
         rate.sleep()
 
