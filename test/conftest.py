@@ -17,14 +17,8 @@ settings.register_profile("selection", settings.get_profile("all"), max_examples
 
 
 def pytest_addoption(parser):
-    """./robocop test --all --faults N --episode NAME --soak SECONDS --select REGEX --busy N"""
+    """./robocop test --all --busy N"""
     parser.addoption("--all", action="store_true", help="also the tests marked slow, and more examples of properties")
-    parser.addoption("--faults", type=int, metavar="N", help="goals of the fault campaign, in each configuration")
-    parser.addoption("--soak", type=float, default=60.0, metavar="SECONDS", help="[s, wall] of the soak test")
-    parser.addoption("--episode", metavar="NAME", help="only this episode of the fault campaign, named by a violation")
-    parser.addoption(
-        "--select", default="", metavar="REGEX", help="only faults with such a name; (?!a|b) leaves two out"
-    )
     parser.addoption(
         "--busy", type=int, default=0, metavar="N", help="run beside N endless loops, with longer deadlines"
     )
@@ -48,10 +42,7 @@ def pytest_report_header(config):
 
 
 def pytest_collection_modifyitems(config, items):
-    left_out = set() if config.getoption("--all") else {"slow"}
-    if config.getoption("--faults") is None and not config.getoption("--episode"):
-        left_out.add("faults")
-    chosen = {item: not any(item.get_closest_marker(name) for name in left_out) for item in items}
+    chosen = {item: config.getoption("--all") or not item.get_closest_marker("slow") for item in items}
     config.hook.pytest_deselected(items=[item for item in items if not chosen[item]])
     items[:] = [item for item in items if chosen[item]]
     for item in items:

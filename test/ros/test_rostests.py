@@ -29,7 +29,7 @@ rostest.rostestmain()
 """
 # Most of these is also tested without processes, or with two robots (many_robots).
 SLOW = (
-    *("camera", "documented_commands", "localization_truth", "many_robots", "navigation_fast"),
+    *("camera", "documented_commands", "faults", "localization_truth", "many_robots", "navigation_fast"),
     *("navigation_lockstep", "parameters", "real_robot", "real_time_factor", "teleop"),
 )
 

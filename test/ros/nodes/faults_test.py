@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+"""Whatever goes wrong, each goal ends once, the robot stops, and the next goal is reached.
+
+What goes wrong with odometry and scans is in server_ends_test.py.
+"""
+
+import math
+import signal
+
+import psutil
+import rospy
+from actionlib_msgs.msg import GoalID
+from aro_robocop_goto_as.srv import DeleteModel, SetPose, SpawnModel, Step
+from clicks import Clicks
+from commands import Commands
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from harness import (
+    ACTION,
+    BRIDGE,
+    SERVER,
+    SIMULATOR,
+    Process,
+    SystemTest,
+    call_simulator,
+    run,
+    script,
+    wait_for,
+    wait_for_connection,
+)
+
+SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py", BRIDGE: "robocop_rviz_goto_ac.py"}
+MODE = ("_sync:=lockstep", "_real_time_factor:=10", "_drive:=kinematic", "_lockstep_timeout:=0.5", "_world:=empty")
+FAR = (20.0, 0.0)  # in odom [m]: the robot drives for a hundred simulated seconds
+TOPICS = {  # that each node sends to this one, and that it receives
+    SIMULATOR: (("odom", "ground_truth_odom"), ()),
+    SERVER: (
+        ("cmd_vel", "/rosout", *(f"{ACTION}/{name}" for name in ("status", "feedback", "result"))),
+        (f"{ACTION}/goal", f"{ACTION}/cancel"),
+    ),
+    BRIDGE: ((f"{BRIDGE}/status", f"{ACTION}/goal"), ("move_base_simple/goal",)),
+}
+FAR = (2.0, 0.0)  # in odom [m]: free way for ten simulated seconds
+BLOCK = """<sdf version="1.6"><model name="block"><static>1</static><link name="l"><collision name="c"><geometry><box>
+<size>0.2 0.2 0.5</size></box></geometry></collision></link></model></sdf>"""
+MAX_GROWTH = 3  # threads, and files: those of a connection that is being opened
+
+
+class Faults(SystemTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.nodes = {}
+        cls.addClassCleanup(cls.end_nodes)
+        for node in SCRIPTS:
+            cls.start(node)
+        super().setUpClass()
+        cls.clicks = Clicks()
+
+    @classmethod
+    def start(cls, node):
+        """Start a node; the former one of this name, if any."""
+        former = cls.nodes.get(node)
+        cls.nodes[node] = Process(script(SCRIPTS[node]), f"__name:={node[1:]}", *(MODE if node == SIMULATOR else ()))
+        return former
+
+    @classmethod
+    def end_nodes(cls):
+        for node in reversed(list(cls.nodes.values())):
+            node.__exit__()
+
+    def restart(self, node):
+        """Start a node that has ended, and wait until it serves this one."""
+        former = self.start(node)
+        self.assertIsNotNone(former.process.poll())
+        self.wait_until_connected(node)
+
+    def wait_until_connected(self, node):
+        sent, received = TOPICS[node]
+        for topic in sent:
+            wait_for_connection(node, topic)
+        for topic in received:
+            wait_for_connection(node, topic, received=True)
+
+    def tearDown(self):
+        call_simulator("unpause")
+        super().tearDown()
+        self.robot.wait_until_it_stands()
+        self.robot.reset()
+        self.goals.send(0.2, 0.1).result("REACHED")
+        for name, node in self.nodes.items():
+            self.assertIsNone(node.process.poll(), f"{name} has ended: {node.output}")
+            self.assertNotIn("Traceback", node.output)
+
+    def drive(self):
+        """A goal to which the robot drives."""
+        goal = self.goals.send(*FAR)
+        self.robot.wait_until_it_drives(0.1)
+        return goal
+
+    def click(self):
+        """The goal that the bridge makes of a 2D Nav Goal far ahead."""
+        sent = len(self.goals.of_others())
+        self.clicks.click(*FAR, "map")
+        return wait_for(lambda: self.goals.of_others()[sent:], "a goal from the bridge")[-1]
+
+    # -- nodes --
+
+    def test_server_is_killed(self):
+        goal = self.drive()
+        self.nodes[SERVER].process.kill()
+        self.nodes[SERVER].wait_for_exit()
+        self.robot.wait_for_standstill()
+        self.assertEqual(goal.results(), [])
+        self.restart(SERVER)
+        self.goals.clear()
+        self.drive()
+
+    def test_server_is_told_to_end(self):
+        goal = self.drive()
+        self.nodes[SERVER].process.terminate()
+        self.assertIn("the server is shutting down", goal.result("SHUTDOWN").result.message)
+        self.assertEqual(self.nodes[SERVER].wait_for_exit(), 0)
+        self.robot.wait_until_it_stands()
+        self.restart(SERVER)
+
+    def test_second_server_takes_the_name_of_the_first(self):
+        goal = self.drive()
+        call_simulator("pause")  # or the goal may end before the second server runs
+        former = self.start(SERVER)
+        former.wait_for_exit()
+        goal.result("SHUTDOWN")
+        self.wait_until_connected(SERVER)
+
+    def test_server_stands_still_for_three_seconds(self):
+        goal = self.drive()
+        self.nodes[SERVER].process.send_signal(signal.SIGSTOP)
+        begun = self.robot.truth.newest().header.stamp
+        self.robot.truth.wait_for(lambda m: (m.header.stamp - begun).to_sec() > 3.0, "time that goes on")
+        self.robot.wait_for_standstill()
+        self.nodes[SERVER].process.send_signal(signal.SIGCONT)
+        goal.result()
+
+    def test_simulator_is_killed_and_the_server_ends_when_time_starts_again(self):
+        goal = self.drive()
+        self.nodes[SIMULATOR].process.kill()
+        self.nodes[SIMULATOR].wait_for_exit()
+        self.restart(SIMULATOR)
+        goal.result("SHUTDOWN")
+        self.assertEqual(self.nodes[SERVER].wait_for_exit(), 1)
+        self.assertRegex(self.nodes[SERVER].output, r"CLOCK: simulated time was set back from \d+\.\d to \d+\.\d s")
+        self.restart(SERVER)
+        self.goals.clear()  # also the error in the log
+
+    def test_bridge_is_killed_and_its_goal_goes_on(self):
+        goal = self.click()
+        self.robot.wait_until_it_drives(0.1)
+        self.nodes[BRIDGE].process.kill()
+        self.nodes[BRIDGE].wait_for_exit()
+        self.robot.wait_until_it_drives(0.1)
+        self.restart(BRIDGE)
+        self.assertNotEqual(self.click().id, goal.id)
+
+    # -- goals, clicks and commands --
+
+    def test_goals_and_clicks_of_nan_between_good_ones(self):
+        goal = self.drive()
+        self.clicks.click(math.nan, 0.0, "map")
+        self.clicks.wait_for_status("goal refused")
+        self.assertEqual(goal.results(), [])
+        bad = self.goals.send(math.nan, math.inf)
+        bad.result("BAD_GOAL")
+        goal.result("PREEMPTED")
+
+    def test_hundred_goals_at_once(self):
+        for number in range(100):
+            goal = self.goals.send(math.nan if number % 10 == 5 else 0.3, 0.01 * number)
+        goal.result("REACHED")
+
+    def test_cancels_of_every_kind_in_quick_succession(self):
+        self.drive()
+        for number in range(40):
+            goal = self.goals.send(0.5, 0.01 * number)
+            self.goals.cancel_topic.publish(GoalID(rospy.Time(), (goal.id, "unknown", "")[number % 3]))
+            self.goals.cancel_topic.publish(GoalID(rospy.Time.now(), ""))  # all up to now
+        goal.cancel()
+        self.assertNotIn("REACHED", goal.result().result.message)
+
+    def test_another_node_commands_the_robot_also_nan(self):
+        commands = Commands()
+        goal = self.drive()
+        for number in range(20):
+            commands.once(*((0.1, 1.0), (math.nan, 0.0), (-0.1, 1e300), (5.0, -math.inf))[number % 4])
+            self.robot.truth.next()
+        goal.cancel()
+        goal.result()
+        commands.once(0.0)
+
+    # -- time and world --
+
+    def test_time_is_paused_and_stepped_and_the_goal_cancelled_meanwhile(self):
+        goal = self.drive()
+        call_simulator("pause")
+        step = rospy.ServiceProxy(f"{SIMULATOR}/step", Step)
+        for seconds in (0.0, 0.01, 0.35):
+            self.assertTrue(step(seconds).success)
+        goal.cancel()
+        goal.result("PREEMPTED")
+
+    def test_simulation_is_reset_three_times(self):
+        goal = self.drive()
+        for _ in range(3):
+            call_simulator("reset")
+            self.robot.wait_until_it_drives(0.1)
+        self.assertEqual(goal.results(), [])
+
+    def test_robot_is_placed_elsewhere_and_walled_in(self):
+        goal = self.drive()
+        there = PoseStamped(pose=Pose(position=Point(1.5, -1.5, 0.0)))
+        there.header.frame_id, there.pose.orientation.w = "map", 1.0
+        self.assertTrue(rospy.ServiceProxy(f"{SIMULATOR}/set_pose", SetPose)("", there).success)
+        spawn = rospy.ServiceProxy(f"{SIMULATOR}/spawn_model", SpawnModel)
+        for number in range(4):
+            angle = number * math.pi / 2.0
+            pose = Pose(position=Point(1.5 + 0.4 * math.cos(angle), -1.5 + 0.4 * math.sin(angle), 0.0))
+            self.assertTrue(spawn(f"block_{number}", BLOCK, "", pose).success)
+        goal.result()
+        delete = rospy.ServiceProxy(f"{SIMULATOR}/delete_model", DeleteModel)
+        for number in range(4):
+            self.assertTrue(delete(f"block_{number}").success)
+
+    # -- use of the machine --
+
+    def test_goals_leave_no_threads_or_files_behind(self):
+        before = self.usage()
+        for number in range(30):
+            self.goals.send(0.1, 0.1 * (number % 2)).result("REACHED")
+        wait_for(
+            lambda: all(new <= old + MAX_GROWTH for old, new in zip(before, self.usage())),
+            lambda: f"as many threads and files as {before}; there are {self.usage()}",
+        )
+
+    def usage(self):
+        processes = [psutil.Process(node.pid) for node in self.nodes.values()]
+        return [count for process in processes for count in (process.num_threads(), process.num_fds())]
+
+
+if __name__ == "__main__":
+    run(Faults)
