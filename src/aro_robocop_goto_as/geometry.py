@@ -6,7 +6,7 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from .farthest import FARTHEST as FARTHEST
+from .param_loading import MAX_COORDINATE as MAX_COORDINATE
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 UPRIGHT = 1e-9  # largest |qx| + |qy| of an orientation without roll and pitch

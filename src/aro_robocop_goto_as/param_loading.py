@@ -10,6 +10,10 @@ from .suggestions import did_you_mean
 T = TypeVar("T")
 
 
+MODELS_OWN, PROFILES_OWN = "the model's value", "the profile's value"  # what a default of None stands for
+MAX_COORDINATE = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
+
+
 def parameter(
     default: Any = MISSING,
     low: Optional[float] = None,

@@ -1,20 +1,24 @@
-"""Parameters of the simulator: frozen dataclasses that hold every default, and that param_loading fills.
+"""All parameters of the simulator: the groups that its components declare, and which values exclude one another.
 
-They are grouped by the component that reads them. A field's name is the name of the ROS parameter, whatever
-the group; config/sim.yaml documents each one with its unit and source. A default of None means "not given": ROS
-parameters can't hold a null, so the key is simply left out.
+A group is a frozen dataclass beside the component that reads it, with every default and bound. A field's name is the
+name of the ROS parameter, whatever the group; config/sim.yaml documents each one with its unit and source. A default of
+None means "not given": ROS parameters can't hold a null, so the key is simply left out.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional
 
-from .param_loading import frame_problems, from_dict, group, parameter, positive
+from .param_loading import MODELS_OWN, frame_problems, from_dict, group, parameter, positive
+from .physics.engine import EngineParams
+from .robot.base_controller import LimitParams
 from .robot.model_names import DEFAULT_MODEL
-from .sensors import camera
-from .sensors.scan_profiles import PROFILES, LidarSpec
-
-MODELS_OWN = "the model's value"
-PROFILES_OWN = "the profile's value"
+from .sensors.camera import CameraParams
+from .sensors.imu import ImuParams
+from .sensors.odometry import OdometryParams
+from .sensors.scan_profiles import ScanParams
+from .simulation.lockstep import LockstepParams
+from .simulation.rates import Rates
+from .simulation.time_control import TimeParams
 
 
 @dataclass(frozen=True)
@@ -35,136 +39,6 @@ class RobotParams:
     spawn: str = ""
     robots: str = ""
     footprint_radius: Optional[float] = positive(None, high=100.0, otherwise=MODELS_OWN)  # [m]
-
-
-@dataclass(frozen=True)
-class EngineParams:
-    """Which physics engine is used, and its parameters."""
-
-    drive: str = parameter("wheels", choices=("wheels", "kinematic"))  # the engine: Bullet or kinematic
-    solver_iterations: int = parameter(20, low=1, high=10000)
-    wheel_torque: float = positive(1.0)  # [Nm] maximum of each wheel motor
-    gui: bool = False
-
-
-@dataclass(frozen=True)
-class Rates:
-    """How often each thing happens or is measured [Hz]; 0 = never. The scanner's is in ScanParams."""
-
-    physics_rate: int = parameter(240, low=1, high=10000)
-    clock_rate: int = parameter(60, low=1)
-    control_rate: int = parameter(10, low=1)  # lockstep control ticks
-    odom_rate: int = parameter(30, low=1)
-    joint_state_rate: int = parameter(30, low=1)
-    ground_truth_rate: int = parameter(30, low=1)
-    imu_rate: int = parameter(200, low=1)
-    bumper_rate: int = parameter(30, low=0)
-    camera_rate: int = parameter(10, low=0)
-
-
-@dataclass(frozen=True)
-class TimeParams:
-    """How simulated time starts and runs."""
-
-    real_time_factor: float = parameter(1.0, low=0.0, high=1e6)  # 0: as fast as possible
-    start_paused: bool = False
-
-
-@dataclass(frozen=True)
-class LockstepParams:
-    """Whether simulated time waits for the controllers at each control tick, and for how long."""
-
-    sync: str = parameter("free", choices=("free", "lockstep"))
-    lockstep_timeout: float = positive(2.0)  # [s, wall]
-
-    @property
-    def enabled(self) -> bool:
-        """Whether simulated time waits for the controllers."""
-        return self.sync == "lockstep"
-
-
-@dataclass(frozen=True)
-class LimitParams:
-    """Limits of every robot's base controller; None: each model's own figure."""
-
-    velocity_limits: str = parameter("teleop", choices=("teleop", "firmware"))
-    max_linear_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s]
-    max_angular_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s]
-    max_linear_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s^2]
-    max_angular_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s^2]
-    cmd_vel_timeout: Optional[float] = parameter(None, low=0.0, otherwise=MODELS_OWN)  # [s]; 0: never
-
-
-@dataclass(frozen=True)
-class ScanParams:
-    """The laser scanner: a profile, and figures that replace its own."""
-
-    scan_profile: str = parameter("gazebo", choices=tuple(PROFILES))
-    scan_rate: Optional[int] = parameter(None, low=1, otherwise=PROFILES_OWN)
-    scan_samples: Optional[int] = parameter(None, low=2, high=100000, otherwise=PROFILES_OWN)
-    scan_angle_min: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
-    scan_angle_max: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
-    scan_range_min: Optional[float] = parameter(None, low=0.0, high=1e6, otherwise=PROFILES_OWN)
-    scan_range_max: Optional[float] = positive(None, otherwise=PROFILES_OWN)
-    scan_noise: Optional[float] = parameter(None, low=0.0, high=100.0, otherwise=PROFILES_OWN)
-
-    @property
-    def rate(self) -> int:
-        """Scans per second [Hz]."""
-        return PROFILES[self.scan_profile].rate if self.scan_rate is None else self.scan_rate
-
-    def given(self) -> Dict[str, Any]:
-        """The figures that replace the profile's."""
-        return {name: value for name, value in vars(self).items() if name != "scan_profile" and value is not None}
-
-    def lidar(self) -> LidarSpec:
-        """The scanner of the profile, with the given figures in place of its own."""
-        figures = {name[len("scan_") :]: value for name, value in self.given().items() if name != "scan_rate"}
-        if "noise" in figures:
-            figures["accuracy"] = ()
-        return replace(PROFILES[self.scan_profile].spec, **figures)
-
-
-@dataclass(frozen=True)
-class OdometryParams:
-    """Errors of wheel odometry."""
-
-    odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
-    odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
-    odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
-    encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
-
-
-@dataclass(frozen=True)
-class ImuParams:
-    """Standard deviations of the IMU's white noise, and the accelerometer's bias."""
-
-    gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]
-    accelerometer_noise: float = parameter(1.7e-2, low=0.0, high=100.0)  # [m/s^2]
-    accelerometer_bias: float = parameter(0.0, low=-100.0, high=100.0)  # [m/s^2] added to each axis
-
-
-@dataclass(frozen=True)
-class CameraParams:
-    """The cameras: a profile, and figures that replace its own."""
-
-    camera_profile: str = parameter("small", choices=tuple(camera.PROFILES))
-    camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
-    camera_height: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
-    camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)  # [rad]
-    camera_range_min: float = positive(0.05)  # [m]
-    camera_range_max: float = positive(10.0)  # [m]
-
-    def spec(self, model: str) -> camera.CameraSpec:
-        """The camera of a model, by its name."""
-        width, height, angle = camera.PROFILES[self.camera_profile].get(model, camera.SMALL)
-        return camera.CameraSpec(
-            width if self.camera_width is None else self.camera_width,
-            height if self.camera_height is None else self.camera_height,
-            angle if self.camera_angle is None else self.camera_angle,
-            self.camera_range_min,
-            self.camera_range_max,
-        )
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ import pytest
 from desktop import Desktop, Master, Ros
 from waiting import wait_for
 
+from aro_robocop_goto_as.names import absolute
 from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
-from aro_robocop_goto_as.ros.names import absolute
 
 pytestmark = pytest.mark.slow
 TIMES = 10

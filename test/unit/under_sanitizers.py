@@ -35,11 +35,11 @@ from aro_robocop_goto_as.ros.packed import (
     packed_transforms,
 )
 from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
+from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.noise_streams import Episode
-from aro_robocop_goto_as.sensors.odometry import Odometers
+from aro_robocop_goto_as.sensors.odometry import Odometers, OdometryParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
-from aro_robocop_goto_as.sim_params import ImuParams, OdometryParams
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 

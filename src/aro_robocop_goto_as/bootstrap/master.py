@@ -8,7 +8,7 @@ import xmlrpc.client
 from typing import Any, Optional, cast
 
 from ..errors import MasterError
-from ..ros.names import SIMULATOR, absolute
+from ..names import SIMULATOR, absolute
 
 DEFAULT_URI = "http://localhost:11311"  # roscore's port
 TIMEOUT = 5.0  # [s, wall] without data, for each request; a healthy master answers in milliseconds

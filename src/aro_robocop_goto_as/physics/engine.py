@@ -3,12 +3,24 @@
 bullet.py and kinematic.py implement it. Robots are addressed by index, in the order of the fleet.
 """
 
+from dataclasses import dataclass
 from typing import Protocol, Sequence
 
 from ..geometry import Pose2D
+from ..param_loading import parameter, positive
 from ..robot.fleet import Fleet
 from ..robot.model import BodyState
 from ..world.model import World
+
+
+@dataclass(frozen=True)
+class EngineParams:
+    """Which physics engine is used, and its parameters."""
+
+    drive: str = parameter("wheels", choices=("wheels", "kinematic"))  # the engine: Bullet or kinematic
+    solver_iterations: int = parameter(20, low=1, high=10000)
+    wheel_torque: float = positive(1.0)  # [Nm] maximum of each wheel motor
+    gui: bool = False
 
 
 class Engine(Protocol):

@@ -1,12 +1,25 @@
 """Base controllers: commands are clamped to their limits here, base_controller.c accelerates within them."""
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple, Optional
 
 from ..errors import CommandError
 from ..geometry import Twist2D
-from ..sim_params import LimitParams
+from ..param_loading import MODELS_OWN, parameter, positive
 from .model import ModelFigures
+
+
+@dataclass(frozen=True)
+class LimitParams:
+    """Limits of every robot's base controller; None: each model's own figure."""
+
+    velocity_limits: str = parameter("teleop", choices=("teleop", "firmware"))
+    max_linear_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s]
+    max_angular_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s]
+    max_linear_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s^2]
+    max_angular_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s^2]
+    cmd_vel_timeout: Optional[float] = parameter(None, low=0.0, otherwise=MODELS_OWN)  # [s]; 0: never
 
 
 class Limits(NamedTuple):

@@ -11,7 +11,7 @@ from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Header
 
 from ..errors import FrameError
-from ..geometry import FARTHEST, Pose2D, Pose3D, Twist2D, yaw_of
+from ..geometry import MAX_COORDINATE, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
 from ..sensors.imu import FORCE, ORIENTATION, RATES
 from ..sensors.scan_profiles import LidarSpec
@@ -54,10 +54,10 @@ def from_quaternion(q: Quaternion, unset_is_level: bool = False) -> Tuple[float,
 
 
 def require_near(where: str = "", **position: float) -> None:
-    """Raise FrameError unless a position is finite and within FARTHEST; `where` is the end of the sentence."""
-    if not all(abs(value) <= FARTHEST for value in position.values()):  # true for NaN
+    """Raise FrameError unless a position is finite and within MAX_COORDINATE; `where` is the end of the sentence."""
+    if not all(abs(value) <= MAX_COORDINATE for value in position.values()):  # true for NaN
         got = " ".join(f"{axis} {value}" for axis, value in position.items())
-        raise FrameError(f"expected finite numbers within +-{FARTHEST:g} m, got {got}{where}")
+        raise FrameError(f"expected finite numbers within +-{MAX_COORDINATE:g} m, got {got}{where}")
 
 
 def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:

@@ -2,7 +2,7 @@
 
 from typing import List, Tuple
 
-from ..sim_params import ImuParams
+from ..sensors.imu import ImuParams
 
 # Variances of x, y, z, roll, pitch, yaw. A huge variance marks what a differential drive cannot measure. The figures
 # are those of Gazebo's differential drive plugin, which existing lab code was written against.

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import rospkg
 
-from .names import PACKAGE
+from ..names import PACKAGE
 
 CHECKOUT = Path(__file__).parents[3]
 

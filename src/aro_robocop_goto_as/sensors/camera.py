@@ -5,9 +5,11 @@ Images have shape (height, width), row 0 at the top; the optical frame has z for
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
+
+from ..param_loading import PROFILES_OWN, parameter, positive
 
 Figures = Tuple[int, int, float]  # width, height [pixels], horizontal field of view [rad]
 
@@ -44,6 +46,29 @@ class CameraSpec:
     def centre_y(self) -> float:
         """Row [pixels] of the optical axis."""
         return (self.height - 1) / 2.0
+
+
+@dataclass(frozen=True)
+class CameraParams:
+    """The cameras: a profile, and figures that replace its own."""
+
+    camera_profile: str = parameter("small", choices=tuple(PROFILES))
+    camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
+    camera_height: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
+    camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)  # [rad]
+    camera_range_min: float = positive(0.05)  # [m]
+    camera_range_max: float = positive(10.0)  # [m]
+
+    def spec(self, model: str) -> CameraSpec:
+        """The camera of a model, by its name."""
+        width, height, angle = PROFILES[self.camera_profile].get(model, SMALL)
+        return CameraSpec(
+            width if self.camera_width is None else self.camera_width,
+            height if self.camera_height is None else self.camera_height,
+            angle if self.camera_angle is None else self.camera_angle,
+            self.camera_range_min,
+            self.camera_range_max,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,10 +1,22 @@
 """The measurements of an IMU: orientation, angular velocity and specific force."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
+from ..param_loading import parameter
 from ..robot.model import BodyState
-from ..sim_params import ImuParams
+
+
+@dataclass(frozen=True)
+class ImuParams:
+    """Standard deviations of the IMU's white noise, and the accelerometer's bias."""
+
+    gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]
+    accelerometer_noise: float = parameter(1.7e-2, low=0.0, high=100.0)  # [m/s^2]
+    accelerometer_bias: float = parameter(0.0, low=-100.0, high=100.0)  # [m/s^2] added to each axis
+
 
 # Parts of a sample (10,): the orientation of imu_link in the world (x, y, z, w), angular velocity [rad/s] and specific
 # force [m/s^2] in imu_link.

@@ -1,6 +1,7 @@
 """Wheel odometry of a fleet, with its configured errors, or the true poses in the world."""
 
 import ctypes
+from dataclasses import dataclass
 from functools import partial
 from typing import Callable
 
@@ -8,8 +9,18 @@ import numpy as np
 
 from ..compiled import address, members
 from ..geometry import Pose2D
+from ..param_loading import parameter
 from ..robot.fleet import Fleet, library
-from ..sim_params import OdometryParams
+
+
+@dataclass(frozen=True)
+class OdometryParams:
+    """Errors of wheel odometry."""
+
+    odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
+    odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
+    odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
+    encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
 
 
 class _OdometersStruct(ctypes.Structure):

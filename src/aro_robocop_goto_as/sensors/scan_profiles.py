@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Dict, NamedTuple, Tuple
+from typing import Any, Dict, NamedTuple, Optional, Tuple
+
+from ..param_loading import PROFILES_OWN, parameter, positive
 
 TURN = 2.0 * math.pi  # [rad]
 
@@ -71,3 +73,33 @@ PROFILES: Dict[str, ScanProfile] = {
         ),
     ),
 }
+
+
+@dataclass(frozen=True)
+class ScanParams:
+    """The laser scanner: a profile, and figures that replace its own."""
+
+    scan_profile: str = parameter("gazebo", choices=tuple(PROFILES))
+    scan_rate: Optional[int] = parameter(None, low=1, otherwise=PROFILES_OWN)
+    scan_samples: Optional[int] = parameter(None, low=2, high=100000, otherwise=PROFILES_OWN)
+    scan_angle_min: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
+    scan_angle_max: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
+    scan_range_min: Optional[float] = parameter(None, low=0.0, high=1e6, otherwise=PROFILES_OWN)
+    scan_range_max: Optional[float] = positive(None, otherwise=PROFILES_OWN)
+    scan_noise: Optional[float] = parameter(None, low=0.0, high=100.0, otherwise=PROFILES_OWN)
+
+    @property
+    def rate(self) -> int:
+        """Scans per second [Hz]."""
+        return PROFILES[self.scan_profile].rate if self.scan_rate is None else self.scan_rate
+
+    def given(self) -> Dict[str, Any]:
+        """The figures that replace the profile's."""
+        return {name: value for name, value in vars(self).items() if name != "scan_profile" and value is not None}
+
+    def lidar(self) -> LidarSpec:
+        """The scanner of the profile, with the given figures in place of its own."""
+        figures = {name[len("scan_") :]: value for name, value in self.given().items() if name != "scan_rate"}
+        if "noise" in figures:
+            figures["accuracy"] = ()
+        return replace(PROFILES[self.scan_profile].spec, **figures)

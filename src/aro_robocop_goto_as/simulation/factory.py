@@ -2,12 +2,12 @@
 
 from typing import Callable, List, Sequence
 
-from ..physics.engine import Engine
+from ..physics.engine import Engine, EngineParams
 from ..raycast.free_places import free_place, free_places
 from ..robot.base_controller import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotModel, RobotSpec
-from ..sim_params import EngineParams, RobotParams, SimParams
+from ..sim_params import RobotParams, SimParams
 from ..world.model import World
 from ..world.spawn_texts import parse_count, parse_robots, parse_spawn
 from .simulator import Simulator

@@ -111,7 +111,8 @@ class Simulator:
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
         self._subscriptions = subscriptions
-        rates = {name: rate for name, rate in rates_of(self.p).items() if name in UNASKED or subscriptions.get(name)}
+        every = rates_of(self.p.rates, self.p.scan.rate)
+        rates = {name: rate for name, rate in every.items() if name in UNASKED or subscriptions.get(name)}
         self._schedule = Schedule(rates, self.rate)
         self._dues = {names: self._due(names) for names in self._schedule.occurring}
 
@@ -121,7 +122,7 @@ class Simulator:
 
     def due_at_control_ticks(self) -> FrozenSet[str]:
         """The sensors and ticks that are due on each control tick."""
-        rates = rates_of(self.p)
+        rates = rates_of(self.p.rates, self.p.scan.rate)
         return frozenset(name for name, rate in rates.items() if rate and rate % rates[CONTROL] == 0)
 
     # -- the state of the world and of its robots --

@@ -3,7 +3,7 @@
 from typing import List, NamedTuple
 
 from ..errors import ParameterError
-from ..geometry import FARTHEST, Pose2D
+from ..geometry import MAX_COORDINATE, Pose2D
 
 MAX_COUNT = 1000  # of robots: more than any machine simulates, yet few enough to look for room for them
 
@@ -24,10 +24,10 @@ def parse_spawn(text: str, default: Pose2D, parameter: str = "spawn") -> Pose2D:
         numbers = [float(word) for word in text.replace(",", " ").split()]
     except ValueError:
         numbers = []
-    if len(numbers) not in (2, 3) or not all(abs(number) <= FARTHEST for number in numbers):
+    if len(numbers) not in (2, 3) or not all(abs(number) <= MAX_COORDINATE for number in numbers):
         raise ParameterError(
             f"{parameter}: expected 'x y' or 'x y yaw' in metres and radians, numbers within "
-            f"+-{FARTHEST:g}, got {text!r}"
+            f"+-{MAX_COORDINATE:g}, got {text!r}"
         )
     return Pose2D(*numbers)
 

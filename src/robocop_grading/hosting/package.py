@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import HostingError
-from aro_robocop_goto_as.ros.names import PACKAGE
+from aro_robocop_goto_as.names import PACKAGE
 
 from . import tree
 from .launch_file import LaunchNode, read

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from aro_robocop_goto_as.errors import HostingError
-from aro_robocop_goto_as.ros.names import BRIDGE, SERVER
+from aro_robocop_goto_as.names import BRIDGE, SERVER
 
 from . import tree
 from .launch_file import LaunchNode

@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 from aro_robocop_goto_as.errors import FrameError
-from aro_robocop_goto_as.geometry import FARTHEST
+from aro_robocop_goto_as.geometry import MAX_COORDINATE
 from aro_robocop_goto_as.ros import convert
 
 QUARTER_TURN = math.sqrt(0.5)
@@ -35,7 +35,7 @@ def test_quaternion_that_the_sender_of_a_request_left_out_means_level():
     assert convert.from_pose_msg(turned(0.0), unset_is_level=True).yaw == 0.0
 
 
-@pytest.mark.parametrize("x", [math.nan, math.inf, 2.0 * FARTHEST])
+@pytest.mark.parametrize("x", [math.nan, math.inf, 2.0 * MAX_COORDINATE])
 def test_position_that_is_no_place_is_refused(x):
     pose = turned(1.0)
     pose.position.x = x

@@ -17,8 +17,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.ros import convert, packed
 from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.covariances import imu_covariances
+from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
-from aro_robocop_goto_as.sim_params import ImuParams
 
 NUMBER = st.floats(-1e6, 1e6)
 POSE = st.builds(Pose2D, NUMBER, NUMBER, st.floats(-3.0, 3.0))

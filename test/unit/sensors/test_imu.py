@@ -6,7 +6,7 @@ import pytest
 from aro_robocop_goto_as.geometry import STANDARD_GRAVITY, Pose3D, Vector3
 from aro_robocop_goto_as.robot.model import BodyState
 from aro_robocop_goto_as.sensors import imu
-from aro_robocop_goto_as.sim_params import ImuParams
+from aro_robocop_goto_as.sensors.imu import ImuParams
 
 STANDING = BodyState(Pose3D(), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 EXACT = ImuParams(0.0, 0.0)

@@ -13,8 +13,7 @@ from support import model_named
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.sensors.odometry import Odometers
-from aro_robocop_goto_as.sim_params import OdometryParams
+from aro_robocop_goto_as.sensors.odometry import Odometers, OdometryParams
 
 LIMITS = Limits(1.0, 1.0, 1.0, 1.0, 0.0)
 RADIUS, SEPARATION = 0.033, 0.16

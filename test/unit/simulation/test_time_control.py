@@ -3,7 +3,6 @@
 import pytest
 from fakes import FakeClock
 
-from aro_robocop_goto_as.sim_params import TimeParams
 from aro_robocop_goto_as.simulation.time_control import (
     LONGEST_HOLD,
     MOST_BEHIND,
@@ -12,6 +11,7 @@ from aro_robocop_goto_as.simulation.time_control import (
     REST_PERIOD,
     Pacer,
     TimeControl,
+    TimeParams,
 )
 
 RATE = 240  # [Hz] of the steps

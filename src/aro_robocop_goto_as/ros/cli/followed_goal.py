@@ -15,11 +15,11 @@ from nav_msgs.msg import Odometry
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
 
 from ...errors import FrameError
+from ...names import ACTION, absolute_if_named, place, prefixed
 from ...process import signals
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
-from ..names import ACTION, absolute_if_named, place, prefixed
 from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
 

@@ -17,9 +17,9 @@ import rospkg
 
 from ...bootstrap import master
 from ...errors import MasterError, RobocopError
+from ...names import COMMAND_VARIABLE, PACKAGE
 from ...process import child, orphans, signals
 from ...process.ports import free_port
-from ..names import COMMAND_VARIABLE, PACKAGE
 from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, WRONG_ARGUMENTS, complain, parse
 
 LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs

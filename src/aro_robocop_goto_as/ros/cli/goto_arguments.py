@@ -6,7 +6,7 @@ import re
 import sys
 from typing import List
 
-from ...farthest import FARTHEST
+from ...param_loading import MAX_COORDINATE
 
 SERVER_PATIENCE = 5.0  # [s, wall] for the server of a running system
 START_PATIENCE = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
@@ -40,8 +40,10 @@ def _metres(text: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not abs(value) <= FARTHEST:  # true for NaN
-        raise argparse.ArgumentTypeError(f"expected a number of metres within +-{FARTHEST:g}, got {text.strip()!r}")
+    if not abs(value) <= MAX_COORDINATE:  # true for NaN
+        raise argparse.ArgumentTypeError(
+            f"expected a number of metres within +-{MAX_COORDINATE:g}, got {text.strip()!r}"
+        )
     return value
 
 

@@ -19,8 +19,8 @@ from roslaunch.parent import ROSLaunchParent
 from roslaunch.pmon import ProcessListener
 
 from ...errors import RobocopError
+from ...names import PACKAGE, RVIZ_LOG, SIMULATOR, absolute
 from ...process import signals
-from ..names import PACKAGE, RVIZ_LOG, SIMULATOR, absolute
 
 FAILED = 1  # exit status
 PACKAGES = (PACKAGE, "aro_sim")  # the simulator's, and the one that starts it for other packages

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
 from ...errors import RobocopError
+from ...names import COMMAND_VARIABLE, SERVER, WEB
 from ...param_loading import from_dict
 from ...sim_params import SimParams
 from ...web.access import default_host, url
 from ...web_params import WebParams
-from ..names import COMMAND_VARIABLE, SERVER, WEB
 
 DEFAULT_WORLD = SimParams().world.world  # whose example of a goal is in front of the robot
 

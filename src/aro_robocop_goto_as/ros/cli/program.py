@@ -13,8 +13,8 @@ from typing import List, NoReturn
 from xml.etree import ElementTree
 
 from ...bootstrap import doctor
+from ...names import PACKAGE
 from ...process import signals
-from ..names import PACKAGE
 
 ROOT = Path(__file__).resolve().parents[4]
 SCRIPT = str(ROOT / "robocop")

@@ -18,8 +18,8 @@ import tf2_ros
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...geometry import rotation_matrix
+from ...names import RVIZ_LOG, prefixed
 from ...process import x_display
-from ..names import RVIZ_LOG, prefixed
 from .rviz_config import SHARE, Observed, adapted
 
 STDERR = 2  # file descriptor

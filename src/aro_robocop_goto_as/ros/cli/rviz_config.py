@@ -8,7 +8,7 @@ from typing import Any, Dict, Optional, Tuple
 import numpy as np
 import yaml
 
-from ..names import prefixed
+from ...names import prefixed
 
 SHARE = Path(__file__).resolve().parents[4]
 IN_WORLD = ("world", "map", "odom")  # frames that do not move with the robot

@@ -17,8 +17,8 @@ from geometry_msgs.msg import Twist, Vector3
 from ...bootstrap import master
 from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
+from ...names import absolute
 from ...process import signals
-from ..names import absolute
 from ..publishing import publisher
 from ..waiting import wait_until
 

@@ -4,9 +4,9 @@ import actionlib
 import rosgraph
 import rospy
 
+from ...names import ACTION_TYPE
 from ...suggestions import did_you_mean
 from .. import graph
-from ..names import ACTION_TYPE
 
 
 def is_up(client: actionlib.SimpleActionClient) -> bool:

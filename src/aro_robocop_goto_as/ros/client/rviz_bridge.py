@@ -19,7 +19,7 @@ from aro_robocop_goto_as.msg import (
 
 from ...bridge_params import BridgeParams
 from ...errors import FrameError
-from ..names import ACTION, BRIDGE, place
+from ...names import ACTION, BRIDGE, place
 from ..node_main import load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer

@@ -9,10 +9,10 @@ import ros_numpy
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
 from ... import goto
-from ...geometry import FARTHEST, STANDSTILL, Pose2D
+from ...geometry import MAX_COORDINATE, STANDSTILL, Pose2D
 from ...goto import Decision, End, Errors, Goal, MoveForward, Outcome, Progress, Rotate, Turning
 from ...goto_params import GotoParams
-from ..names import place
+from ...names import place
 from .inputs import Inputs
 
 MAX_JUMPS = 10  # of odometry after which a goal begins anew, as after a reset; of one that jumps for ever, no more
@@ -52,11 +52,11 @@ class GoalExecution:
 
     def refusal(self) -> Optional[Ending]:
         """The ending of a goal that is not a position in reach; None for a valid goal."""
-        if abs(self.goal.x) <= FARTHEST and abs(self.goal.y) <= FARTHEST:  # false for NaN
+        if abs(self.goal.x) <= MAX_COORDINATE and abs(self.goal.y) <= MAX_COORDINATE:  # false for NaN
             return None
         return Ending(
             Outcome.BAD_GOAL,
-            f"position x {self.goal.x} y {self.goal.y}: expected finite numbers in metres, at most {FARTHEST:g}",
+            f"position x {self.goal.x} y {self.goal.y}: expected finite numbers in metres, at most {MAX_COORDINATE:g}",
         )
 
     def begin_period(self, now: float, p: GotoParams) -> float:

@@ -16,9 +16,9 @@ from ...errors import ClockError, RobocopError
 from ...geometry import STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...goto_params import GotoParams
+from ...names import ACTION, SERVER
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
-from ..names import ACTION, SERVER
 from ..node_main import load_params, node
 from ..rospy_internals import is_connected_to, sender
 from .goal_execution import Ending, GoalExecution, feedback_of

@@ -10,11 +10,11 @@ from aro_robocop_goto_as.msg import TickAnswer
 
 from ...errors import CommandError
 from ...geometry import Twist2D
+from ...names import prefixed
 from ...robot.base_controller import require_finite
 from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert
-from ..names import prefixed
 from ..rospy_internals import publishers_of, sender
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made

@@ -14,11 +14,11 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import FrameError
 from ...geometry import STANDSTILL, Pose3D, compose3, inverse3, lifted, quaternion_from_rpy
+from ...names import prefixed
 from ...robot.fleet import RobotState
 from ...robot.model import WHEEL_JOINTS, RobotModel
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..names import prefixed
 from ..publishing import publisher
 from ..rospy_internals import message_definition
 

@@ -7,13 +7,13 @@ import rospkg
 import rospy
 
 from ...errors import PlaceError, WorldError
+from ...names import PACKAGE
 from ...robot.catalog import load_model
 from ...sim_params import SimParams
 from ...simulation.factory import make_simulator, robots_from
 from ...simulation.simulator import Simulator
 from ...world.load import RANDOM, find_world, load_world
 from ...world.model import World
-from ..names import PACKAGE
 from ..share import share
 
 

@@ -6,10 +6,10 @@ from typing import AbstractSet, Any, Callable
 import rospy
 
 from ...errors import ParameterError
+from ...names import SIMULATOR
 from ...sim_params import SimParams, TopicParams
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
-from ..names import SIMULATOR
 from ..node_main import load_params, node
 from ..publishing import resume
 from .command_topics import CommandTopics

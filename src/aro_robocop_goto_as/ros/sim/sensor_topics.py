@@ -10,12 +10,12 @@ from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Bool
 
 from ...geometry import Pose2D
+from ...names import prefixed
 from ...robot.model import CAMERA_FRAME
 from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance
-from ..names import prefixed
 from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
 from ..publishing import publisher
 

@@ -9,11 +9,11 @@ from std_msgs.msg import Float64, Header
 
 from aro_robocop_goto_as.msg import SimStatus
 
+from ...names import SIMULATOR
 from ...simulation.lockstep import ControllerId, TickReport
 from ...simulation.simulation import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
-from ..names import SIMULATOR
 from ..publishing import publisher
 
 

@@ -13,11 +13,11 @@ from nav_msgs.srv import GetMap, GetMapResponse
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ...names import prefixed
 from ...simulation.simulator import Simulator
 from ...world.model import Occupancy
 from .. import convert
 from ..batch import Batch
-from ..names import prefixed
 from ..packed import PackedMessage
 from ..publishing import publisher
 from .world_markers import CLEAR, robot_markers, world_markers

@@ -13,13 +13,14 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from aro_robocop_goto_as.srv import SetPose
 
+from ... import names
+from ...names import ACTION, absolute
 from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
-from .. import convert, markers, names
+from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
 from ..covariances import diagonal
-from ..names import ACTION, absolute
 from ..rospy_internals import publishers_of
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part

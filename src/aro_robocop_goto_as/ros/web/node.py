@@ -10,6 +10,7 @@ import rospy
 import yaml
 
 from ...errors import ParameterError, RobocopError
+from ...names import WEB
 from ...param_loading import from_dict
 from ...web import access
 from ...web.frames import FrameTree
@@ -17,7 +18,6 @@ from ...web.page import set_up
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
 from ...web_params import WebParams
-from ..names import WEB
 from ..node_main import node
 from .goals import Goals
 from .lab import Lab

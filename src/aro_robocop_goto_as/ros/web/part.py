@@ -7,11 +7,11 @@ from typing import Any, Callable, Deque, List, Optional, Tuple
 
 import rospy
 
+from ... import names
 from ...geometry import Pose3D, compose3
 from ...web.frames import FrameTree
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
-from .. import names
 from .requests import Requests
 
 Handler = Callable[[float, Any], None]  # time at which a message was received [s, monotonic], the message

@@ -11,8 +11,8 @@ from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback
 
+from ...names import ACTION, absolute
 from ...web.state import PageState
-from ..names import ACTION, absolute
 from .part import Context, Inbox, Part
 from .player import Figures, Player, Sample
 from .replay import Failure

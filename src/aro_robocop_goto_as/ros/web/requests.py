@@ -6,8 +6,8 @@ from typing import Any, Callable, Dict, Tuple
 
 import rospy
 
+from ...names import SIMULATOR, absolute
 from ...web.state import SharedState
-from ..names import SIMULATOR, absolute
 from ..waiting import wait_until
 from .daemon import start_daemon
 

@@ -9,10 +9,10 @@ from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from ...errors import RobotModelError
+from ...names import absolute
 from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
-from ..names import absolute
 from .marker_shapes import to_pose
 from .part import Context, Inbox, Part
 

@@ -9,10 +9,10 @@ from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
+from ...names import SERVER, SIMULATOR, absolute
 from ...web.page import show_places
 from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
-from ..names import SERVER, SIMULATOR, absolute
 from .marker_shapes import MarkerStore, to_pose
 from .part import Context, Inbox, Part
 

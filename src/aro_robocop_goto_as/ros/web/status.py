@@ -8,11 +8,11 @@ from std_msgs.msg import String
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose3D
+from ...names import ACTION, BRIDGE, SIMULATOR, absolute
 from ...web import text
 from ...web.page import LOOK_AT
 from ...web.scene import TEXT, Shape
 from ...web.state import PageState
-from ..names import ACTION, BRIDGE, SIMULATOR, absolute
 from .part import Context, Inbox, Part
 
 GROUPS = ("robots", "world", "server", "scan", "map")  # of the scene; while all are empty a notice takes their place

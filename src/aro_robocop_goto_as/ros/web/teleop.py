@@ -8,9 +8,9 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from ...geometry import Twist2D
+from ...names import absolute
 from ...web.dead_man import RATE, DeadMan
 from .. import convert
-from ..names import absolute
 from ..waiting import wait_until
 from .daemon import start_daemon
 from .goals import cancel

@@ -8,9 +8,9 @@ import genpy
 import roslib.message
 import rospy
 
+from ...names import absolute
 from ...web import text
 from ...web.state import PageState
-from ..names import absolute
 from .part import Context, Inbox, Part
 
 PERIOD = 0.5  # [s, wall] between two updates

@@ -10,11 +10,11 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
 from ...geometry import Pose3D, Vector3
+from ...names import absolute
 from ...trail import Trail
 from ...web.page import set_theme
 from ...web.scene import FRAME, LINE, Group, Shape
 from ...web.state import PageState
-from ..names import absolute
 from .part import Context, Inbox, Part
 
 CAMERA = "camera/rgb/image_raw"

@@ -7,7 +7,7 @@ from typing import Any, Dict, Tuple
 import yaml
 
 from ...errors import WorldError
-from ...geometry import FARTHEST, Pose2D, wrap_angle
+from ...geometry import MAX_COORDINATE, Pose2D, wrap_angle
 from ...reading import finite_numbers
 from .image import SUPPORTED
 
@@ -88,8 +88,8 @@ def read_spec(path: str) -> MapSpec:
     resolution = entries.number("resolution", 1e-6, 1e3, "metres per cell, greater than 0")
     expected = "three numbers [x, y, yaw] of the lower left corner [m, m, rad]"
     x, y, yaw = entries.numbers("origin", 3, expected)
-    if max(abs(x), abs(y)) > FARTHEST:
-        raise entries.error("origin", f"{expected}, within +-{FARTHEST:g} m")
+    if max(abs(x), abs(y)) > MAX_COORDINATE:
+        raise entries.error("origin", f"{expected}, within +-{MAX_COORDINATE:g} m")
     negate = entries.text("negate", "0 or 1").lower()
     if negate not in _BOOLEANS:
         raise entries.error("negate", "0 or 1")

@@ -5,7 +5,7 @@ from typing import Dict, Optional
 
 import numpy as np
 
-from ...geometry import FARTHEST
+from ...geometry import MAX_COORDINATE
 from ...reading import Element, file_of
 from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml
@@ -50,8 +50,8 @@ def _mesh(mesh: Element, triangles: Dict[str, np.ndarray]) -> Mesh:
         raise xml.error(mesh, f"<scale> is '{' '.join(f'{f:g}' for f in factors)}', expected factors other than 0")
     with np.errstate(over="ignore"):
         corners = triangles[path] * factors
-    if np.abs(corners).max() > FARTHEST:
-        raise xml.error(mesh, f"{path} has corners beyond +-{FARTHEST:g} m")
+    if np.abs(corners).max() > MAX_COORDINATE:
+        raise xml.error(mesh, f"{path} has corners beyond +-{MAX_COORDINATE:g} m")
     return Mesh(corners, path)
 
 

@@ -3,7 +3,7 @@
 import math
 from typing import Callable, Dict, Iterator, Tuple
 
-from ...geometry import FARTHEST, Pose3D
+from ...geometry import MAX_COORDINATE, Pose3D
 from ...reading import Element
 from . import xml
 
@@ -43,6 +43,6 @@ def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, 
 
 
 def _within_reach(pose: Pose3D) -> Pose3D:
-    """The pose with its position within FARTHEST: Gazebo saves a model that has fallen for minutes where it is then."""
-    x, y, z = (max(-FARTHEST, min(FARTHEST, value)) for value in pose.position)
+    """The pose with its position within MAX_COORDINATE: Gazebo saves a model that has fallen for minutes where it is then."""
+    x, y, z = (max(-MAX_COORDINATE, min(MAX_COORDINATE, value)) for value in pose.position)
     return Pose3D((x, y, z), pose.orientation)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from ...errors import WorldError
-from ...geometry import FARTHEST, Pose3D
+from ...geometry import MAX_COORDINATE, Pose3D
 from ...reading import Element, file_of, finite_numbers, parse_xml, reading
 
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "1.8")
@@ -128,7 +128,7 @@ def boolean(element: Element, tag: str) -> Optional[bool]:
     return value
 
 
-def numbers(element: Element, count: int, positive: bool = False, largest: float = FARTHEST) -> Tuple[float, ...]:
+def numbers(element: Element, count: int, positive: bool = False, largest: float = MAX_COORDINATE) -> Tuple[float, ...]:
     """The element's `count` finite numbers, in SDF's units, all within +-largest."""
     text = " ".join(text_of(element).split())
     try:
@@ -140,7 +140,7 @@ def numbers(element: Element, count: int, positive: bool = False, largest: float
     return values
 
 
-def pose_of(element: Element, largest: float = FARTHEST) -> Pose3D:
+def pose_of(element: Element, largest: float = MAX_COORDINATE) -> Pose3D:
     """The element's <pose> in whichever frame it is given; the identity without a <pose>, or without text in it.
 
     `gz sdf` writes a <pose> without text for a link that coincides with its joint.
@@ -155,7 +155,7 @@ def pose_of(element: Element, largest: float = FARTHEST) -> Pose3D:
     return Pose3D.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
 
 
-def pose_in_world(element: Element, largest: float = FARTHEST) -> Pose3D:
+def pose_in_world(element: Element, largest: float = MAX_COORDINATE) -> Pose3D:
     """As pose_of; WorldError if the <pose> names a frame other than the world."""
     pose = optional_child(element, "pose")
     for key in ("frame", "relative_to"):

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from aro_robocop_goto_as.names import SERVER
 from aro_robocop_goto_as.ros.cli.overview import overview
-from aro_robocop_goto_as.ros.names import SERVER
 
 
 def shown(*nodes, arguments=""):

@@ -3,9 +3,9 @@
 import pytest
 import rospy
 
+from aro_robocop_goto_as.names import ACTION, ACTION_TYPE
 from aro_robocop_goto_as.ros import graph
 from aro_robocop_goto_as.ros.client import discovery
-from aro_robocop_goto_as.ros.names import ACTION, ACTION_TYPE
 
 
 def unanswered():

@@ -8,9 +8,8 @@ import pytest
 
 from aro_robocop_goto_as.ros.sim import step_topics
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.observations import Due
-from aro_robocop_goto_as.simulation.rates import CLOCK, CONTROL, JOINTS, ODOM, SCAN, rates_of
+from aro_robocop_goto_as.simulation.rates import CLOCK, CONTROL, JOINTS, ODOM, SCAN, Rates, rates_of
 
 ALWAYS = frozenset({CLOCK, ODOM, SCAN})  # due on each control tick
 Calls = List[Tuple[Any, ...]]
@@ -62,7 +61,7 @@ def test_what_is_kept_is_sent_before_a_step_with_a_sensor_that_is_not_due_on_eac
 
 
 def test_each_sensor_has_its_place_among_the_messages_of_a_step() -> None:
-    assert sorted(step_topics.ORDER) == sorted(set(rates_of(SimParams())) - {CLOCK, CONTROL})
+    assert sorted(step_topics.ORDER) == sorted(set(rates_of(Rates(), 10)) - {CLOCK, CONTROL})
 
 
 def test_a_clock_that_is_not_due_on_each_tick_is_not_kept(calls: Calls) -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from aro_robocop_goto_as.ros import names
+from aro_robocop_goto_as import names
 
 
 def test_name_of_a_robot_is_a_prefix_of_its_relative_topics_and_frames():
