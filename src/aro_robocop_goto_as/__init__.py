@@ -51,8 +51,8 @@ From ./robocop COMMAND to the program that does the work:
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 
-Only `ros` imports rospy. `sim_params` declares each of the simulator's parameters once, in a group for the
-component that reads it; limits and timeouts are parameters first, so look for them there and in `config/` before the
+Only `ros` imports rospy. Each component of the simulator declares its parameters, in a group of its own; `sim_params`
+composes the groups. Limits and timeouts are parameters first, so look for them there and in `config/` before the
 code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
 name, C computes, and Python has its figures and calls it. `compiled` loads the libraries that CMake builds from these.
 `reading` is what all readers of user-written files share, `process` is about operating system processes, `bootstrap`

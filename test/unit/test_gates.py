@@ -67,8 +67,8 @@ ORDER = {
     f"{GRADER}.hosting": "errors process ros.cli names",
     GRADER: f"errors geometry {GRADER}.hosting param_loading process sim_params web web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.hosting process",
-    f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sim_params simulation web "
-    f"world {GRADER}",
+    f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sim_params simulation "
+    f"web world {GRADER}",
 }
 # Modules whose rosdep key differs from their name.
 ROSDEP_KEYS = {

@@ -43,6 +43,6 @@ def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, 
 
 
 def _within_reach(pose: Pose3D) -> Pose3D:
-    """The pose with its position within MAX_COORDINATE: Gazebo saves a model that has fallen for minutes where it is then."""
+    """The pose with its position within MAX_COORDINATE; Gazebo saves a model that has fallen for minutes as it is."""
     x, y, z = (max(-MAX_COORDINATE, min(MAX_COORDINATE, value)) for value in pose.position)
     return Pose3D((x, y, z), pose.orientation)
