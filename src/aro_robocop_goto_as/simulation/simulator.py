@@ -120,11 +120,6 @@ class Simulator:
         sensors = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
         return Due(CLOCK in names, CONTROL in names, sensors, self.observed.measures_of(names, sensors))
 
-    def due_at_control_ticks(self) -> FrozenSet[str]:
-        """The sensors and ticks that are due on each control tick."""
-        rates = rates_of(self.p.rates, self.p.scan.rate)
-        return frozenset(name for name, rate in rates.items() if rate and rate % rates[CONTROL] == 0)
-
     # -- the state of the world and of its robots --
 
     @property

@@ -162,10 +162,6 @@ class TimeControl:
         """How many steps after this one may be made before the span ends."""
         return self._span_end - step if self._span_end else 10**9
 
-    def runs_on(self, step: int) -> bool:
-        """Whether time goes on after a step without waiting for the wall clock or for a request."""
-        return self.pacer.factor == 0.0 and self.steps_left(step) > 0
-
     def end_span(self, step: int) -> bool:
         """End the span if it ends at this step; whether it does."""
         if not self._span_end or step < self._span_end:

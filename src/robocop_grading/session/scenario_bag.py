@@ -14,8 +14,8 @@ from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
-from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.packed import packed_clock, packed_odometry, packed_scan, packed_transforms
+from aro_robocop_goto_as.ros.publishing.batch import Batch
+from aro_robocop_goto_as.ros.publishing.packed import packed_clock, packed_odometry, packed_scan, packed_transforms
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames

@@ -17,7 +17,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from aro_robocop_goto_as.errors import WatchError
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.ros import convert, markers
-from aro_robocop_goto_as.ros.publishing import publisher
+from aro_robocop_goto_as.ros.publishing.publisher import publisher
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers

@@ -31,12 +31,6 @@ def _odom(sim: Simulator) -> Pose2D:
     return Pose2D(*seen.odometry.poses[0].tolist())
 
 
-def test_only_rates_that_are_multiples_of_the_control_rate_are_due_on_each_control_tick(simulator: Make) -> None:
-    sim = simulator("empty", **KINEMATIC, control_rate=10, odom_rate=30, scan_rate=5, joint_state_rate=15)
-    at_ticks = sim.due_at_control_ticks()
-    assert {"odom", "tf", "imu"} <= at_ticks and not {"scan", "joints"} & at_ticks
-
-
 def test_scans_see_a_changed_world_though_what_is_due_stays_the_same_object(simulator: Make) -> None:
     sim, scan = simulator("empty", **KINEMATIC), {"scan": [0]}
 

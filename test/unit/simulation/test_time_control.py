@@ -55,15 +55,6 @@ def test_time_that_was_paused_is_not_caught_up() -> None:
     assert time.hold(264) == pytest.approx(0.1)
 
 
-def test_time_runs_on_after_a_step_only_at_full_speed_and_within_a_span() -> None:
-    clock = FakeClock()
-    assert not TimeControl(TimeParams(real_time_factor=100.0), RATE, clock).runs_on(0)
-    time = TimeControl(TimeParams(real_time_factor=0.0), RATE, clock)
-    assert time.runs_on(0)
-    time.begin_span(1.0, 0)
-    assert time.runs_on(RATE - 1) and not time.runs_on(RATE)
-
-
 def test_pacer_waits_for_the_simulated_time_divided_by_the_factor() -> None:
     wall = FakeClock()
     timing = Pacer(2.0, RATE, wall.now)

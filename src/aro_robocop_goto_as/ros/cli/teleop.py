@@ -19,7 +19,7 @@ from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
 from ...names import absolute
 from ...process import signals
-from ..publishing import publisher
+from ..publishing.publisher import publisher
 from ..waiting import wait_until
 
 LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models

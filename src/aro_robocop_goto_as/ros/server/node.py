@@ -20,7 +20,7 @@ from ...names import ACTION, SERVER
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
 from ..node_main import load_params, node
-from ..rospy_internals import is_connected_to, sender
+from ..connected_nodes import is_connected_to, sender
 from .goal_execution import Ending, GoalExecution, feedback_of
 from .inputs import Inputs
 from .server_markers import Display

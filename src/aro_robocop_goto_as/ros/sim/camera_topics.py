@@ -10,7 +10,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from std_msgs.msg import Header
 
 from ...sensors.camera import CameraImage, CameraSpec, points_of
-from ..publishing import publisher
+from ..publishing.publisher import publisher
 
 JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default
 

@@ -15,7 +15,7 @@ from ...robot.base_controller import require_finite
 from ...simulation.lockstep import ControllerId
 from ...simulation.simulation import Simulation
 from .. import convert
-from ..rospy_internals import publishers_of, sender
+from ..connected_nodes import publishers_of, sender
 
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
 

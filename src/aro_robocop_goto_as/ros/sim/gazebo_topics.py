@@ -19,8 +19,7 @@ from ...robot.fleet import RobotState
 from ...robot.model import WHEEL_JOINTS, RobotModel
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..publishing import publisher
-from ..rospy_internals import message_definition
+from ..publishing.publisher import publisher
 
 WORLD_FRAMES = ("", "world", "map")  # names of the frame that Gazebo's poses are in
 SEPARATOR = "=" * 80
@@ -33,8 +32,7 @@ def message_type(name: str) -> Any:
     """The class of gazebo_msgs/ModelStates or LinkStates."""
     parts = [DEFINITION]
     for part in (Pose, Twist):
-        name_of_part, definition = message_definition(part)
-        parts.append(f"{SEPARATOR}\nMSG: {name_of_part}\n{definition}")
+        parts.append(f"{SEPARATOR}\nMSG: {part._type}\n{part._full_text}")  # genpy has no public name for it
     kind = f"gazebo_msgs/{name}"
     return genpy.dynamic.generate_dynamic(kind, "\n".join(parts))[kind]
 

@@ -11,7 +11,7 @@ from ...sim_params import SimParams, TopicParams
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
 from ..node_main import load_params, node
-from ..publishing import resume
+from ..publishing.publisher import resume
 from .command_topics import CommandTopics
 from .loading import load_simulator
 from .services import Services
@@ -66,7 +66,7 @@ class SimNode:
                     self._world.publish_moving()
                 if observed.due.clock and self._gazebo is not None:
                     self._gazebo.publish()
-                self._topics.publish(observed, time.runs_on(simulator.steps))
+                self._topics.publish(observed)
                 if observed.due.control and controllers.in_lockstep:
                     self._await_controllers()
             if time.end_span(simulator.steps) or (observed is not None and observed.due.clock):
@@ -80,8 +80,6 @@ class SimNode:
         time, simulator = self._simulation.time_control, self._simulator
         self._run_jobs()
         wait = time.hold(simulator.steps)
-        if wait > 0.0:
-            self._topics.push()
         if 0.0 < wait < SHORT:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
             self._simulation.jobs.sleep(wait)
             time.pacer.waited(wait)
@@ -91,11 +89,8 @@ class SimNode:
             self._hold(lambda: time.hold(simulator.steps))
 
     def _run_jobs(self) -> None:
-        """Run the jobs that have come, once what was published before is sent, and publish what they have changed."""
-        jobs = self._simulation.jobs
-        if len(jobs):
-            self._topics.push()
-        jobs.run_queued()
+        """Run the jobs that have come, and publish what they have changed."""
+        self._simulation.jobs.run_queued()
         self._publish(self._simulation.take_changes())
 
     def _await_controllers(self) -> None:

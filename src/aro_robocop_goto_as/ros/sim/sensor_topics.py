@@ -16,8 +16,8 @@ from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM,
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance
-from ..packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
-from ..publishing import publisher
+from ..publishing.packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
+from ..publishing.publisher import publisher
 
 
 class SensorTopics:

@@ -14,7 +14,7 @@ from ...simulation.lockstep import ControllerId, TickReport
 from ...simulation.simulation import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
-from ..publishing import publisher
+from ..publishing.publisher import publisher
 
 
 class StatusTopics:

@@ -4,7 +4,6 @@ Transforms: world -> map -> odom -> base_footprint (REP-105). map -> odom is sta
 others; odom -> base_footprint is sent with each odometry.
 """
 
-import time
 from functools import partial
 from typing import AbstractSet, Callable, Dict, List, Sequence, Tuple
 
@@ -17,15 +16,14 @@ from ...simulation.observations import Due, Observations, Subscriptions
 from ...simulation.rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..batch import Batch, Posted
-from ..packed import packed_clock, packed_transforms
-from ..publishing import publisher, push
-from ..rospy_internals import set_latched
+from ..publishing.batch import Batch, Posted
+from ..publishing.packed import packed_clock, packed_transforms
+from ..publishing.publisher import publisher
+from ..publishing.rospy_internals import set_latched
 from .sensor_topics import SensorTopics
 
 # Of a step's messages. The first two are published by rospy, the others together; /clock follows them.
 ORDER = (BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
-KEPT = 1e-3  # [s, wall] for which a step's messages may wait for those of the next steps
 
 
 class StepTopics:
@@ -44,8 +42,6 @@ class StepTopics:
         self._subscriptions: Subscriptions = {}
         self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
-        self._due_at_ticks = simulator.due_at_control_ticks()
-        self._kept_since = 0.0  # [s, wall] since when the kernel may keep messages; 0: it does not
 
     def _on_change(self) -> None:
         """A subscriber has connected or disconnected. Called from rospy's threads."""
@@ -66,11 +62,8 @@ class StepTopics:
             self._subscriptions = subscriptions
         return self._subscriptions
 
-    def publish(self, observed: Observations, runs_on: bool = False) -> None:
-        """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
-
-        `runs_on`: simulated time does not wait for the wall clock after this step.
-        """
+    def publish(self, observed: Observations) -> None:
+        """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks."""
         due = observed.due
         key = due, observed.scans.shape[1]
         if key not in self._batches:
@@ -78,23 +71,7 @@ class StepTopics:
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
-        keep = runs_on and self._may_keep(due)
-        if due.control:  # its messages take with them what is kept
-            self._kept_since = 0.0
-        elif not keep:
-            self.push()
-        batch.send(observed.stamp_ns, keep)
-
-    def _may_keep(self, due: Due) -> bool:
-        """Whether the kernel may keep the messages of a step until those of the next control tick are sent.
-
-        It may if the same topics have some then, for no longer than KEPT and not beyond push().
-        """
-        if due.control or not due.names <= self._due_at_ticks:
-            return False
-        now = time.monotonic()
-        self._kept_since = self._kept_since or now
-        return now - self._kept_since < KEPT
+        batch.send(observed.stamp_ns)
 
     def publish_static(self) -> Sequence[TransformStamped]:
         """world -> map, and each robot's map -> odom where that is static; returns what was sent."""
@@ -113,12 +90,6 @@ class StepTopics:
         """Simulated time [ns] alone."""
         self.subscriptions()
         self._clock_alone.send(stamp_ns)
-
-    def push(self) -> None:
-        """Send what is kept until the next control tick, as others are about to see or to change the simulation."""
-        if self._kept_since:
-            self._kept_since = 0.0
-            push()
 
     def count(self) -> None:
         """Update rospy's statistics."""

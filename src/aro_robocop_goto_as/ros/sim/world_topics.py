@@ -17,9 +17,9 @@ from ...names import prefixed
 from ...simulation.simulator import Simulator
 from ...world.model import Occupancy
 from .. import convert
-from ..batch import Batch
-from ..packed import PackedMessage
-from ..publishing import publisher
+from ..publishing.batch import Batch
+from ..publishing.packed import PackedMessage
+from ..publishing.publisher import publisher
 from .world_markers import CLEAR, robot_markers, world_markers
 
 _LENGTH = struct.Struct("<I")

@@ -21,7 +21,7 @@ from ...web.state import PageState
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
 from ..covariances import diagonal
-from ..rospy_internals import publishers_of
+from ..connected_nodes import publishers_of
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
 from .requests import Requests

@@ -14,12 +14,12 @@ from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from ..compiled import address
-from ..geometry import Pose2D, Twist2D
-from ..sensors.imu import FORCE, ORIENTATION, RATES
-from ..sensors.scan_profiles import LidarSpec
-from . import convert
-from .covariances import ImuCovariances
+from ...compiled import address
+from ...geometry import Pose2D, Twist2D
+from ...sensors.imu import FORCE, ORIENTATION, RATES
+from ...sensors.scan_profiles import LidarSpec
+from .. import convert
+from ..covariances import ImuCovariances
 
 HEADER, STAMP, POSE, TWIST, DOUBLES, FLOATS = range(6)  # kinds of fields, as in batch.c
 

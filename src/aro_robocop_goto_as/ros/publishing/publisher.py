@@ -14,7 +14,7 @@ import rospy
 from .rospy_internals import connections_of, send_latched, write_with
 from .subscriber_link import SubscriberLink
 
-STALL_LIMIT = 2  # [s, wall] without taking any data, after which a subscriber's process is looked at
+STALL_TIMEOUT = 2  # [s, wall] without taking any data, after which a subscriber is not waited for any more
 
 _publishers: "weakref.WeakSet[DirectPublisher]" = weakref.WeakSet()
 
@@ -62,14 +62,6 @@ def resume() -> None:
         topic.resume()
 
 
-def push() -> None:
-    """Have the kernel send now what it keeps for messages that were to follow; the thread that publishes calls it."""
-    for topic in list(_publishers):
-        for link in topic.links:
-            with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
-                link.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-
-
 def _link(connection: Any, connected: socket.socket) -> Optional[SubscriberLink]:
     """Limits how long a write to a new subscriber may block, and sends small messages at once.
 
@@ -77,7 +69,7 @@ def _link(connection: Any, connected: socket.socket) -> Optional[SubscriberLink]
     acknowledged, for up to 40 ms: at ten times real time the odometry of a plain node is then half a second old.
     """
     try:
-        connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", STALL_LIMIT, 0))
+        connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", STALL_TIMEOUT, 0))
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         duplicate = connected.dup()
     except OSError as error:  # mostly because it is being closed

@@ -1,29 +1,13 @@
-"""Everything that uses private parts of rospy and genpy, each with the reason."""
+"""What publishing uses of private parts of rospy, each with the reason."""
 
 import contextlib
 import socket
 import threading
 import weakref
-from typing import Any, Callable, List, Optional, Set, Tuple
+from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 from rospy.exceptions import TransportTerminated
-
-
-def sender(message: Any) -> str:
-    """Name of the node that published a received message; rospy exposes it only in the connection header."""
-    return str(message._connection_header["callerid"])
-
-
-def publishers_of(subscriber: rospy.Subscriber) -> Set[str]:
-    """Names of the nodes a subscriber is connected to; rospy's public API only counts connections."""
-    topic = subscriber.impl  # None: unregistered
-    return set() if topic is None else {link.callerid_pub for link in topic.connections}
-
-
-def is_connected_to(publisher: rospy.Publisher, node: str) -> bool:
-    """Whether a publisher is connected to this node; rospy's public API only counts connections."""
-    return bool(publisher.impl.has_connection(node))
 
 
 def connections_of(publisher: rospy.Publisher) -> List[Tuple[Any, socket.socket]]:
@@ -101,8 +85,3 @@ def write_with(connection: Any, method: "weakref.WeakMethod[Callable[[bytes], No
         write(data)
 
     connection.write_data = write_data
-
-
-def message_definition(kind: Any) -> Tuple[str, str]:
-    """Type name of a message class, and its definition with those of its parts; genpy has no public names for them."""
-    return kind._type, kind._full_text

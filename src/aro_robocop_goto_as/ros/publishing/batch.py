@@ -9,13 +9,13 @@ import functools
 import threading
 from typing import Any, Sequence, Set, Tuple
 
-from .. import compiled
-from ..compiled import members
+from ... import compiled
+from ...compiled import members
 from .packed import PackedMessage
-from .publishing import DirectPublisher
+from .publisher import DirectPublisher
 from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
 
-VERSION = 5  # of batch.c
+VERSION = 6  # of batch.c
 
 Posted = Tuple[DirectPublisher, PackedMessage]
 
@@ -46,7 +46,7 @@ class _BatchStruct(ctypes.Structure):
 def _library() -> ctypes.PyDLL:
     library = compiled.load("batch", VERSION)
     library.aro_send.restype = ctypes.c_int64
-    library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int]
+    library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64]
     return library
 
 
@@ -84,18 +84,15 @@ class Batch:
         self._lock: Any = locks[0] if locks else threading.Lock()
         self._times = 0  # sent since the statistics were updated
 
-    def send(self, stamp_ns: int, more: bool = False) -> None:
+    def send(self, stamp_ns: int) -> None:
         """Send everything at a simulated time [ns].
 
-        A subscriber that takes nothing for publishing.STALL_LIMIT, and is not kept from it, misses messages until it
-        reads again. While one is waited for, that time passes for the others, too: a stopped node can have many topics.
-
-        With `more` the kernel keeps the messages until the next ones on these topics, or publishing.push(), for 0.2 s
-        [wall] at most: the subscribers wake up once for all of them.
+        A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. While one is
+        waited for, that time passes for the others, too: a stopped node can have many topics.
         """
         self._times += 1
         with self._lock:
-            if self._fill_and_send(self._pointer, stamp_ns, more):
+            if self._fill_and_send(self._pointer, stamp_ns):
                 self._finish()
 
     def _finish(self) -> None:

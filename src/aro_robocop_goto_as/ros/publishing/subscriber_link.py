@@ -1,29 +1,25 @@
 """A subscriber's connection, as its publisher sees it: waited for while it reads, kept while it stands still.
 
-A node may stand still for any time: stopped by a debugger, swapped out, waiting for a disk. rospy's subscribers do not
-return to a publisher that has closed the connection, so it stays open, and what is left of a message is sent later.
+A node may stand still for any time, in a debugger or after Ctrl-Z. What is left of a message is sent when it reads again.
 """
 
 import ctypes
 import errno
 import socket
-from typing import Any, Optional
+from typing import Any
 
 import rospy
 
-from ..process.peer import Peer
 from .rospy_internals import count_sent
 
-PATIENCE = 2.0  # [s] processor time that a subscriber's process may use without reading
 LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
 class SubscriberLink:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
-    A subscriber that takes nothing for as long as its socket's send timeout, though its process is stopped, asleep or
-    busy with other things, stands still: it misses all messages until it takes data again, and nobody waits for it.
-    What is kept for it is the rest of one message. One whose process only waits for a processor is waited for.
+    A subscriber that takes nothing for as long as its socket's send timeout stands still: it misses all messages until
+    it takes data again, and nobody waits for it. What is kept for it is the rest of one message.
     """
 
     def __init__(self, connection: Any, duplicate: socket.socket) -> None:
@@ -34,11 +30,10 @@ class SubscriberLink:
         self._stands = ctypes.c_int64(0)  # read by batch.c
         self._rest = b""
         self._missed = 0  # messages, while it stands still
-        self._peer: Optional[Peer] = None  # known while it takes nothing
 
     @property
     def stands_still(self) -> bool:
-        """Whether it has stopped reading."""
+        """Return whether it has stopped reading."""
         return bool(self._stands.value)
 
     @property
@@ -52,26 +47,25 @@ class SubscriberLink:
             count_sent(self.connection, 1, len(data))
 
     def finish(self, message: memoryview, taken: int, patient: bool) -> bool:
-        """Send what is left of a message of which `taken` bytes were sent, or -errno; whether all was sent.
+        """Send what is left of a message of which `taken` bytes were sent, or -errno; return whether all was sent.
 
-        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once is waited for only
-        if it is kept from reading.
+        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once is not waited for.
         """
         if taken < 0 and taken not in LATER:
             raise OSError(-taken, "send")
         left = message[max(0, taken) :]
         if self.push_rest():
             took = self._take(left, socket.MSG_DONTWAIT)
-            left, reads = left[took:], took > 0
-            if reads or not self.stands_still:
-                left = self._send(left, reads or patient)
+            left, waits = left[took:], took > 0 or (patient and not self.stands_still)
+            while left and waits:
+                took = self._take(left)
+                left, waits = left[took:], took > 0
             self._rest = b"" if len(left) == len(message) else bytes(left)
-        self._peer = None
         self._note(not left)
         return not left
 
     def push_rest(self) -> bool:
-        """Send the rest of an earlier message as far as the socket takes it now; whether none is left."""
+        """Send the rest of an earlier message as far as the socket takes it now; return whether none is left."""
         if self._rest:
             self._rest = self._rest[self._take(memoryview(self._rest), socket.MSG_DONTWAIT) :]
         return not self._rest
@@ -82,27 +76,6 @@ class SubscriberLink:
             return self.socket.send(data, flags)
         except BlockingIOError:
             return 0
-
-    def _send(self, left: memoryview, reads: bool) -> memoryview:
-        """Send data for as long as the subscriber reads, or is kept from it; returns what is left."""
-        while left:
-            waits = reads or self._is_kept_from_reading()
-            # Even if nothing is to be waited for: it may have got a processor, and read, just before that look.
-            took = self._take(left, 0 if waits else socket.MSG_DONTWAIT)
-            if not (took or waits):
-                break
-            left, reads = left[took:], took > 0
-        return left
-
-    def _is_kept_from_reading(self) -> bool:
-        """Whether its process waits for a processor, as far as is known."""
-        first = self._peer is None
-        peer = self._peer = self._peer or Peer(self.socket, PATIENCE)
-        if rospy.is_shutdown() or not peer.wants_to_run():
-            return False
-        if first:
-            rospy.logwarn("%s waits for a processor, and simulated time for it: the machine is busy", self._name)
-        return True
 
     @property
     def _name(self) -> str:
