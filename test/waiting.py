@@ -1,16 +1,9 @@
 """Waiting for a condition, with a deadline that only a failure reaches."""
 
-import os
 import time
 
-PATIENCE = "ROBOCOP_TEST_PATIENCE"  # environment variable: a factor on all deadlines, for tests beside a load
 DEADLINE = 120.0  # [s, wall] for any one condition, long enough for a busy machine
 POLL = 0.05  # [s, wall]
-
-
-def patience():
-    """The factor on all deadlines."""
-    return float(os.environ.get(PATIENCE, "1"))
 
 
 def wait_for(condition, what, deadline=DEADLINE, poll=POLL, error=AssertionError, given_up=lambda: False):
@@ -18,7 +11,6 @@ def wait_for(condition, what, deadline=DEADLINE, poll=POLL, error=AssertionError
 
     After `deadline` [s], or once `given_up` is true, `error` with `what`, which may be callable.
     """
-    deadline *= patience()
     until = time.monotonic() + deadline
     while True:
         value = condition()

@@ -14,7 +14,7 @@ From a velocity command to odometry, scan, tf and clock:
     ros.sim.node                  the loop: has the simulator advance, then publishes what it has measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
         ros.sim.sensor_topics     at the start: packed messages, whose fields are bound to the rows of a robot
-        ros.batch                 the batch: batch.c copies these rows into the packed messages and sends them
+        ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, camera).
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 import rosgraph
 from processes import busy_processes
-from waiting import DEADLINE, patience
+from waiting import DEADLINE
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -87,15 +87,14 @@ class Ros:
 
     def wait(self, condition, what, processes=()):
         """The first true value of a condition; these processes may not fail meanwhile."""
-        deadline = DEADLINE * patience()
-        end = time.monotonic() + deadline
+        end = time.monotonic() + DEADLINE
         while True:
             value = condition()
             if value:
                 return value
             for process in processes:
                 assert process.poll() in (None, 0), f"{process.args} ended: {process.log.read_text()[-3000:]}"
-            assert time.monotonic() < end, f"not within {deadline:g} s: {what}"
+            assert time.monotonic() < end, f"not within {DEADLINE:g} s: {what}"
             time.sleep(0.02)
 
     def stop(self, *processes):

@@ -10,23 +10,13 @@ from xml.etree import ElementTree
 
 import pytest
 from processes import processes_with
-from waiting import patience
 
-DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit. Both times patience().
+DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit.
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 TEST = Path(__file__).resolve().parents[1]
 FILES = {path.stem: path for folder in ("ros/nodes", "neighbours") for path in (TEST / folder).glob("*.test")}
 LONG = ("lab", "simulator", "simulator_services", "two_robots")
-# The same as the program of this name.
-ROSTEST = """
-import roslaunch.core, rostest, sys
-init = roslaunch.core.Test.__init__
-def patient(self, *arguments, time_limit=None, **others):
-    limit = time_limit or roslaunch.core.TEST_TIME_LIMIT_DEFAULT
-    init(self, *arguments, time_limit=limit * {patience}, **others)
-roslaunch.core.Test.__init__ = patient
-rostest.rostestmain()
-"""
+ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
 # Most of these is also tested without processes, or with two robots (many_robots).
 SLOW = (
     *("camera", "documented_commands", "faults", "localization_truth", "many_robots", "navigation_fast"),
@@ -40,12 +30,11 @@ def run_rostest(test_file, directory):
     environment["ROS_LOG_DIR"] = str(directory / "log")
     for name in ("ROS_MASTER_URI", "ROS_IP", "DISPLAY"):
         environment.pop(name, None)
-    program = ROSTEST.format(patience=patience())
-    command = [sys.executable, "-c", program, f"--results-base-dir={directory / 'results'}", str(test_file)]
+    command = [sys.executable, "-c", ROSTEST, f"--results-base-dir={directory / 'results'}", str(test_file)]
     with open(directory / "output", "w+b") as output:
         rostest = subprocess.Popen(command, env=environment, stdout=output, stderr=subprocess.STDOUT)
         try:
-            status = rostest.wait(DEADLINE * patience())
+            status = rostest.wait(DEADLINE)
         except subprocess.TimeoutExpired:
             status = None
             rostest.send_signal(signal.SIGINT)
@@ -102,7 +91,7 @@ def test_rostest(name, tmp_path):
     problems = [problem for cases in results.values() for case in cases for problem in problems_of(case)]
     problems += [f"{path.name}: not one test case ran" for path, cases in results.items() if not cases]
     if status is None:
-        problems.insert(0, f"not done after {DEADLINE * patience():.0f} s")
+        problems.insert(0, f"not done after {DEADLINE:.0f} s")
     elif status != 0:
         problems.insert(0, f"rostest ended with status {status}")
     elif not results:

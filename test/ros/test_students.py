@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 from programs import Program
 from students import contents, copy_of
-from waiting import patience
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -43,7 +42,7 @@ class Hosted(Program):
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            timeout=DEADLINE * patience(),
+            timeout=DEADLINE,
         )
 
     def goto(self, *arguments):
@@ -52,7 +51,7 @@ class Hosted(Program):
     def end(self):
         """Interrupt it as by Ctrl-C; the processes that are left."""
         self.process.send_signal(signal.SIGINT)
-        self.process.wait(DEADLINE * patience())
+        self.process.wait(DEADLINE)
         return self.processes()
 
 
@@ -160,7 +159,7 @@ def test_a_launch_file_of_another_name_gets_its_argument_and_a_crash_on_the_seco
 @pytest.mark.slow
 def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     system = hosted("timer_driven", "scan_profile:=no_such")
-    assert system.process.wait(DEADLINE * patience()) == 1, system.output
+    assert system.process.wait(DEADLINE) == 1, system.output
     assert "scan_profile" in system.output and system.processes() == []
 
 
@@ -170,5 +169,5 @@ def test_a_package_that_does_not_build_is_reported_with_the_log_of_the_build(hos
     (package / "action" / "GoToPosition.action").write_text("geometry_msgs/Pint position\n---\n---\n")
     (tmp_path / "ros").mkdir()
     system = Hosted(package, tmp_path / "ros")
-    assert system.process.wait(DEADLINE * patience()) == 1
+    assert system.process.wait(DEADLINE) == 1
     assert "aro_robocop_goto_as can't be built:" in system.output and "Pint" in system.output

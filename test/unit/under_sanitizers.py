@@ -20,9 +20,9 @@ from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.ros.batch import Batch
 from aro_robocop_goto_as.ros.covariances import imu_covariances
-from aro_robocop_goto_as.ros.packed import (
+from aro_robocop_goto_as.ros.publishing.batch import Batch
+from aro_robocop_goto_as.ros.publishing.packed import (
     DOUBLES,
     Field,
     PackedMessage,
@@ -34,7 +34,7 @@ from aro_robocop_goto_as.ros.packed import (
     packed_scan,
     packed_transforms,
 )
-from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
+from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.noise_streams import Episode

@@ -1,7 +1,7 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
 import math
-from typing import FrozenSet, Optional, Sequence, Set, Tuple
+from typing import Optional, Sequence, Set, Tuple
 
 import numpy as np
 

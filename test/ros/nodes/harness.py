@@ -124,7 +124,7 @@ def wait_for_connection(node, topic, received=False):
 def call_simulator(service):
     """Pause, unpause or reset the simulator; the message of its response."""
     name = f"{SIMULATOR}/{service}"
-    rospy.wait_for_service(name, DEADLINE * waiting.patience())
+    rospy.wait_for_service(name, DEADLINE)
     answer = rospy.ServiceProxy(name, {"reset": Reset}.get(service, Trigger))()
     assert answer.success, answer.message
     return answer.message
@@ -384,7 +384,6 @@ class Process:
 
     def wait_for_exit(self, deadline=DEADLINE):
         """Wait until it ends by itself; its exit status."""
-        deadline *= waiting.patience()
         try:
             status = self.process.wait(deadline)
         except subprocess.TimeoutExpired:

@@ -16,8 +16,8 @@ from sensor_msgs.msg import Imu, JointState, LaserScan
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, wrap_angle
-from aro_robocop_goto_as.ros.convert import from_pose_msg
 from aro_robocop_goto_as.ros.connected_nodes import sender
+from aro_robocop_goto_as.ros.convert import from_pose_msg
 
 SPAWN = Pose2D(-0.7, 0.0)  # of the default world
 WHEEL_RADIUS, WHEEL_SEPARATION = 0.033, 0.160  # [m] TurtleBot3 Burger

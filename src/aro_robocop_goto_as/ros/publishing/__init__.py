@@ -1,12 +1,12 @@
 """Publishing with direct sockets: no message is lost to a subscriber that reads, and one step is one call of C.
 
-This folder alone uses rospy's insides to publish. rospy.Publisher either has a queue, which drops messages, and a thread
-per topic, or it blocks without limit; and its way to a socket costs about as much Python as making the message. With
-one robot and a subscriber each to /scan and /odom, as fast as possible, that is most of the simulator's time.
+Only this folder uses rospy's insides to publish. A rospy.Publisher with a queue drops messages and has a thread for
+each subscriber. One without a queue closes the connection of a subscriber that is slow, in the middle of a message,
+and its way to a socket costs about as much Python as making the message, for each message and each subscriber.
 
-The rule: each message is written before the next step is simulated. A subscriber that does not read for STALL_TIMEOUT is
-marked, with one warning, and misses whole messages until it reads again. It stays connected, as rospy's subscribers do
-not return to a publisher that has closed the connection.
+The rule: each message is written before the next step is simulated. A subscriber that does not read for STALL_TIMEOUT
+is marked, with one warning, and misses whole messages until it reads again. It stays connected, as rospy's subscribers
+do not return to a publisher that has closed the connection.
 
 publisher        advertises a topic, and knows its subscribers
 subscriber_link  one subscriber's socket: what it misses, and the rest of a message of which it took a part

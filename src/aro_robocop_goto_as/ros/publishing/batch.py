@@ -1,7 +1,7 @@
 """Messages of one step, filled and sent together: one call of batch.c writes them all to their subscribers' sockets.
 
-rospy's way to a socket costs about as much Python as making the message: a lock, a test of the connection's state and
-a system call that releases and takes the interpreter's lock, for each message and each subscriber.
+rospy takes a lock, tests the connection's state, and releases and takes the interpreter's lock, for each message and
+each subscriber.
 """
 
 import ctypes

@@ -1,6 +1,6 @@
 """A subscriber's connection, as its publisher sees it: waited for while it reads, kept while it stands still.
 
-A node may stand still for any time, in a debugger or after Ctrl-Z. What is left of a message is sent when it reads again.
+A node may stand still for any time, in a debugger or after Ctrl-Z. It gets the rest of a message when it reads again.
 """
 
 import ctypes

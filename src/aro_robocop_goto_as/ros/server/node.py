@@ -19,8 +19,8 @@ from ...goto_params import GotoParams
 from ...names import ACTION, SERVER
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
-from ..node_main import load_params, node
 from ..connected_nodes import is_connected_to, sender
+from ..node_main import load_params, node
 from .goal_execution import Ending, GoalExecution, feedback_of
 from .inputs import Inputs
 from .server_markers import Display

@@ -20,8 +20,8 @@ from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
-from ..covariances import diagonal
 from ..connected_nodes import publishers_of
+from ..covariances import diagonal
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
 from .requests import Requests

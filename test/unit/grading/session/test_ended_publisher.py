@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from waiting import DEADLINE, patience
+from waiting import DEADLINE
 
 from aro_robocop_goto_as.process.ports import free_port
 from robocop_grading.session.own_master import start_master
@@ -48,8 +48,7 @@ def test_the_messages_of_a_node_that_has_ended_are_all_handled_before_it_is_hear
     try:
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
         command = [sys.executable, "-c", LISTENER]
-        limit = DEADLINE * patience()
-        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True, timeout=limit)
+        done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True, timeout=DEADLINE)
         assert done.stdout.split() == [str(MESSAGES).encode(), b"1"]
     finally:
         master.shutdown("the test is over")

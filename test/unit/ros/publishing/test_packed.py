@@ -14,9 +14,10 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.ros import convert, packed
-from aro_robocop_goto_as.ros.batch import Batch
+from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.covariances import imu_covariances
+from aro_robocop_goto_as.ros.publishing import packed
+from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 

@@ -8,18 +8,18 @@ from types import SimpleNamespace
 from typing import Any, Callable, Iterator, List
 
 import pytest
+import rospy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
-from aro_robocop_goto_as.ros import publishing
-from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.packed import HEADER, Field, PackedMessage, counter
-from aro_robocop_goto_as.ros.subscriber_link import SubscriberLink
+from aro_robocop_goto_as.ros.publishing.batch import Batch
+from aro_robocop_goto_as.ros.publishing.packed import HEADER, Field, PackedMessage, counter
+from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
 SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, of a subscriber that is to stand still
 LONG = struct.pack("ll", 60, 0)  # of one that reads, whenever it gets a processor
-PATIENCE = 60.0  # [s, wall] for a thread that reads
+READ_TIMEOUT = 60.0  # [s, wall] for a thread that reads
 
 
 class Connection:
@@ -141,7 +141,7 @@ def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callab
     thread = threading.Thread(target=lambda: received.append(reader.received(message.size)))
     thread.start()
     Batch([(topic_of(reader), message)]).send(0)
-    thread.join(PATIENCE)
+    thread.join(READ_TIMEOUT)
     assert received == [bytes(message.data)]
     assert not reader.connection.closed
 
@@ -191,8 +191,11 @@ def drain(reader: Subscriber) -> bytes:
 
 @pytest.mark.parametrize("beams", [3, 100, 1_000_000])
 def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_when_it_reads_again(
-    subscriber: Callable[..., Subscriber], beams: int
+    subscriber: Callable[..., Subscriber], beams: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    said: List[str] = []
+    monkeypatch.setattr(rospy, "logwarn", lambda text, *_: said.append(text))
+    monkeypatch.setattr(rospy, "loginfo", lambda text, *_: said.append(text))
     frozen, message = subscriber(SHORT), counted(beams)
     batch, received = Batch([(topic_of(frozen), message)]), bytearray()
     send_until_it_stands_still(batch, frozen)
@@ -214,13 +217,14 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
     batch.send(0)
     assert not frozen.link.stands_still and not frozen.connection.closed
     frozen.link.socket.shutdown(socket.SHUT_WR)
-    reading.join(PATIENCE)
+    reading.join(READ_TIMEOUT)
     assert not reading.is_alive()
     assert received[-message.size :] == message.data.tobytes()
     numbers = [struct.unpack_from("<I", received, start + 4)[0] for start in range(0, len(received) - 8, message.size)]
     whole = len(received) // message.size
     assert len(received) == whole * message.size
     assert numbers == sorted(numbers) and len(set(numbers)) == whole
+    assert [text.split(";")[0] for text in said] == ["%s has stopped reading", "%s reads again"]
 
 
 def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_there_was(
@@ -268,7 +272,7 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[..., Subs
 
     reader.link.socket = spied(reader, begin)
     Batch([(topic_of(reader), message) for message in messages]).send(0)  # topics remapped to one
-    thread.join(PATIENCE)
+    thread.join(READ_TIMEOUT)
     assert received == [b"".join(message.data.tobytes() for message in messages)]
 
 
@@ -285,7 +289,7 @@ def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable
 
     slow.link.socket = spied(slow, look)
     Batch([(topic_of(slow), message)], [(topic_of(reader), clock)]).send(0)
-    thread.join(PATIENCE)
+    thread.join(READ_TIMEOUT)
     assert reader.socket.recv(100) == clock.data.tobytes()
     assert not slow.connection.closed
 
@@ -324,32 +328,9 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
 
     stalled.link.socket = spied(stalled, read_meanwhile)
     Batch([(topic_of(stalled, slow), message)]).send(0)
-    reading.join(PATIENCE)
+    reading.join(READ_TIMEOUT)
     assert stalled.link.stands_still and not slow.link.stands_still
     assert b"".join(received) == bytes(message.data)
-
-
-def test_messages_that_the_kernel_keeps_arrive_with_the_next_one_or_with_a_push(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        near = socket.create_connection(server.getsockname())
-        reader, _ = server.accept()
-    link = SubscriberLink(Connection(), near)
-    impl = SimpleNamespace(is_latch=False)
-    topic: Any = SimpleNamespace(links=(link,), impl=impl)
-    monkeypatch.setattr(publishing, "_publishers", [topic])
-    message = counted(10)
-    batch = Batch([(topic, message)])
-    with near, reader:
-        for more in (True, True, False, True):
-            batch.send(0, more)
-        publishing.push()
-        data = b""
-        while len(data) < 4 * message.size:
-            data += reader.recv(4 * message.size)
-    numbers = [struct.unpack_from("<I", data, 4 + message.size * number)[0] for number in range(4)]
-    assert numbers == [1, 2, 3, 4]
 
 
 def test_empty_batch_sends_nothing() -> None:

@@ -18,9 +18,9 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from sensor_msgs.msg import LaserScan
 from subscriber_links import Link
 
-from aro_robocop_goto_as.ros.batch import Batch
-from aro_robocop_goto_as.ros.packed import PackedMessage
-from aro_robocop_goto_as.ros.publishing import DirectPublisher, publisher, resume
+from aro_robocop_goto_as.ros.publishing.batch import Batch
+from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
+from aro_robocop_goto_as.ros.publishing.publisher import DirectPublisher, publisher, resume
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -181,58 +181,3 @@ def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator
         _send(lds02.topics["scan"], message)
         sent.append(struct.unpack_from("<I", message.data, 4)[0])
     assert sent == [1, 2, 3, 4, 5]
-
-
-def test_subscriber_that_waits_for_a_processor_is_waited_for(
-    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scans, asked = topic(), []
-    link, message = (
-        connect(scans),
-        PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)),
-    )  # more than a socket takes at once
-    reading = threading.Thread(target=lambda: asked.append(_received(link, message.size) == message.data.tobytes()))
-
-    class Starved:
-        """At the third look, the process gets its processor."""
-
-        def __init__(self, *_: object) -> None: ...
-
-        def wants_to_run(self) -> bool:
-            asked.append(True)
-            if len(asked) == 3:
-                reading.start()
-            return True
-
-    monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", Starved)
-    _set_timeout(link, SHORT)
-    _send(scans, message)
-    assert len(asked) >= 3 and not scans.links[0].stands_still
-    reading.join()
-    assert all(asked)
-
-
-def test_subscriber_that_has_read_and_sleeps_when_it_is_looked_at_is_waited_for(
-    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scans, read = topic(), [b""]
-    link, message = connect(scans), PackedMessage(LaserScan(ranges=[1.0] * 3_000_000))
-    reading = threading.Thread(
-        target=lambda: read.append(_received(link, message.size - len(read[0])))  # the rest, after the look
-    )
-
-    class AsleepAgain:
-        def __init__(self, *_: object) -> None: ...
-
-        def wants_to_run(self) -> bool:
-            _set_timeout(link, LONG)
-            read[0] = link.socket.recv(1_000_000, socket.MSG_WAITALL)
-            reading.start()
-            return False
-
-    monkeypatch.setattr("aro_robocop_goto_as.ros.subscriber_link.Peer", AsleepAgain)
-    _set_timeout(link, SHORT)
-    _send(scans, message)
-    assert not scans.links[0].stands_still
-    reading.join()
-    assert b"".join(read) == message.data.tobytes()
