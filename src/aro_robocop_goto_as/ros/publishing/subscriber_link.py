@@ -5,6 +5,7 @@ A node may stand still for any time, in a debugger or after Ctrl-Z. It gets the 
 
 import ctypes
 import errno
+import select
 import socket
 from typing import Any
 
@@ -19,7 +20,7 @@ class SubscriberLink:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
     A subscriber that takes nothing for as long as its socket's send timeout stands still: it misses all messages until
-    it takes data again, and nobody waits for it. What is kept for it is the rest of one message.
+    its socket has room again, and nobody waits for it. What is kept for it is the rest of one message.
     """
 
     def __init__(self, connection: Any, duplicate: socket.socket) -> None:
@@ -65,7 +66,9 @@ class SubscriberLink:
         return not left
 
     def push_rest(self) -> bool:
-        """Send the rest of an earlier message as far as the socket takes it now; return whether none is left."""
+        """Send the rest of an earlier message as far as there is room; return whether there is room for another one."""
+        if self.stands_still and not self._has_room():
+            return False
         if self._rest:
             self._rest = self._rest[self._take(memoryview(self._rest), socket.MSG_DONTWAIT) :]
         return not self._rest
@@ -76,6 +79,15 @@ class SubscriberLink:
             return self.socket.send(data, flags)
         except BlockingIOError:
             return 0
+
+    def _has_room(self) -> bool:
+        """Return whether a third of the socket's buffer is free, or the connection lost.
+
+        The kernel finds room for a message now and then although nobody reads, but not for so many.
+        """
+        poll = select.poll()
+        poll.register(self.descriptor, select.POLLOUT)
+        return bool(poll.poll(0))
 
     @property
     def _name(self) -> str:
