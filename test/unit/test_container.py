@@ -1,18 +1,15 @@
-"""The container's files agree with each other and with ./robocop, checked without building the image."""
+"""What the container image starts, and how GitHub Classroom grades with it, checked without building the image."""
 
 import base64
-import fnmatch
 import json
 import os
 import re
-import shlex
 import subprocess
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
-from documentation import PAGES
 
 from aro_robocop_goto_as.errors import GradingError, GradingSetupError
 from robocop_grading import skeleton
@@ -30,79 +27,17 @@ FAILED = CheckResult("one_ending", "server", "A goal ends once.", Outcome.FAILED
 GRADE = Grade("anna", (PASSED, FAILED))
 
 
-def instructions(name):
-    """The arguments of all instructions of this name in the Dockerfile."""
-    text = re.sub(r"\\\n", "", re.sub(r"(?m)^#.*\n", "", (ROOT / "Dockerfile").read_text()))
-    return [line.partition(" ")[2] for line in text.splitlines() if line.startswith(f"{name} ")]
-
-
-def settings():
-    """The environment variables that the Dockerfile sets."""
-    return dict(word.split("=", 1) for line in instructions("ENV") for word in shlex.split(line))
-
-
-def is_sent(path):
-    """Whether a file of the checkout is sent to the build: neither it nor a folder above it is in .dockerignore."""
-    patterns = [line for line in (ROOT / ".dockerignore").read_text().splitlines() if line and line[0] != "#"]
-    parts = Path(path).parts
-    names = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
-    return not any(
-        fnmatch.fnmatch(name, pattern) or fnmatch.fnmatch(f"/{name}", pattern.replace("**", "*"))
-        for name in names
-        for pattern in patterns
-    )
-
-
 def dry_run(*arguments, **environment):
     """A command of ./robocop that starts nothing."""
     values = {**os.environ, "ROBOCOP_DRY_RUN": "1", "DISPLAY": "", **environment}
     return subprocess.run([ROOT / "robocop", *arguments], env=values, capture_output=True, text=True, timeout=60.0)
 
 
-def test_dockerfile_copies_what_exists_and_installs_lists_that_exist():
-    assert instructions("FROM") == ["debian:12-slim AS packages", "packages"]
-    sources = [word for line in instructions("COPY") for word in line.split()[:-1] if not word.startswith("--")]
-    assert sources == ["deb-packages", "."]
-    (parts,) = [line for line in instructions("ARG") if "=" in line]
-    for part in parts.partition("=")[2].strip('"').split():
-        assert (ROOT / "deb-packages" / f"{part}.txt").is_file(), part
-
-
-def test_build_gets_everything_that_the_setup_links_and_neither_history_nor_caches():
-    linked = re.search(r"^package_folders=\((.*)\)", (ROOT / "robocop").read_text(), re.MULTILINE)[1].split()
-    for name in (*linked, "robocop", "deb-packages", "requirements-web.txt", "setup.py", "src/x/y.py", "README.md"):
-        assert is_sent(name), name
-    for name in (".git", ".git/config", ".robocop/venv/bin/python", "src/x/__pycache__", "test/y/z.pyc"):
-        assert not is_sent(name), name
-
-
-def test_container_runs_robocop_as_an_ordinary_user():
-    assert instructions("USER") == ["robocop"]
-    assert json.loads(instructions("ENTRYPOINT")[0]) == ["tini", "--", "robocop"]
-
-
-def test_container_starts_the_lab_with_a_page_that_can_be_published():
-    done = dry_run(*json.loads(instructions("CMD")[0]), **settings())
+def test_image_starts_the_lab_with_a_page():
+    words = json.loads(re.search(r"^CMD (.*)", (ROOT / "Dockerfile").read_text(), re.MULTILINE)[1])
+    done = dry_run(*words)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split()[-2:] == ["rviz:=false", "web:=true"]
-    assert settings()["ROBOCOP_WEB_HOST"] == "0.0.0.0" and instructions("EXPOSE") == ["8080"]
-
-
-def test_documentation_publishes_the_page_to_this_machine_only():
-    published = [port for page in PAGES for port in re.findall(r"docker run[^`\n]* -p (\S+)", page.read_text())]
-    assert len(published) > 2
-    assert set(published) == {"127.0.0.1:8080:8080"}
-
-
-def test_development_container_builds_the_first_stage_and_sets_up_its_parts():
-    content = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
-    build = content["build"]
-    assert (ROOT / ".devcontainer" / build["dockerfile"]).resolve() == ROOT / "Dockerfile"
-    assert f"AS {build['target']}" in instructions("FROM")[0]
-    assert content["remoteUser"] in instructions("USER")
-    program, command, *parts = content["postCreateCommand"].split()
-    assert (program, parts) == ("./robocop", build["args"]["PARTS"].split())
-    assert dry_run(command, *parts).returncode == 0
 
 
 @pytest.fixture

@@ -37,10 +37,6 @@ def test_an_impossible_set_is_refused_with_the_reason(changes: Dict[str, Any], r
     assert str(refusal.value) == f"changed parameters: {reason}"
 
 
-def test_velocities_that_contradict_the_others_alone_are_valid_together() -> None:
-    assert tuned(P, {"min_linear_velocity": 0.5, "max_linear_velocity": 0.6}).min_linear_velocity == 0.5
-
-
 def test_values_beyond_their_bounds_are_named_with_the_bound() -> None:
     changes = {"max_linear_velocity": 50.0, "angle_tolerance": -1, "linear_gain": 0.7, "groups": {}}
     assert sorted(clamped_values(changes)) == [

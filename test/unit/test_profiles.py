@@ -43,12 +43,6 @@ def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, exp
     assert limits_from(_params(profile).limits, model_named(model).figures) == expected
 
 
-def test_explicit_value_overrides_the_profile() -> None:
-    p = _params("real", cmd_vel_timeout=2.0, max_linear_velocity=0.3)
-    limits = limits_from(p.limits, model_named("burger").figures)
-    assert (limits.timeout, limits.max_v, limits.max_w) == (2.0, 0.3, 2.635)
-
-
 def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
     p = _params("turtlebot3_gazebo")
     lidar = p.scan.lidar()

@@ -26,11 +26,6 @@ def test_shell_passes_arguments_and_exit_status_through():
     assert found.endswith("src/aro_robocop_goto_as"), done.stderr
 
 
-def test_shell_finds_the_package():
-    done = robocop("shell", "rosmsg", "show", "-r", "aro_robocop_goto_as/GoToPositionGoal")
-    assert "geometry_msgs/Point position" in done.stdout, done.stderr
-
-
 def test_other_python_installations_are_ignored(tmp_path):
     for name in ("python", "python3", "pip", "cmake"):
         (tmp_path / name).write_text("#!/bin/sh\nexit 77\n")
@@ -179,12 +174,6 @@ def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(chec
     assert not (checkout / ".robocop").exists() and not (checkout.parent / "cache").exists()
 
 
-def test_doctor_says_why_a_system_is_not_supported(on_system):
-    done = on_system(FEDORA, command="doctor")
-    assert done.returncode == 1
-    assert "this system is not supported\n      Fedora Linux 41 has no packages of ROS 1; " in done.stdout
-
-
 ENGINES = "docker podman buildah"
 
 
@@ -254,12 +243,6 @@ def test_up_to_date_set_up_installs_nothing_and_adds_less_than_a_second(tmp_path
     assert usage.ru_utime + usage.ru_stime < 1.0
 
 
-def test_missing_debian_package_is_named_with_the_line_to_type(checkout):
-    (checkout / "deb-packages" / "run.txt").write_text("# comment\nbash\nno-such-package # comment\n")
-    done = robocop("setup", root=checkout, ROBOCOP_DRY_RUN="1")
-    assert "apt-get install --no-install-recommends no-such-package\n" in done.stderr
-
-
 def test_what_is_complete_is_used_while_another_set_up_of_the_checkout_is_running():
     other = os.open(ROOT, os.O_RDONLY)
     try:
@@ -277,14 +260,6 @@ def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(chec
     announced = done.stderr.index("PyPI has no wheel of pybullet for Python 3.")
     assert announced < done.stderr.index("this takes about ") < done.stderr.index("error: no such thing")
     assert "robocop: pip failed. It needs a package index" in done.stderr
-
-
-@pytest.mark.slow
-def test_index_without_pybullet_is_reported_and_nothing_is_built(checkout, index):
-    done = in_copy(checkout, "setup", **{**index, "PIP_FIND_LINKS": str(checkout)})
-    assert done.returncode == 1
-    assert "pip failed. It needs a package index that provides what requirements.txt names (full log: " in done.stderr
-    assert "PyPI has no wheel" not in done.stderr
 
 
 @pytest.mark.slow

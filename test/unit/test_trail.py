@@ -31,10 +31,6 @@ def test_a_trail_starts_again_when_time_was_set_back():
     assert driven((9.0, 1.0, 0.0), (9.1, 1.1, 0.0), (0.0, 1.1, 0.0)) == ((1.1, 0.0, trail.HEIGHT),)
 
 
-def test_a_trail_goes_on_after_odometry_was_missing():
-    assert len(driven((0.0, 0.0, 0.0), (5.0, 1.0, 0.0))) == 2
-
-
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])
 def test_a_position_that_is_no_number_is_left_out(wrong):
     assert driven((0.0, 0.0, 0.0), (0.1, wrong, 0.0), (0.2, 0.1, 0.0)) == driven((0.0, 0.0, 0.0), (0.2, 0.1, 0.0))

@@ -1,4 +1,4 @@
-"""Trajectories are those that revision 45233a1 had, for both engines, with all errors of odometry."""
+"""Trajectories of both engines, with all errors of odometry, are those that were recorded."""
 
 import json
 import math
@@ -50,7 +50,7 @@ CASES: Dict[str, Dict[str, Any]] = {
         odom_source="world",
     ),
 }
-with open(os.path.join(ROOT, "test", "unit", "data", "trajectories_at_45233a1.json")) as recorded:
+with open(os.path.join(ROOT, "test", "unit", "data", "trajectories.json")) as recorded:
     RECORDED = json.load(recorded)
 
 
