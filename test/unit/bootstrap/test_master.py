@@ -65,30 +65,16 @@ def nobody():
         yield uri_of(bound)
 
 
-def test_closed_port_has_no_master_and_no_simulator():
+def test_simulator_runs_if_the_master_knows_one_that_answers_as_a_node():
     with nobody() as uri:
-        assert not master.master_answers(uri)
-        assert master.running_simulator(uri) is None
-
-
-def test_master_without_simulator():
+        assert not master.master_answers(uri) and master.running_simulator(uri) is None
     with ros_master() as uri:
-        assert master.master_answers(uri)
-        assert master.running_simulator(uri) is None
-
-
-def test_simulator_that_answers_is_running():
+        assert master.master_answers(uri) and master.running_simulator(uri) is None
     with node() as simulator, ros_master(simulator) as uri:
         assert master.running_simulator(uri) == "a simulator is already running"
-
-
-def test_simulator_that_has_ended_but_is_still_registered_is_not_running():
-    with nobody() as simulator, ros_master(simulator) as uri:
+    with nobody() as ended, ros_master(ended) as uri:
         assert master.running_simulator(uri) is None
-
-
-def test_another_program_on_the_port_of_an_ended_simulator_is_no_simulator():
-    with served(other=lambda: 1) as other, ros_master(other) as uri:
+    with served(other=lambda: 1) as another_program, ros_master(another_program) as uri:
         assert master.running_simulator(uri) is None
 
 

@@ -163,15 +163,6 @@ def test_robot_that_a_moving_obstacle_pushes_stops_at_another_robot(indexed: boo
     assert not engine.touching(0), "the obstacle is back at its start"
 
 
-def test_robot_at_a_wall_can_turn_and_back_out() -> None:
-    engine = _kinematics(WALL, Pose2D(1.5, 0.0))
-    _drive(engine, 60, (1.0, 0.0))
-    _drive(engine, 30, (0.0, 1.0))
-    assert engine.fleet.pose(0).yaw == pytest.approx(1.0)
-    _drive(engine, 30, (-1.0, 0.0))
-    assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS - math.cos(1.0), abs=1e-3)
-
-
 @given(st.floats(-math.pi, math.pi), st.floats(0.01, 300.0), st.floats(-5.0, 5.0))
 def test_robot_never_penetrates_an_obstacle(yaw: float, v: float, w: float) -> None:
     engine = _kinematics(world_named("stage_2"), Pose2D(0.0, 0.0, yaw))
@@ -193,23 +184,6 @@ def test_colliding_robots_never_overlap(velocities: List[Tuple[float, float]]) -
         places = engine.fleet.poses[:, :2]
         apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(4)
         assert apart.min() > 2.0 * RADIUS - 1e-9
-
-
-def test_robot_blocked_by_a_wall_can_be_reset_in_a_world_without_round_obstacles() -> None:
-    engine = _kinematics(WALL, Pose2D(1.85, 0.0))
-    _drive(engine, 10, (1.0, 0.0))
-    assert engine.touching(0)
-    engine.reset([Pose2D(1.0, 0.0)])
-    assert engine.fleet.pose(0) == Pose2D(1.0, 0.0) and not engine.fleet.wheel_angles.any()
-    assert not engine.touching(0)
-
-
-def test_another_world_blocks_from_the_next_step_on() -> None:
-    engine = _kinematics(world_named("empty"), Pose2D(1.5, 0.0))
-    _drive(engine, 5, (1.0, 0.0))
-    engine.change_world(WALL, 0.0)
-    _drive(engine, 30, (1.0, 0.0))
-    assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
 
 
 def test_robots_of_different_heights_and_radii_are_blocked_by_what_is_at_their_height() -> None:

@@ -48,23 +48,6 @@ def test_a_child_may_clean_up_within_its_grace_period(alive):
     assert child.end(started, signal.SIGINT, DEADLINE) == 7
 
 
-def test_end_without_a_signal_waits_for_a_child_that_is_about_to_exit(alive):
-    started = shell("echo ready; exit 3", alive)
-    assert child.end(started, None, DEADLINE) == 3
-
-
-def test_end_of_an_exited_child_returns_its_status_again(alive):
-    started = shell("echo ready; exit 3", alive)
-    assert (child.end(started, None, DEADLINE), child.end(started)) == (3, 3)
-
-
-def test_kill_tree_ends_children_in_sessions_of_their_own(alive):
-    started = shell("setsid sh -c 'setsid sh -c \"echo ready; sleep 600\"' & sleep 600", alive)
-    child.kill_tree(started.pid)
-    assert started.wait(DEADLINE) == -signal.SIGKILL
-    assert os.read(alive[0], 1) == b""
-
-
 def test_a_process_that_keeps_starting_others_is_killed_with_all_of_them(alive):
     started = shell("echo ready; while :; do setsid sleep 600 & done", alive)
     child.kill_tree(started.pid)

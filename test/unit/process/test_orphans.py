@@ -34,11 +34,6 @@ def test_no_descendant_survives(family):
     assert subprocess.run([sys.executable, "-c", ENDED.format(family=family)], timeout=DEADLINE).returncode == 0
 
 
-def test_process_without_children_does_not_wait():
-    code = "from aro_robocop_goto_as.process import orphans; orphans.adopt_orphans(); orphans.kill_descendants()"
-    assert subprocess.run([sys.executable, "-c", code], timeout=DEADLINE).returncode == 0
-
-
 def test_adopted_child_that_has_ended_is_let_go_of():
     code = """
 import psutil, subprocess, time

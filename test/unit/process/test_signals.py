@@ -41,28 +41,6 @@ print("after", flush=True)
     assert output_of(code, number) == (["block", "handled", "after"], 0)
 
 
-def test_several_deferred_signals_are_delivered_as_one(number):
-    code = """
-with Deferred():
-    os.kill(os.getpid(), number)
-    os.kill(os.getpid(), signal.SIGTERM)
-    print("block", flush=True)
-"""
-    assert output_of(code, number) == (["block", "handled"], 0)
-
-
-def test_signal_is_delivered_after_a_block_that_raises(number):
-    code = """
-try:
-    with Deferred():
-        os.kill(os.getpid(), number)
-        raise OSError
-except OSError:
-    print("failed", flush=True)
-"""
-    assert output_of(code, number) == (["handled", "failed"], 0)
-
-
 def test_default_handler_ends_the_process_after_the_block(number):
     code = """
 signal.signal(number, signal.SIG_DFL)
@@ -72,15 +50,6 @@ with Deferred():
 print("after", flush=True)
 """
     assert output_of(code, number) == (["block"], -number)
-
-
-def test_handlers_are_restored_when_no_signal_arrived(number):
-    code = """
-with Deferred():
-    pass
-os.kill(os.getpid(), number)
-"""
-    assert output_of(code, number) == (["handled"], 0)
 
 
 def test_keyboard_interrupt_is_raised_only_once(number):

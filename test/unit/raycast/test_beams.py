@@ -69,23 +69,6 @@ def test_no_beam_passes_through_the_walls_of_a_closed_room() -> None:
     assert np.isfinite(LAB.cast(poses, walls)).all()
 
 
-def test_beams_aimed_at_corners_hit_them() -> None:
-    room = CrossSection(World("w", (Obstacle("o", Pose3D(), Box((4.0, 4.0, 1.0))),), Pose2D(), (), ""), 0.182)
-    eight = Fan(0.0, math.pi / 4, 8)
-    expected = [2.0, 2.0 * math.sqrt(2.0)] * 4
-    assert eight.cast(np.zeros((1, 3)), room)[0] == pytest.approx(expected)
-
-
 def test_scanner_inside_a_circle_sees_its_far_side() -> None:
     drum = CrossSection(World("w", (Obstacle("o", Pose3D((0.5, 0, 0)), Cylinder(2.0, 1.0)),), Pose2D(), (), ""), 0.182)
     assert Fan(0.0, math.pi, 2).cast(np.zeros((1, 3)), drum)[0] == pytest.approx([2.5, 1.5])
-
-
-def test_scan_of_an_empty_world_has_no_returns() -> None:
-    assert np.isinf(LAB.cast(np.zeros((2, 3)), CrossSection(World("w", (), Pose2D(), (), ""), 0.182))).all()
-
-
-def test_fan_without_beams_or_with_negative_increment_is_refused() -> None:
-    for increment, samples in ((0.0, 10), (-0.1, 10), (0.1, 0)):
-        with pytest.raises(ValueError, match="expected increment > 0 and samples >= 1"):
-            Fan(0.0, increment, samples)

@@ -26,20 +26,6 @@ def test_every_beam_of_any_fan_matches_the_definition(fan: Fan, cut: CrossSectio
         assert least * (1.0 - 1e-7) - 1e-7 <= distance <= greatest * (1.0 + 1e-7) + 1e-7, f"beam {beam}"
 
 
-@pytest.mark.parametrize(
-    ("circle", "seen"),
-    [
-        ([1.0, 0.25, 0.25], [1.0, math.inf, math.inf, math.inf]),
-        ([0.25, -1.0, 0.25], [math.inf, math.inf, math.inf, 1.0]),
-        ([0.0, 0.0, 0.5], [0.5] * 4),
-    ],
-)
-def test_circle_is_seen_along_its_tangent_and_from_its_centre(circle: List[float], seen: List[float]) -> None:
-    cut = cut_of(np.zeros((0, 2, 2)), np.array([circle]))
-    quarters = Fan(0.0, math.pi / 2.0, 4).cast(np.zeros((1, 3)), cut)[0]
-    assert quarters.tolist() == pytest.approx(seen)
-
-
 @given(fans, cuts, poses, st.floats(0.0, 5.0))
 def test_maximum_range_removes_only_returns_beyond_it(
     fan: Fan, cut: CrossSection, pose: Pose, max_range: float
@@ -80,16 +66,6 @@ def test_beams_along_tile_borders_see_segments_on_the_border(x: float, y: float,
     assert Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut).tobytes() == every.tobytes()
 
 
-def test_scans_are_the_same_after_any_number_of_scans() -> None:
-    cut = cut_of(np.random.default_rng(1).uniform(-5.0, 5.0, (300, 2, 2)), np.zeros((0, 3)))
-    expected = LAB.cast(np.zeros((1, 3)), cut)
-    cut.tiles = Tiles(cut.segments)
-    cut.tiles.struct.mark = 2**31 - 3
-    for _ in range(5):
-        np.testing.assert_array_equal(LAB.cast(np.zeros((1, 3)), cut), expected)
-    assert cut.tiles.struct.mark == 2**31 + 2
-
-
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
@@ -106,13 +82,6 @@ def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     assert fan.scan(scene, order, 5.0).tobytes() == together[order].tobytes()
     for robot in robots:
         assert fan.scan(scene, [robot], 5.0).tobytes() == together[robot].tobytes()
-
-
-def test_robots_see_each_others_bodies_but_not_their_own() -> None:
-    bodies, owners = np.array([[0.5, 0.0, 0.1], [0.5, 0.0, 0.2]]), np.array([0, 1], np.int64)
-    scene = Scene([ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))), bodies, owners)], [0, 0], np.zeros((2, 3)))
-    scene.footprints[:] = (0.0, 0.0, 0.0), (3.0, 0.0, math.pi)
-    assert Fan(0.0, 1.0, 1).scan(scene, [0, 1]).tolist() == [[pytest.approx(2.3)], [pytest.approx(2.4)]]
 
 
 # What is refused

@@ -12,7 +12,7 @@ from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.free_places import free_place, free_places
+from aro_robocop_goto_as.raycast.free_places import free_place
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
@@ -49,12 +49,6 @@ def test_in_a_world_without_a_spawn_the_robot_starts_where_there_is_room(model: 
     assert min(gaps) >= least and math.hypot(robot.spawn.x, robot.spawn.y) < 0.6
 
 
-def test_several_robots_start_where_there_is_room_too(burger: RobotModel) -> None:
-    for robot in robots_from(SimParams.of(robots="6").robots, NO_SPAWN, lambda _: burger):
-        gaps = [math.dist((robot.spawn.x, robot.spawn.y), o.pose.position[:2]) - 0.15 for o in PILLARS]
-        assert min(gaps) >= 0.3 - 1e-9
-
-
 def test_a_spawn_that_is_given_or_that_has_room_is_kept(burger: RobotModel) -> None:
     assert robots_from(SimParams.of(spawn="0 0.1").robots, NO_SPAWN, lambda _: burger)[0].spawn == Pose2D(0.0, 0.1)
     assert robots_from(SimParams().robots, replace(NO_SPAWN, has_spawn=True), lambda _: burger)[0].spawn == Pose2D()
@@ -81,11 +75,6 @@ def test_several_robots_start_in_a_corridor_that_is_just_wide_enough_for_them(bu
     assert sorted((robot.spawn.x, robot.spawn.y) for robot in robots) == [(x / 2, 0.0) for x in range(-2, 3)]
 
 
-def test_places_are_the_same_every_time() -> None:
-    world, burger = world_named("stage_4"), model_named("burger")
-    assert free_places(world, world.spawn, 8, burger) == free_places(world, world.spawn, 8, burger)
-
-
 def test_more_robots_than_there_is_room_for_are_refused(burger: RobotModel) -> None:
     with pytest.raises(
         ParameterError, match="world 'stage_1' has room for [0-9]+ around its spawn, 500 were requested"
@@ -110,12 +99,6 @@ def test_in_a_map_the_robot_starts_at_zero_or_at_the_nearest_free_place(tmp_path
     assert 0.17 < narrow.x < 0.28 and 0.17 < narrow.y < 0.28
 
 
-@pytest.mark.parametrize("value", [0, 205])
-def test_a_map_without_room_for_a_robot_is_refused(tmp_path: Path, value: int) -> None:
-    with pytest.raises(ParameterError, match="world 'm' has no room for a robot within 30 m of x 0 y 0"):
-        _start_in_map()(write_map(tmp_path, np.full((9, 9), value)))
-
-
 def test_in_a_map_the_robot_starts_in_a_known_cell_with_room_for_its_model(tmp_path: Path) -> None:
     pixels = np.zeros((80, 80))
     pixels[36:44] = 254  # a corridor 0.4 m wide along x, which leads out of the map
@@ -124,12 +107,3 @@ def test_in_a_map_the_robot_starts_in_a_known_cell_with_room_for_its_model(tmp_p
     assert _start_in_map()(path)[0].x < 2.0
     (wide,) = _start_in_map("waffle")(path)
     assert 1.22 <= wide.x <= 1.68 and abs(wide.y) <= 0.78
-
-
-def test_in_a_map_several_robots_start_in_known_cells_only(tmp_path: Path) -> None:
-    pixels = np.full((60, 60), 205)
-    pixels[20:40, 20:40] = 254  # a square of 1 m in the middle
-    path = write_map(tmp_path, pixels, origin="[-1.5, -1.5, 0]")
-    assert all(max(abs(pose.x), abs(pose.y)) <= 0.5 for pose in _start_in_map(robots="3")(path))
-    with pytest.raises(ParameterError, match="room for . around its spawn"):
-        _start_in_map(robots="10")(path)

@@ -1,15 +1,13 @@
 """The distance from a point to the nearest obstacle as high as a robot, and whether a robot has room at a pose."""
 
 import math
-import time
 
 import numpy as np
 import pytest
 from support import analytic_distances, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.obstacle_distance import ObstacleDistance, body_heights
-from aro_robocop_goto_as.robot.model import RobotModel
+from aro_robocop_goto_as.raycast.obstacle_distance import ObstacleDistance
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
 
 HEIGHTS = (0.02, 0.1, 0.18)
@@ -61,27 +59,3 @@ def test_solid_shapes_are_at_no_distance_from_a_point_within_them(
 def test_what_is_above_the_robot_or_below_the_floor_does_not_count(pose: Pose3D) -> None:
     assert _nearest(Box((1.0, 1.0, 0.2)), pose, 0.0, 0.0) == (math.inf, "")
     assert _nearest(Plane((0.0, 0.0, 1.0)), pose, 0.0, 0.0) == (math.inf, "")
-
-
-def test_a_burger_is_compared_at_three_heights_up_to_its_lidar(burger: RobotModel) -> None:
-    assert body_heights(burger) == pytest.approx((0.02, 0.101, 0.182))
-
-
-def test_among_many_walls_the_distance_to_a_near_one_takes_less_time_and_is_the_same() -> None:
-    rng = np.random.default_rng(0)
-    starts = rng.uniform(-50.0, 50.0, (20000, 2))
-    walls = Walls(np.stack([starts, starts + rng.uniform(-0.3, 0.3, (20000, 2))], axis=1), 0.5)
-    distance = ObstacleDistance(World("w", (Obstacle("walls", Pose3D(), walls),), Pose2D(), (), "w"), (0.1,))
-
-    def duration(x: float, y: float) -> float:
-        began = time.thread_time()
-        distance.nearest(x, y)
-        return time.thread_time() - began
-
-    points = rng.uniform(-49.0, 49.0, (50, 2)).tolist()
-    near = min(duration(x, y) for x, y in points)
-    far = min(duration(200.0, 0.0) for _ in points)
-    assert near < far / 2.0
-    for x, y in points:
-        everywhere = distance._nearest(x, y, np.arange(20000))
-        assert distance.nearest(x, y) == everywhere

@@ -10,7 +10,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
-from aro_robocop_goto_as.world.model import Box, Obstacle, Plane, World
+from aro_robocop_goto_as.world.model import Box, Obstacle, World
 
 
 def grid_of(cut, start, resolution):
@@ -58,23 +58,6 @@ def test_empty_world_is_a_small_free_map():
     occupancy = grid_of(CrossSection(world_named("empty"), 0.182), Pose2D(3.0, 4.0), 0.1)
     assert (occupancy.cells == FREE).all() and occupancy.cells.shape == (10, 10)
     assert (occupancy.origin.x, occupancy.origin.y) == (2.5, 3.5)
-
-
-def test_vertical_plane_does_not_extend_the_map_but_is_drawn_in_it():
-    world = World(
-        "w",
-        (
-            Obstacle("p", Pose3D((1.0, 0.0, 0.0)), Plane((1.0, 0.0, 0.0))),
-            Obstacle("b", Pose3D((3.0, 0.0, 0.1)), Box((1.0, 1.0, 1.0))),
-        ),
-        Pose2D(),
-        (),
-        "",
-    )
-    occupancy = grid_of(CrossSection(world, 0.182), Pose2D(), 0.05)
-    assert max(occupancy.cells.shape) < 100
-    assert value_at(occupancy, 1.0 - 1e-6, 0.9) == OCCUPIED or value_at(occupancy, 1.0 + 1e-6, 0.9) == OCCUPIED
-    assert value_at(occupancy, 2.0, 0.0) == UNKNOWN and value_at(occupancy, 0.5, 0.0) == FREE
 
 
 def test_huge_world_gets_coarser_cells():

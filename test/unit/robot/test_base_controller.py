@@ -17,7 +17,6 @@ from aro_robocop_goto_as.robot.base_controller import Limits, clamped, limits_fr
 from aro_robocop_goto_as.robot.fleet import Fleet, library
 from aro_robocop_goto_as.sim_params import SimParams
 
-LIMITS = Limits(max_v=0.22, max_w=2.84, max_dv=2.5, max_dw=3.2, timeout=0.5)
 DT = 1.0 / 240.0
 speeds = st.one_of(st.sampled_from([0.0, 0.22, -0.22]), st.floats(-1e6, 1e6))
 commands = st.lists(st.tuples(st.builds(Twist2D, speeds, speeds), st.integers(1, 60)), max_size=5)  # for some steps
@@ -55,31 +54,15 @@ def test_velocities_and_wheel_speeds_are_those_of_the_definition(runs: List[Tupl
         assert (np.abs(np.array(reached).reshape(-1, 4)[:, :2]) <= most).all()
 
 
-def _forward_speed_after(limits: Limits, seconds: float) -> float:
-    fleet = _fleet(limits)
-    fleet.commands[0] = 0.2, 0.0
-    for step in range(1, int(seconds / DT) + 1):
-        _control(fleet, step * DT)
-    return float(fleet.velocities[0, 0])
-
-
-def test_robot_follows_a_command_until_the_timeout_and_then_brakes() -> None:
-    assert _forward_speed_after(LIMITS, 0.49) == pytest.approx(0.2)
-    assert _forward_speed_after(LIMITS, 0.49 + 0.2 / 2.5 + 0.05) == 0.0
-
-
-def test_with_timeout_zero_a_command_stays_in_force_for_ever() -> None:
-    assert _forward_speed_after(LIMITS._replace(timeout=0.0), 60.0) == pytest.approx(0.2)
-
-
 @pytest.mark.parametrize("bad", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf), Twist2D(-math.inf, math.nan)])
 def test_command_that_is_not_finite_is_refused_with_its_values(bad: Twist2D) -> None:
     with pytest.raises(CommandError, match=f"linear.x {bad.v} m/s, angular.z {bad.w} rad/s"):
-        clamped(bad, LIMITS)
+        clamped(bad, Limits(0.22, 2.84, 2.5, 3.2, 0.5))
 
 
-@pytest.mark.parametrize("model, timeout", [("burger", 0.5), ("waffle", 0.5), ("turtlebot2", 0.6)])
-def test_robot_brakes_after_its_models_own_timeout_unless_another_one_is_given(model: str, timeout: float) -> None:
-    figures = model_named(model).figures
-    assert limits_from(SimParams().limits, figures).timeout == timeout
-    assert limits_from(SimParams.of(cmd_vel_timeout=0.0).limits, figures).timeout == 0.0
+def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them() -> None:
+    burger, turtlebot2 = (model_named(name).figures for name in ("burger", "turtlebot2"))
+    assert limits_from(SimParams().limits, burger) == (0.22, 2.84, 2.5, 3.2, 0.5)
+    assert limits_from(SimParams().limits, turtlebot2) == (1.5, 6.6, 1.0, 2.0, 0.6)
+    given = SimParams.of(max_linear_velocity=0.1, cmd_vel_timeout=0.0).limits
+    assert limits_from(given, burger) == (0.1, 2.84, 2.5, 3.2, 0.0)

@@ -2,14 +2,13 @@
 
 import math
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 import pytest
-from support import lean, model_named, world_named
+from support import model_named, world_named
 
 from aro_robocop_goto_as.errors import RobocopError, RobotModelError
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.raycast.scanners import circles_at
 from aro_robocop_goto_as.robot.catalog import load_figures
 from aro_robocop_goto_as.robot.model import RobotSpec
@@ -17,82 +16,7 @@ from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
-Make = Callable[..., Simulator]
-OTHERS = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]  # than the Burger, which test_simulator.py tests
 BURGER_BOX = math.sqrt(0.14 * 0.14 / math.pi)  # [m] radius of the circle of the same area
-
-
-def _drive(sim: Simulator, twist: Twist2D, until: Callable[[], bool]) -> None:
-    """Command a velocity until a condition holds, then stop and come to rest."""
-    while not until():
-        sim.command(twist)
-        sim.step({})
-    for _ in range(2 * sim.rate):
-        sim.command(STANDSTILL)
-        sim.step({})
-
-
-def _after(sim: Simulator, seconds: float) -> Callable[[], bool]:
-    end = sim.steps + int(round(seconds * sim.rate))
-    return lambda: sim.steps >= end
-
-
-@pytest.mark.parametrize("model", OTHERS)
-@pytest.mark.parametrize("v", [0.2, -0.2])
-def test_driving_two_metres_is_accurate_to_one_percent(simulator: Make, model: str, v: float) -> None:
-    sim = simulator(model=model)
-    _drive(sim, Twist2D(v, 0.0), _after(sim, 10.0))
-    pose = sim.world_from_footprint()
-    assert math.hypot(pose.x - 10.0 * v, pose.y) < 0.02
-    assert abs(pose.yaw) < math.radians(2.0)
-
-
-@pytest.mark.parametrize("model", OTHERS)
-@pytest.mark.parametrize("w", [1.0, -1.8])
-def test_full_turn_in_place_is_accurate_to_two_degrees(simulator: Make, model: str, w: float) -> None:
-    sim = simulator(model=model)
-    _drive(sim, Twist2D(0.0, w), _after(sim, abs(2.0 * math.pi / w)))
-    pose = sim.world_from_footprint()
-    assert abs(pose.yaw) < math.radians(2.0)
-    assert math.hypot(pose.x, pose.y) < 0.01
-
-
-@pytest.mark.parametrize("model", OTHERS)
-def test_a_robot_without_a_command_does_not_drift(simulator: Make, model: str) -> None:
-    sim = simulator(model=model)
-    _drive(sim, Twist2D(0.15, 0.4), _after(sim, 3.0))
-    start = sim.world_from_footprint()
-    for _ in range(60 * 240):
-        sim.step({})
-    end = sim.world_from_footprint()
-    assert math.hypot(end.x - start.x, end.y - start.y) < 1e-3
-    assert abs(wrap_angle(end.yaw - start.yaw)) < math.radians(0.1)
-
-
-@pytest.mark.parametrize("model", OTHERS)
-def test_robot_stops_upright_at_a_wall_and_can_back_out(simulator: Make, model: str) -> None:
-    sim = simulator("stage_1", Pose2D(1.0, 0.0), model=model)
-    _drive(sim, Twist2D(0.26, 0.0), _after(sim, 6.0))
-    stuck = sim.world_from_footprint()
-    assert 1.5 < stuck.x < 1.85 - 0.03, "the robot has not reached the wall, or is in it"
-    assert sim.touching()
-    assert lean(sim) < math.radians(3.0)
-    _drive(sim, Twist2D(-0.2, 0.0), _after(sim, 3.0))
-    assert sim.world_from_footprint().x < stuck.x - 0.4
-    assert not sim.touching()
-
-
-@pytest.mark.parametrize("model", OTHERS)
-def test_robot_stays_upright_at_its_highest_speeds(simulator: Make, model: str) -> None:
-    sim = simulator(model=model)
-    limits = model_named(model).figures
-    leans = []
-    for twist in (Twist2D(limits.max_linear_velocity, 0.0), STANDSTILL, Twist2D(0.0, limits.max_angular_velocity)):
-        for _ in range(3 * sim.rate):
-            sim.command(twist)
-            sim.step({})
-            leans.append(lean(sim))
-    assert max(leans) < math.radians(3.0)
 
 
 def _sees(sim: Simulator, robot: int) -> float:

@@ -1,6 +1,5 @@
 """A fleet: rows of arrays that Python and C share."""
 
-import pytest
 from support import model_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
@@ -32,10 +31,3 @@ def test_placed_robot_stands_without_a_command_and_keeps_its_wheel_angles(burger
     for rows in (fleet.commanded_at, fleet.commands, fleet.velocities, fleet.targets):
         assert not rows[1].any()
     assert fleet.state(0).twist == Twist2D(1.0, 1.0), "the other robot drives on"
-
-
-def test_limits_of_every_robot_are_needed(burger: RobotModel) -> None:
-    with pytest.raises(ValueError):
-        Fleet([burger] * 2, [LIMITS], [0.1] * 2)
-    with pytest.raises(ValueError, match="^radii: expected shape"):
-        Fleet([burger] * 2, [LIMITS] * 2, [0.1])

@@ -9,24 +9,10 @@ from aro_robocop_goto_as.errors import RobotModelError
 from aro_robocop_goto_as.geometry import Pose3D, Vector3
 from aro_robocop_goto_as.physics.bullet_shapes import load_urdf
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
-from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.robot.urdf import load_robot
-from aro_robocop_goto_as.sim_params import SimParams
 
 URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
-
-
-def test_burger_has_the_manufacturers_dimensions(burger: RobotModel) -> None:
-    assert (burger.wheel_radius, burger.wheel_separation) == (0.033, pytest.approx(0.160))
-    assert burger.footprint_from_base.position == pytest.approx((0.0, 0.0, 0.010))
-    assert burger.base_from_scan.position == pytest.approx((-0.032, 0.0, 0.172))
-    assert burger.base_from_imu.position == pytest.approx((-0.032, 0.0, 0.068))
-
-
-def test_links_without_mass_are_excluded_from_physics(burger: RobotModel) -> None:
-    assert "base_footprint" in burger.urdf and "base_footprint" not in burger.physics_urdf
-    assert "imu_link" not in burger.physics_urdf and "base_scan" in burger.physics_urdf
 
 
 @pytest.mark.parametrize(
@@ -36,7 +22,6 @@ def test_links_without_mass_are_excluded_from_physics(burger: RobotModel) -> Non
         ('link name="base_scan"', 'link name="laser"', "no link 'base_scan'"),
         ('<sphere radius="0.033"/>', '<cylinder radius="0.033" length="0.018"/>', "needs a sphere as its collision"),
         ('<child link="imu_link"/>', '<child link="elsewhere"/>', "no joints lead from link 'imu_link' to"),
-        ('<child link="imu_link"/>', '<child link="base_footprint"/>', "no joints lead from link 'imu_link' to"),
         ("</robot>", "", "not well-formed XML: "),
         (
             '<sphere radius="0.033"/>',
@@ -44,23 +29,11 @@ def test_links_without_mass_are_excluded_from_physics(burger: RobotModel) -> Non
             "radius='3 cm', expected one finite number greater than 0",
         ),
         (
-            '<sphere radius="0.033"/>',
-            '<sphere radius="inf"/>',
-            "radius='inf', expected one finite number greater than 0",
-        ),
-        ('<sphere radius="0.033"/>', "<sphere/>", "radius='', expected one finite number greater than 0"),
-        (
-            'size="0.140 0.140 0.143"',
-            'size="0.140 0.140"',
-            "size='0.140 0.140', expected 3 finite numbers greater than 0",
-        ),
-        (
             'size="0.140 0.140 0.143"',
             'size="0.140 0 0.143"',
             "size='0.140 0 0.143', expected 3 finite numbers greater than 0",
         ),
         ('xyz="0 0.080 0.023"', 'xyz="0 0,080 0.023"', "xyz='0 0,080 0.023', expected 3 finite numbers"),
-        ('xyz="0 0.080 0.023"', 'xyz="nan 0.080 0.023"', "xyz='nan 0.080 0.023', expected 3 finite numbers"),
         (
             'xyz="0 0.080 0.023"',
             'xyz="0 -0.090 0.023"',
@@ -80,17 +53,6 @@ def test_broken_description_is_refused_with_file_and_problem(
     assert str(path) in str(refusal.value) and expected in str(refusal.value)
 
 
-@pytest.mark.parametrize(
-    "content",
-    [b"", b"\xff\xfe\x00", b"<robot>" * 300, b"<sdf/>", b"<robot/>", b"<!DOCTYPE robot><robot/>"],
-)
-def test_what_is_not_a_description_is_refused_by_name(burger: RobotModel, tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "robot.urdf"
-    path.write_bytes(content)
-    with pytest.raises(RobotModelError, match=str(path)):
-        load_robot(str(path), burger.figures)
-
-
 def test_the_centre_of_mass_is_where_the_base_link_says(burger: RobotModel, tmp_path: Path) -> None:
     assert burger.base_from_inertial == Pose3D()
     path = tmp_path / "robot.urdf"
@@ -104,21 +66,17 @@ def test_the_centre_of_mass_is_where_the_base_link_says(burger: RobotModel, tmp_
     assert bullets[4] == pytest.approx(model.base_from_inertial.orientation)
 
 
-def test_a_missing_file_is_named(burger: RobotModel, tmp_path: Path) -> None:
-    with pytest.raises(RobotModelError, match="nowhere.urdf"):
-        load_robot(str(tmp_path / "nowhere.urdf"), burger.figures)
-
-
 @pytest.mark.parametrize(
     "name, robot, wheel_radius, separation, lift, scan, imu",
     [
+        ("burger", "turtlebot3_burger", 0.033, 0.160, 0.010, (-0.032, 0.0, 0.172), (-0.032, 0.0, 0.068)),
         ("burger_rgbd", "turtlebot3_burger", 0.033, 0.160, 0.010, (-0.032, 0.0, 0.172), (-0.032, 0.0, 0.068)),
         ("waffle", "turtlebot3_waffle", 0.033, 0.287, 0.010, (-0.064, 0.0, 0.122), (0.0, 0.0, 0.068)),
         ("waffle_pi", "turtlebot3_waffle_pi", 0.033, 0.287, 0.010, (-0.064, 0.0, 0.122), (0.0, 0.0, 0.068)),
         ("turtlebot2", "turtlebot2", 0.035, 0.230, 0.0102, (0.0, 0.0, 0.150), (0.056, 0.062, 0.0202)),
     ],
 )
-def test_other_models_have_their_manufacturers_dimensions(
+def test_models_have_their_manufacturers_dimensions(
     name: str, robot: str, wheel_radius: float, separation: float, lift: float, scan: Vector3, imu: Vector3
 ) -> None:
     model = model_named(name)
@@ -127,30 +85,3 @@ def test_other_models_have_their_manufacturers_dimensions(
     assert model.footprint_from_base.position == pytest.approx((0.0, 0.0, lift))
     assert model.base_from_scan.position == pytest.approx(scan)
     assert model.base_from_imu.position == pytest.approx(imu)
-
-
-@pytest.mark.parametrize(
-    "name, limits",
-    [
-        ("burger", (0.22, 2.84, 2.5, 3.2, 0.5)),
-        ("burger_rgbd", (0.22, 2.84, 2.5, 3.2, 0.5)),
-        ("waffle", (0.26, 1.82, 2.5, 3.2, 0.5)),
-        ("waffle_pi", (0.26, 1.82, 2.5, 3.2, 0.5)),
-        ("turtlebot2", (1.5, 6.6, 1.0, 2.0, 0.6)),
-    ],
-)
-def test_limits_are_the_models_unless_a_parameter_overrides_them(name: str, limits: "tuple[float, ...]") -> None:
-    figures = model_named(name).figures
-    assert limits_from(SimParams().limits, figures) == limits
-    assert limits_from(SimParams.of(max_linear_velocity=0.1).limits, figures) == (0.1, *limits[1:])
-
-
-def test_burger_rgbd_differs_from_burger_only_by_its_camera(burger: RobotModel) -> None:
-    head = URDF[URDF.index("<robot") : URDF.index("</robot>")]
-    assert head in Path(ROOT, "urdf", "burger_rgbd.urdf").read_text()
-    assert model_named("burger_rgbd").figures == burger.figures
-
-
-def test_every_description_has_a_file_of_figures() -> None:
-    urdfs = {path.stem for path in Path(ROOT, "urdf").glob("*.urdf")}
-    assert urdfs == {path.stem for path in Path(ROOT, "config", "models").glob("*.yaml")}

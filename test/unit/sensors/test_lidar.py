@@ -78,12 +78,6 @@ def test_ranges_are_those_of_the_definition(
         np.testing.assert_array_equal(ranges[robot], _defined(spec, row, _normals(at[0], robot, at[1], samples)))
 
 
-def test_rows_that_do_not_exist_are_refused() -> None:
-    for robot in (-1, 2):
-        with pytest.raises(ValueError, match="expected numbers from 0 to 1"):
-            Lidar(SPEC).measuring([robot], Episode(1, 1), np.zeros((2, 360)))
-
-
 def test_noise_is_standard_normal() -> None:
     normals = np.sort(_normals(1, 0, 1, 200_001))
     expected = [(1.0 + math.erf(z / math.sqrt(2.0))) / 2.0 for z in normals]

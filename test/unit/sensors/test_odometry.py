@@ -68,42 +68,6 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
     assert odometers.twists[0] == pytest.approx((v, w), abs=1e-6)
 
 
-def test_odometry_starts_at_zero_whatever_the_wheel_angles() -> None:
-    fleet = _fleet()
-    fleet.wheel_angles[0] = 3.0, 4.0
-    odometers = Odometers(OdometryParams(odom_slip=0.1, encoder_tick=0.1), fleet, 30)
-    odometers.noise[:] = 1.0
-    odometers.update()
-    assert not odometers.poses.any() and not odometers.twists.any()
-
-
-def test_joint_angles_are_whole_completed_ticks_without_slip() -> None:
-    fleet = _fleet()
-    odometers = Odometers(OdometryParams(odom_slip=0.5, encoder_tick=0.1), fleet, 30)
-    fleet.wheel_angles[0] = 0.25, -0.05
-    odometers.noise[:] = 1.0
-    odometers.update()
-    assert odometers.joint_angles()[0] == pytest.approx((0.2, -0.1))
-
-
-def test_slip_makes_encoders_overcount_in_either_direction() -> None:
-    fleet = _fleet()
-    odometers = Odometers(OdometryParams(odom_slip=0.1), fleet, 30)
-    fleet.wheel_angles[0] = 2.0, -2.0
-    odometers.noise[:] = [[1.0, -2.0]]
-    odometers.update()
-    assert odometers.poses[0, 2] == pytest.approx((-2.4 - 2.2) * RADIUS / SEPARATION)
-    assert odometers.twists[0, 0] == pytest.approx((2.2 - 2.4) / 2.0 * RADIUS * 30)
-
-
-def test_the_pose_now_has_no_slip_drawn_for_the_update_before() -> None:
-    fleet = _fleet()
-    odometers = Odometers(OdometryParams(odom_slip=0.1), fleet, 30)
-    odometers.noise[:] = 3.0
-    fleet.wheel_angles[0] = 2.0, 2.0
-    assert odometers.pose_now(0).x == pytest.approx(2.0 * RADIUS)
-
-
 def test_odometry_of_the_world_has_no_errors() -> None:
     fleet = _fleet()
     fleet.place(0, Pose2D(1.0, 2.0, 3.0))

@@ -75,10 +75,6 @@ def test_an_lds02s_error_stays_within_its_accuracy(distance: float, limit: float
     assert errors.std() == pytest.approx(0.48 * limit, rel=0.03)  # of a normal distribution cut at two sigma
 
 
-def test_an_lds02_reports_no_return_as_zero() -> None:
-    assert _measured("lds02", [0.1, math.inf, 9.0]) == [0.0, 0.0, 0.0]
-
-
 def test_an_lds02s_number_of_beams_varies_reproducibly(simulator: Make) -> None:
     def run() -> "list[np.ndarray]":
         return _scans(simulator("stage_1", scan_profile="lds02"), 20)

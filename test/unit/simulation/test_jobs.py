@@ -46,13 +46,3 @@ def test_jobs_that_come_while_the_queued_ones_are_run_stay_queued() -> None:
     jobs.post(again)
     jobs.run_queued()
     assert len(run) == len(jobs) == 2
-
-
-def test_run_next_waits_no_longer_than_it_may() -> None:
-    clock, run = FakeClock(), []
-    jobs = Jobs(clock)
-    clock.at(0.3, lambda: jobs.post(lambda: run.append(clock.time)))
-    jobs.run_next(0.2)
-    assert run == [] and clock.time == pytest.approx(100.2)
-    jobs.run_next(0.2)
-    assert run == [pytest.approx(100.3)]

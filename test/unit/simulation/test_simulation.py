@@ -22,12 +22,6 @@ def test_simulated_time_keeps_to_the_real_time_factor(factor: float) -> None:
     assert [seen.stamp_ns for seen in owner.observed] == sorted(seen.stamp_ns for seen in owner.observed)
 
 
-def test_with_factor_zero_the_loop_never_waits() -> None:
-    owner = Owner(5.0, real_time_factor=0.0)
-    owner.run()
-    assert owner.clock.time == 100.0
-
-
 def test_factor_may_change_while_time_runs() -> None:
     owner = Owner(3.0)
     owner.post(1.0, lambda: owner.simulation.time_control.set_real_time_factor(4.0, owner.simulator.steps))
@@ -59,14 +53,6 @@ def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
     assert time.paused and time.standing
 
 
-def test_shortest_span_is_one_step() -> None:
-    owner = Owner(start_paused=True, real_time_factor=0.0)
-    owner.simulation.time_control.begin_span(0.0, 0)
-    owner.is_stopped = lambda: owner.clock.time > 101.0
-    owner.run()
-    assert owner.simulator.steps == 1
-
-
 def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
     owner, spans = Owner(1.0, start_paused=True), []
     owner.post(0.1, lambda: spans.append(owner.simulation.time_control.begin_span(0.25, owner.simulator.steps)))
@@ -74,13 +60,6 @@ def test_whoever_resumes_during_a_span_lets_time_go_on_after_it() -> None:
     owner.run()
     assert spans[0] is not None and spans[0].result(0) == 60
     assert owner.clock.time < 102.0
-
-
-def test_command_moves_the_robot() -> None:
-    owner = Owner(1.0)
-    owner.simulation.jobs.post(lambda: owner.simulation.controllers.command(NODE, AHEAD))
-    owner.run()
-    assert owner.simulator.world_from_footprint().x > 0.05
 
 
 def test_reset_and_place_announce_new_frames_and_drop_pending_commands() -> None:

@@ -5,11 +5,10 @@ from typing import Callable, Dict, List, Tuple
 
 import numpy as np
 import pytest
-from support import ORIGIN, analytic_distances, drive, everything, lean, world_named
+from support import ORIGIN, analytic_distances, drive, everything, world_named
 
 from aro_robocop_goto_as.errors import CommandError, PlaceError
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, wrap_angle
-from aro_robocop_goto_as.simulation.observations import Due
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
@@ -31,77 +30,6 @@ def _odom(sim: Simulator) -> Pose2D:
     return Pose2D(*seen.odometry.poses[0].tolist())
 
 
-def test_scans_see_a_changed_world_though_what_is_due_stays_the_same_object(simulator: Make) -> None:
-    sim, scan = simulator("empty", **KINEMATIC), {"scan": [0]}
-
-    def next_scan() -> Tuple[Due, np.ndarray]:
-        seen = None
-        while seen is None or not seen.of("scan"):
-            seen = sim.step(scan)
-        return seen.due, seen.scans[0].copy()
-
-    due, empty = next_scan()
-    sim.change_world(world_named("world"))
-    due_then, ranges = next_scan()
-    assert due_then is due, "messages are prepared once for each"
-    assert np.isinf(empty).all() and np.isfinite(ranges).any()
-    seen = np.isfinite(ranges)
-    assert np.abs(ranges[seen] - sim.exact_distances()[seen]).max() < 0.1
-
-
-@pytest.mark.parametrize("v", [0.2, -0.2])
-def test_driving_two_metres_is_accurate_to_one_percent(simulator: Make, v: float) -> None:
-    sim = simulator()
-    _drive_and_stop(sim, Twist2D(v, 0.0), 10.0)
-    pose = sim.world_from_footprint()
-    assert math.hypot(pose.x - 10.0 * v, pose.y) < 0.02
-    assert abs(pose.yaw) < math.radians(2.0)
-
-
-@pytest.mark.parametrize("w", [1.0, -2.5])
-def test_full_turn_in_place_is_accurate_to_two_degrees(simulator: Make, w: float) -> None:
-    sim = simulator()
-    _drive_and_stop(sim, Twist2D(0.0, w), abs(2.0 * math.pi / w))
-    pose = sim.world_from_footprint()
-    assert abs(pose.yaw) < math.radians(2.0)
-    assert math.hypot(pose.x, pose.y) < 0.01
-
-
-@pytest.mark.parametrize("before", [0.0, 3.0])
-def test_a_robot_without_a_command_does_not_drift(simulator: Make, before: float) -> None:
-    sim = simulator()
-    if before:
-        _drive_and_stop(sim, Twist2D(0.15, 0.4), before)
-    start = sim.world_from_footprint()
-    for _ in range(60 * 60):
-        sim.advance({}, 4)
-    end = sim.world_from_footprint()
-    assert math.hypot(end.x - start.x, end.y - start.y) < 1e-3
-    assert abs(wrap_angle(end.yaw - start.yaw)) < math.radians(0.1)
-
-
-def test_both_engines_agree_without_slip(simulator: Make) -> None:
-    ends = []
-    for params in DRIVES:
-        sim = simulator("empty", **params)
-        drive(sim, Twist2D(0.15, 0.4), 5.0)
-        ends.append(sim.world_from_footprint())
-    assert math.hypot(ends[0].x - ends[1].x, ends[0].y - ends[1].y) < 0.01
-    assert abs(ends[0].yaw - ends[1].yaw) < math.radians(1.0)
-
-
-def test_robot_stops_upright_at_a_wall_and_can_back_out(simulator: Make) -> None:
-    sim = simulator("stage_1", Pose2D(1.5, 0.0))
-    _drive_and_stop(sim, Twist2D(0.22, 0.0), 5.0)
-    stuck = sim.world_from_footprint()
-    assert stuck.x < 1.85 - 0.033, "the robot is in the wall"
-    assert sim.touching()
-    assert lean(sim) < math.radians(3.0)
-    _drive_and_stop(sim, Twist2D(-0.2, 0.0), 3.0)
-    assert sim.world_from_footprint().x < stuck.x - 0.4
-    assert not sim.touching()
-
-
 @pytest.mark.parametrize("params", DRIVES)
 def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict[str, object]) -> None:
     sim = simulator("stage_1", Pose2D(1.86, 0.0), **params)
@@ -110,13 +38,6 @@ def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict
     sim.place(ORIGIN)
     sim.step({})
     assert not sim.touching() and sim.newly_placed_in_contact() == []
-
-
-@pytest.mark.parametrize("params", DRIVES)
-def test_bumper_reports_walls_but_not_the_floor(simulator: Make, params: Dict[str, object]) -> None:
-    sim = simulator("stage_1", Pose2D(1.5, 0.0), **params)
-    pressed = [seen.bumpers[0] for seen in drive(sim, Twist2D(0.2, 0.0), 4.0, ["bumper"]) if seen.bumpers]
-    assert pressed[0] is False and pressed[-1] is True
 
 
 @pytest.mark.parametrize("world", ["stage_4", "world", "maze_1"])
@@ -145,15 +66,6 @@ def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world
 # Rates, noise, subscriptions
 
 
-def test_observations_of_a_step_carry_its_stamp_and_rates_are_exact_over_one_second(simulator: Make) -> None:
-    seen = drive(simulator("stage_1"), STANDSTILL, 1.0, everything(1))
-    expected = dict(scan=10, odom=30, tf=30, joints=30, imu=200, ground_truth=30, bumper=30)
-    assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected
-    assert sum(observed.due.clock for observed in seen) == 60 and sum(observed.due.control for observed in seen) == 10
-    assert seen[-1].stamp_ns == 1000000000
-    assert all(observed.stamp_ns % 100000000 == 0 for observed in seen if observed.of("scan"))
-
-
 def test_every_rate_parameter_is_kept(simulator: Make) -> None:
     rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10)
     given = {f"{name}_rate": rate for name, rate in rates.items()}
@@ -180,18 +92,6 @@ def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sens
     assert run(1) == run(10**9)
 
 
-def test_simulator_measures_after_the_step_and_reads_bodies_only_for_subscribed_imus(
-    simulator: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    sim, calls = simulator("empty", drive="kinematic", imu_rate=60), []
-    advance, body = sim.engine.advance, sim.engine.body
-    monkeypatch.setattr(sim.engine, "advance", lambda first, steps: calls.append(steps) or advance(first, steps))
-    monkeypatch.setattr(sim.engine, "body", lambda robot: calls.append("body") or body(robot))
-    sim.advance({}, 1000)
-    sim.advance({"imu": [0]}, 1000)
-    assert calls == [4, 3, "body", 1, "body"]
-
-
 def test_same_seed_gives_the_same_run_whatever_is_subscribed(simulator: Make) -> None:
     def run(seed: int, listening: bool) -> "tuple[list[float], Pose2D]":
         sim = simulator("stage_2", seed=seed)
@@ -204,17 +104,6 @@ def test_same_seed_gives_the_same_run_whatever_is_subscribed(simulator: Make) ->
     assert run(1, True) == run(1, False)
     assert run(1, True)[0] != run(2, True)[0]
     assert run(1, True)[1] == run(2, True)[1]
-
-
-def test_scan_noise_of_one_robot_does_not_depend_on_which_other_scans_are_subscribed(simulator: Make) -> None:
-    def scan(wanted: "list[int]") -> "list[float]":
-        sim = simulator("stage_1", ORIGIN, Pose2D(1.0, 0.0))
-        for _ in range(24):
-            seen = sim.step({"scan": wanted})
-        assert seen is not None
-        return list(seen.scans[1])
-
-    assert scan([1]) == scan([0, 1])
 
 
 def test_invalid_command_leaves_the_previous_one_in_force(simulator: Make) -> None:
@@ -241,24 +130,6 @@ def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make)
     assert odom.yaw != 0.0
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, **KINEMATIC))[0] == odom
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
-
-
-def test_wheel_radius_error_scales_the_distance(simulator: Make) -> None:
-    odom, truth = _odom_and_truth(simulator("empty", odom_wheel_radius_error=0.02, **KINEMATIC))
-    assert odom.x == pytest.approx(1.02 * truth.x)
-
-
-def test_odometry_without_errors_is_exact(simulator: Make) -> None:
-    odom, truth = _odom_and_truth(simulator("empty", **KINEMATIC))
-    assert odom == pytest.approx(truth)
-
-
-@pytest.mark.parametrize("params", DRIVES)
-def test_encoders_keep_counting_while_the_wheels_slip_at_a_wall(simulator: Make, params: Dict[str, object]) -> None:
-    sim = simulator("stage_1", Pose2D(1.7, 0.0), **params)
-    odom = drive(sim, Twist2D(0.22, 0.0), 2.0, ["odom"])[-1].odometry.poses[0]
-    assert sim.touching()
-    assert odom[0] > sim.world_from_footprint().x - 1.7 + 0.05
 
 
 def test_odometry_of_the_world_is_the_true_pose_from_the_start(simulator: Make) -> None:
@@ -305,38 +176,6 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
     assert compose(sim.map_from_odom(), _odom(sim)) == pytest.approx((1.0, -1.0, 1.0), abs=accuracy)
 
 
-def test_reset_returns_the_robot_to_its_spawn_while_time_continues(simulator: Make) -> None:
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0))
-    _drive_and_stop(sim, Twist2D(0.2, 0.5), 2.0)
-    before = sim.stamp_ns
-    sim.reset()
-    assert _odom(sim) == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
-    assert sim.stamp_ns > before
-    assert sim.world_from_footprint() == pytest.approx((-0.7, 0.0, 0.0), abs=1e-4)
-
-
-def test_reset_restarts_the_noise_sequence(simulator: Make) -> None:
-    sim = simulator("stage_2")
-
-    def first_scan() -> "list[float]":
-        return list(drive(sim, STANDSTILL, 0.1, ["scan"])[-1].scans[0])
-
-    once = first_scan()
-    sim.reset()
-    again = first_scan()
-    sim.reset(seed=9)
-    other = first_scan()
-    assert once == again and once != other
-
-
-def test_time_continues_after_a_reset(simulator: Make) -> None:
-    sim = simulator("empty")
-    for _ in range(10):
-        sim.step({})
-    sim.reset()
-    assert sim.steps == 10
-
-
 # Several robots
 
 
@@ -347,14 +186,6 @@ def test_robots_see_each_others_scanners_but_not_their_own(simulator: Make, para
         distances = sim.exact_distances(robot)
         assert distances.min() == pytest.approx(1.0 + 2 * 0.032 - LIDAR_RADIUS, abs=1e-6)
         assert np.isfinite(distances).sum() < 10
-
-
-@pytest.mark.parametrize("params", DRIVES)
-def test_command_moves_only_its_own_robot(simulator: Make, params: Dict[str, object]) -> None:
-    sim = simulator("empty", ORIGIN, Pose2D(0.0, 1.0), **params)
-    drive(sim, Twist2D(0.2, 0.0), 1.0, robot=1)
-    assert sim.world_from_footprint(0).x == pytest.approx(0.0, abs=1e-4)
-    assert sim.world_from_footprint(1).x > 0.15
 
 
 @pytest.mark.parametrize("params", DRIVES)

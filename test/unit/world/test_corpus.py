@@ -77,7 +77,3 @@ def test_world_or_map_is_loaded_or_refused_as_it_must_be(path, tmp_path, monkeyp
         assert beam(world, *origin) == pytest.approx(distance, abs=1e-3)
     if "cells" in case:
         assert world.occupancy.cells[::-1].tolist() == case["cells"]
-
-
-def test_corpus_has_sixty_cases():
-    assert len(CORPUS) >= 60

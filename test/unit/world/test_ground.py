@@ -2,21 +2,17 @@
 
 import math
 
-import numpy as np
 import pytest
 import trimesh
 from sdf_files import collision, model, sdf_file, world_file
 from support import drive, model_named
 
-from aro_robocop_goto_as.errors import PlaceError
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
-from aro_robocop_goto_as.raycast.free_places import free_place
+from aro_robocop_goto_as.geometry import Pose3D, Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.rates import SCAN
 from aro_robocop_goto_as.world.edit import requested_model, with_model, without_model
-from aro_robocop_goto_as.world.ground import is_in_ground, top
 from aro_robocop_goto_as.world.load import load_world
 
 PLANE = "<include><uri>model://ground_plane</uri></include>"
@@ -72,14 +68,6 @@ def test_ground_is_what_is_flat_large_and_low_under_the_spawn(tmp_path, body, he
     assert load_world(world_file(tmp_path, body)).ground == pytest.approx(height)
 
 
-def test_poses_are_relative_to_the_ground(tmp_path):
-    world = load_world(world_file(tmp_path, PLANE + slab() + slab(box(1, 1, 1), z=0.55, name="crate")))
-    assert {name: pose.position[2] for name, pose in world.models.items()} == pytest.approx(
-        {"ground_plane": -0.05, "asphalt": -0.05, "crate": 0.5}
-    )
-    assert [is_in_ground(obstacle) for obstacle in world.obstacles] == [True, True, False]
-
-
 @pytest.mark.parametrize("drive_by", ["wheels", "kinematic"])
 def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, simulator, drive_by):
     seen = {}
@@ -92,15 +80,6 @@ def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, simulator, d
         seen[name] = (*sim.world_from_footprint(), *scans[-1])
     assert seen["slab"] == pytest.approx(seen["floor"], abs=1e-9)
     assert math.hypot(*seen["slab"][:2]) > 0.1 and min(seen["slab"][3:]) < 1.5
-
-
-def test_robot_starts_and_may_be_placed_on_a_slab(tmp_path, simulator):
-    world = load_world(world_file(tmp_path, PLANE + slab() + slab(box(1, 1, 1), z=0.5, name="crate", at=(3.0, 0.0))))
-    assert free_place(world, world.spawn, model_named("burger")) == world.spawn
-    sim = simulator(world, "kinematic")
-    sim.require_room(Pose2D(1.0, 1.0))
-    with pytest.raises(PlaceError, match="crate"):
-        sim.require_room(Pose2D(3.0, 0.0))
 
 
 def test_mesh_is_ground_if_its_top_fills_its_rectangle(tmp_path):
@@ -126,19 +105,3 @@ def test_ground_follows_slabs_that_are_spawned_and_deleted(tmp_path):
     assert removed.ground == 0.0
     assert removed.models["crate"].position[2] == pytest.approx(0.5)
     assert without_model(world, "crate").obstacles[0] is world.obstacles[0]
-
-
-@pytest.mark.parametrize(
-    ("shape", "turn", "height"),
-    [
-        (box(1, 2, 3), "0 0 1", 1.5),
-        (box(1, 2, 3), "0 1.5707963267949 0", 0.5),
-        ("<cylinder><radius>0.3</radius><length>2</length></cylinder>", "1.5707963267949 0 0", 0.3),
-        ("<sphere><radius>0.3</radius></sphere>", "1 1 0", 0.3),
-        ("<plane/>", "0 0 2", 0.0),
-        ("<plane/>", "3.1415926 0 0", np.inf),
-    ],
-)
-def test_top_is_the_highest_point_in_any_orientation(tmp_path, shape, turn, height):
-    (obstacle,) = load_world(world_file(tmp_path, slab(shape, turn=turn))).obstacles
-    assert top(obstacle) == pytest.approx(height)

@@ -4,17 +4,15 @@ import math
 
 import numpy as np
 import pytest
-import support
 from hypothesis import given
 from hypothesis import strategies as st
 from rasters import clearance
 from support import analytic_distances, world_named
 
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.rates import SCAN
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
@@ -87,36 +85,6 @@ def test_standing_robot_is_pushed_by_a_moving_obstacle(simulator, drive):
     assert touched
     assert math.hypot(pose.x - pillar[0], pose.y - pillar[1]) > 0.17
     assert math.hypot(pose.x - 0.4, pose.y) > 0.2
-
-
-@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_robot_is_stopped_by_an_oncoming_obstacle(simulator, drive):
-    sim = simulator("stage_4", Pose2D(0.4, -0.45, math.pi / 2), drive=drive, moving=True, cmd_vel_timeout=0.0)
-    sim.command(Twist2D(0.2))
-    farthest = -1.0
-    for _ in range(240 * 3):
-        sim.step({})
-        farthest = max(farthest, sim.world_from_footprint().y)
-    assert -0.2 < farthest < 0.0  # they meet half way, the pillar from 0.5 m
-    assert sim.touching() and sim.world_from_footprint().y < sim.world.moving()[0].at(3.0).position[1] - 0.14
-
-
-@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_reset_restarts_moving_obstacles_and_repeats_the_run(simulator, drive):
-    sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
-    runs = []
-    for _ in range(2):
-        sim.reset()
-        runs.append([seen.scans[0].tobytes() for seen in support.drive(sim, STANDSTILL, 3.0, [SCAN]) if seen.of(SCAN)])
-    assert len(runs[0]) == 30 and runs[0] == runs[1]
-
-
-def test_obstacles_stand_still_by_default(simulator):
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive="kinematic")
-    before = sim.exact_distances()
-    for _ in range(240):
-        sim.step({})
-    assert (sim.exact_distances() == before).all() and sim.world.moving() == ()
 
 
 def test_robot_is_not_pushed_through_a_wall(burger):

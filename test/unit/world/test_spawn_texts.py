@@ -16,11 +16,6 @@ def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:
     assert (robot.name, robot.spawn) == ("", Pose2D(-0.7, 0.0, 0.0))
 
 
-def test_a_list_names_and_places_each_robot(burger: RobotModel) -> None:
-    robots = robots_from(SimParams.of(robots="red 0 0; blue 1 -1 3.14").robots, world_named("empty"), lambda _: burger)
-    assert [(robot.name, robot.spawn) for robot in robots] == [("red", Pose2D()), ("blue", Pose2D(1.0, -1.0, 3.14))]
-
-
 def test_a_list_may_name_a_model_for_a_robot() -> None:
     p = SimParams.of(robots="red 0 0; blue:waffle 1 -1", model="turtlebot2").robots
     robots = robots_from(p, world_named("empty"), model_named)

@@ -80,23 +80,6 @@ def test_parameters_that_were_changed_hold_at_once(server):
     assert server.inputs.read() is not None
 
 
-def test_new_scan_is_visible_only_once_it_is_known_whether_it_is_valid(server, monkeypatch):
-    looked, view = [], server.inputs
-    real = view._clearance_in
-
-    def look_and_compute(message):
-        looked.append(view.scan)
-        return real(message)
-
-    monkeypatch.setattr(view, "_clearance_in", look_and_compute)
-    server.receive(2.0)
-    assert looked == [None]
-    first = view.scan
-    assert first is not None and view.valid_scan is first
-    server.receive(math.nan)
-    assert view.scan is not first and view.valid_scan is first
-
-
 @pytest.mark.parametrize("w", [0.0, 1.2, math.nan])
 def test_odometry_whose_orientation_is_no_rotation_is_refused(server, w):
     server.receive(2.0, w)
@@ -117,14 +100,6 @@ def test_scan_whose_angles_contradict_themselves_ends_the_goal(server, first, la
     expected = f"/scan has no beam within 30 degrees of straight ahead (360 beams, angles {first:g} to {last:g} rad"
     with pytest.raises(RobocopError, match=re.escape(f"{expected}, increment {increment:g} rad)")):
         server.inputs.read()
-
-
-def test_scan_of_a_scanner_that_turns_clockwise_is_valid(server):
-    server.receive(2.0)
-    server.inputs.on_scan(
-        LaserScan(angle_min=3.14, angle_max=-3.14, angle_increment=-0.0175, range_max=5.0, ranges=[2.0] * 360)
-    )
-    assert server.inputs.read()[1] == 2.0
 
 
 @pytest.fixture
@@ -157,10 +132,3 @@ def test_message_that_does_not_come_is_told(ticking):
 def test_message_that_is_not_due_is_not_waited_for(ticking):
     ticking.inputs.wait_for_tick(19 * 10**8)
     assert ticking.warnings == []
-
-
-def test_message_of_an_unknown_period_is_not_waited_for(server):
-    server.receive_odom(1.0)
-    server.inputs.wait_for_tick(9 * 10**9)
-    server.receive_scan(1.0)
-    server.inputs.wait_for_tick(9 * 10**9)

@@ -64,10 +64,6 @@ def test_colours_are_averaged_and_alpha_counts_as_in_map_server(tmp_path, pixel,
     assert world.occupancy.cells[0, 0] == expected
 
 
-def test_unused_yaml_keys_are_listed(tmp_path):
-    assert load_world(write_map(tmp_path, room(), author="me")).ignored == ("key 'author' of the map",)
-
-
 BROKEN = {  # case: (text of the YAML, line of the error or None, what the message must name)
     "not YAML": ("image: [m.pgm\nresolution: 1\n", 2, ["YAML"]),
     "too deep": ("image: " + 5000 * "[", None, ["nested too deeply"]),

@@ -36,14 +36,6 @@ def test_origin_with_yaw_rotates_the_walls(tmp_path):
     assert cut[..., 1].min() == pytest.approx(2.0) and cut[..., 1].max() == pytest.approx(2.0 + 40 * 0.05)
 
 
-def test_raw_values_beyond_the_threshold_are_walls_and_negative_ones_unknown(tmp_path):
-    pixels = np.full((30, 40), 1)
-    pixels[5, 5:9], pixels[9, 5:9], pixels[13, 5:9] = 66, 120, 200
-    world = load_world(write_map(tmp_path, pixels, mode="raw"))
-    assert sorted(np.unique(world.occupancy.cells)) == [-56, 1, 66, 120]
-    assert sorted(set(CrossSection(world, HEIGHT).segments[..., 1].ravel().round(3))) == [1.0, 1.05, 1.2, 1.25]
-
-
 @given(st.integers(0, 10**6))
 def test_scan_hits_in_an_extruded_map_fall_on_occupied_cells(tmp_path_factory, seed):
     random = np.random.default_rng(seed)
@@ -132,27 +124,3 @@ def test_scan_in_a_big_map_equals_a_scan_of_all_its_walls(big):
     every = LAB.cast(poses, cut)
     np.testing.assert_array_equal(seen, np.where(every <= 10.0, every, np.inf))
     np.testing.assert_array_equal(endless, every[:1])
-
-
-def test_scan_in_a_big_map_examines_only_nearby_walls(big):
-    cut, tried = CrossSection(big, HEIGHT), []
-    for pose in free_poses(big, 100):
-        LAB.cast(pose[None, :], cut, reach=10.0)
-        tried.append((cut.tiles.segment_marks == cut.tiles.struct.mark).sum())
-    assert sum(tried) / 100 < 1000 < len(cut.segments) / 40
-
-
-def test_both_engines_stop_the_robot_at_a_wall_of_a_big_map(big, burger):
-    ahead = Fan(-0.25, 0.01, 51)
-    poses = free_poses(big, 300) * [1.0, 1.0, 0.0]
-    seen = ahead.cast(poses, CrossSection(big, HEIGHT), reach=10.0) * np.cos(-0.25 + 0.01 * np.arange(51))
-    facing_a_wall = (np.ptp(np.minimum(seen, 9.0), axis=1) < 1e-6) & (seen[:, 25] > 0.5) & (seen[:, 25] < 1.5)
-    (x, y, _), distance = poses[facing_a_wall][0], seen[facing_a_wall][0, 25]
-    for drive in ("wheels", "kinematic"):
-        sim = make_simulator(SimParams.of(drive=drive, cmd_vel_timeout=0.0), big, [RobotSpec("", burger, Pose2D(x, y))])
-        sim.command(Twist2D(0.198, 0.0))
-        for _ in range(240 * 8):
-            sim.step({})
-        assert distance - 0.15 < sim.world_from_footprint().x - x < distance - 0.03
-        assert sim.touching()
-        sim.close()

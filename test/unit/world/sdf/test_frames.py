@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sdf_files import BOX, SPHERE, collision, model, only_obstacle, world_file
+from sdf_files import SPHERE, collision, model, world_file
 
 from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
@@ -104,12 +104,6 @@ def test_poses_relative_to_joints_compose_as_in_a_urdf_that_gz_converted(tmp_pat
         np.testing.assert_allclose(found[name].position, position, atol=1e-12)
 
 
-def test_collision_may_be_placed_in_the_world(tmp_path):
-    in_world = collision(SPHERE, pose="<pose relative_to='world'>1 2 3 0 0 0</pose>")
-    (obstacle,) = load_world(world_file(tmp_path, model(in_world, pose="<pose>5 5 5 1 1 1</pose>"), "1.8")).obstacles
-    assert obstacle.pose == Pose3D((1.0, 2.0, 3.0))
-
-
 @given(st.text(alphabet="0123456789 .eE+-_xinfa\n", max_size=30))
 def test_arbitrary_pose_text_raises_only_world_errors(tmp_path_factory, pose):
     path = world_file(tmp_path_factory.getbasetemp(), model(f"<pose>{pose}</pose>" + collision(SPHERE)))
@@ -118,12 +112,3 @@ def test_arbitrary_pose_text_raises_only_world_errors(tmp_path_factory, pose):
     except WorldError:
         return
     assert np.isfinite(obstacle.pose.position).all() and np.isfinite(obstacle.pose.orientation).all()
-
-
-def test_poses_of_nested_models_compose_and_names_show_the_nesting(tmp_path):
-    inner = f'<model name="in"><pose>1 0 0 0 0 0</pose>{BOX}</model>'
-    body = f'<model name="out"><static>1</static><pose>0 0 1 0 0 1.5707963267948966</pose>{inner}</model>'
-    obstacle = only_obstacle(world_file(tmp_path, body))
-    assert obstacle.name == "out/in/l/c"
-    assert obstacle.pose.position == pytest.approx((0, 1, 1))
-    assert rotation_matrix(obstacle.pose.orientation)[:, 0] == pytest.approx([0, 1, 0])

@@ -32,11 +32,6 @@ def test_models_of_ros_packages_are_found_by_package_name_and_exported_path(tmp_
         assert only_obstacle(world_file(tmp_path / "far", f"<include><uri>{uri}</uri></include>")).name == "desk/l/c"
 
 
-def test_file_of_a_built_in_model_is_the_built_in_model(tmp_path):
-    include = "<include><uri>model://ground_plane/model.sdf</uri></include>"
-    assert only_obstacle(world_file(tmp_path, include)).name == "ground_plane/link/collision"
-
-
 @pytest.mark.parametrize(
     "broken", ["<description>Tea & cake</description>", "<author></name>", "<name>a</name", "<author>Jos\xe9</author>"]
 )
@@ -45,12 +40,6 @@ def test_only_the_sdf_entry_of_a_model_config_has_to_be_readable(tmp_path, chair
     config.write_text(config.read_text().replace("<model>", f"<model>{broken}"), encoding="latin-1")
     include = "<include><uri>model://chair</uri></include>"
     assert only_obstacle(world_file(tmp_path, include)).name == "chair/l/c"
-
-
-def test_file_uris_are_also_looked_up_in_the_resource_path(tmp_path, chair, monkeypatch):
-    monkeypatch.setenv("GAZEBO_RESOURCE_PATH", str(tmp_path))
-    include = "<include><uri>file://models/chair</uri></include>"
-    assert only_obstacle(world_file(tmp_path / "far" / "away", include)).name == "chair/l/c"
 
 
 def test_file_uris_are_looked_up_beside_the_worlds_folder_and_in_exported_media_paths(tmp_path, chair, monkeypatch):
@@ -65,10 +54,3 @@ def test_file_uris_are_looked_up_beside_the_worlds_folder_and_in_exported_media_
     assert "models/chair' was not found" in raised_by(far)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     assert only_obstacle(far).name == "chair/l/c"
-
-
-def test_missing_model_is_reported_with_the_searched_places(tmp_path, chair):
-    message = raised_by(world_file(tmp_path / "worlds", "\n<include><uri>model://stool</uri></include>"))
-    assert message.startswith(f"{tmp_path}/worlds/w.world:4: 'model://stool' was not found; looked for: ")
-    for place in (f"{tmp_path}/models/stool (GAZEBO_MODEL_PATH)", ".gazebo/models/stool", "stool (no such package"):
-        assert place in message
