@@ -68,13 +68,6 @@ def test_where_there_is_less_room_the_robot_starts_where_its_footprint_fits(burg
         )
 
 
-def test_several_robots_start_in_a_corridor_that_is_just_wide_enough_for_them(burger: RobotModel) -> None:
-    walls = tuple(Obstacle(f"w/{y}/c", Pose3D((0.0, y, 0.25)), Box((20.0, 0.1, 0.5))) for y in (-0.2, 0.2))
-    corridor = World("corridor", walls, Pose2D(), (), "", has_spawn=False)
-    robots = robots_from(SimParams.of(robots="5").robots, corridor, lambda _: burger)
-    assert sorted((robot.spawn.x, robot.spawn.y) for robot in robots) == [(x / 2, 0.0) for x in range(-2, 3)]
-
-
 def test_more_robots_than_there_is_room_for_are_refused(burger: RobotModel) -> None:
     with pytest.raises(
         ParameterError, match="world 'stage_1' has room for [0-9]+ around its spawn, 500 were requested"

@@ -1,22 +1,11 @@
 """A fleet: rows of arrays that Python and C share."""
 
-from support import model_named
-
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.robot.base_controller import Limits
-from aro_robocop_goto_as.robot.fleet import COLUMNS, Fleet
+from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.robot.model import RobotModel
 
 LIMITS = Limits(0.22, 2.84, 2.5, 3.2, 0.5)
-
-
-def test_rows_are_in_the_order_of_the_robots(burger: RobotModel) -> None:
-    waffle = model_named("waffle")
-    fleet = Fleet([burger, waffle], [LIMITS, LIMITS._replace(max_v=0.26)], [0.1, 0.2])
-    assert len(fleet) == fleet.struct.n == 2
-    assert fleet.wheels[1].tolist() == [waffle.wheel_radius, waffle.wheel_separation]
-    for name in COLUMNS:
-        assert getattr(fleet.struct, name) == getattr(fleet, name).ctypes.data, name
 
 
 def test_placed_robot_stands_without_a_command_and_keeps_its_wheel_angles(burger: RobotModel) -> None:

@@ -1,18 +1,14 @@
 """Camera images agree with the geometry of the world."""
 
-import math
-from pathlib import Path
 from typing import Callable
 
 import numpy as np
 import pytest
-from support import ROOT, analytic_distances, drive, model_named, world_named
+from support import analytic_distances, drive, model_named, world_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.robot.urdf import load_robot
 from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, points_of
-from aro_robocop_goto_as.sensors.camera_renderer import CameraRenderer
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.simulator import Simulator
@@ -110,20 +106,6 @@ def test_camera_sees_other_robots_but_not_its_own(simulator: Make) -> None:
     assert np.isinf(image.depth[57, [0, -1]]).all()
     between_plates = _image(simulator("empty", model="turtlebot2"))
     assert between_plates.depth.min() > 0.6, "not the floor, which is 0.7 m away at the image's lower edge"
-
-
-def test_a_robot_is_seen_at_its_base_wherever_its_centre_of_mass_is(tmp_path: Path) -> None:
-    text, figures = Path(ROOT, "urdf", "burger.urdf").read_text(), model_named("burger").figures
-    spec, above = CameraSpec(64, 48, 1.0, 0.1, 5.0), Pose3D.from_xyz_rpy((0.0, 0.0, 1.0), (math.pi, 0.0, 0.0))
-    depths = []
-    for origin in ("", '<origin xyz="0.05 0 0.02" rpy="0 0 1"/>'):
-        path = tmp_path / "robot.urdf"
-        path.write_text(text.replace("<inertial>", f"<inertial>{origin}", 1))
-        renderer = CameraRenderer(world_named("empty"), [model_named("burger"), load_robot(str(path), figures)])
-        depths.append(renderer.render(spec, above, 0, [Pose3D(), Pose3D((0.1, 0.0, 0.01))], 0.0).depth)
-        renderer.close()
-    assert depths[0].min() < 0.9
-    assert np.abs(depths[1] - depths[0]).max() < 1e-5
 
 
 def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> None:

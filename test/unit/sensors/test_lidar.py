@@ -3,27 +3,13 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.caster_library import load
-from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.scan_profiles import Accuracy, LidarSpec
-from aro_robocop_goto_as.world.model import Cylinder, Obstacle, World
-
-SPEC = LidarSpec(0.0, 6.28319, 360, 0.12, 10.0, 0.01)
-
-
-def test_beams_start_at_the_scanner_and_turn_counter_clockwise() -> None:
-    post = World("post", (Obstacle("post", Pose3D((1.0, 4.0, 0.2)), Cylinder(0.5, 1.0)),), Pose2D(), (), "")
-    distances = Lidar(SPEC).fan.cast(np.array([[1.0, 2.0, 0.0]]), CrossSection(post, 0.182), SPEC.range_max)[0]
-    assert np.nanargmin(distances) == 90
-    assert distances.min() == pytest.approx(1.5, abs=1e-3)
-    assert np.isinf(distances[270])
 
 
 def _normals(seed: int, stream: int, step: int, count: int) -> np.ndarray:

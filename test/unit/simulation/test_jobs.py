@@ -4,7 +4,6 @@ import threading
 from typing import List
 
 import pytest
-from fakes import FakeClock
 
 from aro_robocop_goto_as.errors import ShutdownError, WorldError
 from aro_robocop_goto_as.simulation.jobs import Clock, Jobs
@@ -33,16 +32,3 @@ def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() 
     assert outcomes == [threading.get_ident(), "raised"]
     with pytest.raises(ShutdownError):
         jobs.call(lambda: None)
-
-
-def test_jobs_that_come_while_the_queued_ones_are_run_stay_queued() -> None:
-    jobs, run = Jobs(FakeClock()), []
-
-    def again() -> None:
-        run.append(1)
-        jobs.post(again)
-
-    jobs.post(again)
-    jobs.post(again)
-    jobs.run_queued()
-    assert len(run) == len(jobs) == 2

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support import ORIGIN, analytic_distances, drive, everything, world_named
 
-from aro_robocop_goto_as.errors import CommandError, PlaceError
+from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -104,16 +104,6 @@ def test_same_seed_gives_the_same_run_whatever_is_subscribed(simulator: Make) ->
     assert run(1, True) == run(1, False)
     assert run(1, True)[0] != run(2, True)[0]
     assert run(1, True)[1] == run(2, True)[1]
-
-
-def test_invalid_command_leaves_the_previous_one_in_force(simulator: Make) -> None:
-    sim = simulator()
-    sim.command(Twist2D(0.2, 0.0))
-    with pytest.raises(CommandError):
-        sim.command(Twist2D(math.nan, 0.0))
-    for _ in range(100):
-        sim.step({})
-    assert sim.velocity().v == pytest.approx(0.2, rel=0.02)
 
 
 # Odometry in the simulator

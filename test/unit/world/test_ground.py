@@ -4,15 +4,14 @@ import math
 
 import pytest
 import trimesh
-from sdf_files import collision, model, sdf_file, world_file
+from sdf_files import collision, model, world_file
 from support import drive, model_named
 
-from aro_robocop_goto_as.geometry import Pose3D, Twist2D
+from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.rates import SCAN
-from aro_robocop_goto_as.world.edit import requested_model, with_model, without_model
 from aro_robocop_goto_as.world.load import load_world
 
 PLANE = "<include><uri>model://ground_plane</uri></include>"
@@ -92,16 +91,3 @@ def test_mesh_is_ground_if_its_top_fills_its_rectangle(tmp_path):
             body = PLANE + slab(f"<mesh><uri>{name}.stl</uri></mesh>", turn=turn)
             heights[name, turn[0]] = load_world(world_file(tmp_path, body)).ground
     assert heights == pytest.approx({("floor", "0"): 0.05, ("floor", "3"): 0.05, ("walls", "0"): 0, ("walls", "3"): 0})
-
-
-def test_ground_follows_slabs_that_are_spawned_and_deleted(tmp_path):
-    world = load_world(world_file(tmp_path, PLANE + slab(box(1, 1, 1), z=0.5, name="crate", at=(3.0, 0.0))))
-    xml = sdf_file(tmp_path / "slab.sdf", slab())
-    with open(xml) as text:
-        added = with_model(world, requested_model("grass", text.read(), "", Pose3D(), world.path))
-    assert added.ground == pytest.approx(0.05)
-    assert added.models["crate"].position[2] == pytest.approx(0.45)
-    removed = without_model(added, "grass")
-    assert removed.ground == 0.0
-    assert removed.models["crate"].position[2] == pytest.approx(0.5)
-    assert without_model(world, "crate").obstacles[0] is world.obstacles[0]

@@ -34,13 +34,6 @@ def test_turning_keeps_the_distance_to_the_models_origin(time, turn, x, y):
     assert math.hypot(moved.x - 1.0, moved.y - 2.0) == pytest.approx(math.hypot(x - 1.0, y - 2.0), abs=1e-9)
 
 
-def test_pillars_of_stage_3_circle_and_those_of_stage_4_patrol():
-    circling = [o.at(math.pi / 2 / 0.2).position[:2] for o in world_named("stage_3").moving()]
-    assert circling == [pytest.approx(place) for place in ((-0.6, 0.6), (-0.6, -0.6), (0.6, -0.6), (0.6, 0.6))]
-    patrol = world_named("stage_4").moving()
-    assert [o.at(5.0).position[:2] for o in patrol] == [pytest.approx((0.4, -0.5)), pytest.approx((0.8, -1.4))]
-
-
 @pytest.mark.parametrize("name", ["stage_3", "stage_4"])
 def test_moving_pillars_keep_clear_of_walls_and_spawn(name):
     world = world_named(name)

@@ -68,13 +68,10 @@ BROKEN = {  # case: (text of the YAML, line of the error or None, what the messa
     "not YAML": ("image: [m.pgm\nresolution: 1\n", 2, ["YAML"]),
     "too deep": ("image: " + 5000 * "[", None, ["nested too deeply"]),
     "not text": ("image: \ud800", None, ["not UTF-8 text"]),
-    "a control character": ("image: \0", None, ["special characters are not allowed"]),
     "a list": ("- m.pgm\n", 1, ["image, resolution, origin"]),
-    "empty": ("", 1, ["image, resolution, origin"]),
     "keys missing": ("image: m.pgm\nresolution: 0.05\n", None, ["no origin, negate", "occupied_thresh"]),
     "image missing": (yaml_of(image="none.pgm"), 1, ["none.pgm", "no file"]),
     "image not one": (yaml_of(image="text.pgm"), None, ["text.pgm", "PGM, PNG or BMP"]),
-    "image cut short": (yaml_of(image="cut.png"), None, ["cut.png", "PGM, PNG or BMP"]),
     "image a photograph": (yaml_of(image="m.jpg"), None, ["m.jpg", "JPEG", "PGM, PNG or BMP"]),
     "no resolution": (yaml_of(resolution="0"), 2, ["resolution is '0'", "greater than 0"]),
     "resolution in words": (yaml_of(resolution="5 cm"), 2, ["resolution is '5 cm'", "metres per cell"]),
@@ -84,15 +81,6 @@ BROKEN = {  # case: (text of the YAML, line of the error or None, what the messa
         3,
         ["origin is [0, 1e300, 0], expected", "within +-1e+06 m"],
     ),
-    "origin in words": (yaml_of(origin="[0, left, 0]"), 3, ["origin is [0, left, 0], expected three numbers"]),
-    "origin of one number": (yaml_of(origin="0"), 3, ["origin is '0', expected three numbers"]),
-    "origin within a list": (yaml_of(origin="[[0, 0, 0]]"), 3, ["origin is [[0, 0, 0]], expected three numbers"]),
-    "origin by names": (
-        yaml_of(origin="{x: 0, y: 0, yaw: 0}"),
-        3,
-        ["origin is {x: 0, y: 0, yaw: 0}, expected three numbers"],
-    ),
-    "origin without end": (yaml_of(origin=str([0] * 99)), 3, ["origin is a sequence, expected three numbers"]),
     "origin not finite": (yaml_of(origin="[0, .nan, 0]"), 3, ["origin", "[x, y, yaw]"]),
     "negate unclear": (yaml_of(negate="maybe"), 4, ["negate is 'maybe'", "0 or 1"]),
     "threshold in percent": (yaml_of(occupied_thresh="65"), 5, ["occupied_thresh is '65'", "from 0 to 1"]),
@@ -104,10 +92,9 @@ BROKEN = {  # case: (text of the YAML, line of the error or None, what the messa
 @pytest.mark.parametrize("case", BROKEN)
 def test_broken_map_is_refused_with_file_line_and_key(tmp_path, case):
     text, line, named = BROKEN[case]
-    for name, pixels in {"m.pgm": room(), "m.jpg": room(), "cut.png": room()}.items():
+    for name, pixels in {"m.pgm": room(), "m.jpg": room()}.items():
         Image.fromarray(pixels.astype(np.uint8)).save(str(tmp_path / name))
     (tmp_path / "text.pgm").write_text("no image")
-    (tmp_path / "cut.png").write_bytes((tmp_path / "cut.png").read_bytes()[:60])
     path = write_yaml(tmp_path, text)
     with pytest.raises(WorldError) as caught:
         load_world(path)

@@ -1,13 +1,12 @@
 """Poses compose through models, links, frames and joints."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sdf_files import SPHERE, collision, model, world_file
 
 from aro_robocop_goto_as.errors import WorldError
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, rotation_matrix
+from aro_robocop_goto_as.geometry import Pose3D, rotation_matrix
 from aro_robocop_goto_as.world.load import load_world
 
 coordinate = st.floats(-10.0, 10.0)
@@ -42,21 +41,6 @@ def test_poses_of_model_link_and_collision_compose(tmp_path_factory, in_world, i
 
 
 RELATIVE = "<pose relative_to='{}'>1 0 0 0 0 0</pose>"
-
-
-@pytest.mark.parametrize("attribute", ["relative_to", "frame"])
-def test_pose_may_name_its_default_frame(tmp_path, attribute):
-    world, own, empty = (f"<pose {attribute}='{name}'>1 0 0 0 0 0</pose>" for name in ("world", "__model__", ""))
-    spawn = f'<frame name="robot_spawn">{world}</frame>'
-    include = f"<include><uri>model://ground_plane</uri>{world}</include>"
-    link = f'<link name="l">{own}{collision(SPHERE, pose=empty)}</link>'
-    body = f'<model name="m">{world}<model name="in">{own}{link}</model></model>'
-    world_read = load_world(world_file(tmp_path, spawn + include + body))
-    assert world_read.spawn == Pose2D(1.0, 0.0, 0.0)
-    assert {o.name: o.pose.position for o in world_read.obstacles} == {
-        "ground_plane/link/collision": (1, 0, 0),
-        "m/in/l/c": (4, 0, 0),
-    }
 
 
 def test_pose_relative_to_the_world_counts_from_the_world_at_any_depth(tmp_path):

@@ -128,11 +128,6 @@ def test_models_that_include_each_other_are_refused_with_the_chain_of_includes(t
     assert message.endswith(f"; included by {chair}/new.sdf:2; included by {world}:3")
 
 
-def test_models_nested_too_deeply_are_refused(tmp_path):
-    body = '<model name="m">' * 30 + "</model>" * 30
-    assert "more than 20 models within each other; supported: 20" in raised_by(world_file(tmp_path, body))
-
-
 def test_models_that_include_two_each_are_refused_when_they_are_too_many(tmp_path, monkeypatch):
     monkeypatch.setattr(reader, "MAX_MODELS", 50)
     for level in range(14):
