@@ -62,10 +62,6 @@ def test_where_there_is_less_room_the_robot_starts_where_its_footprint_fits(burg
     )
     place = free_place(World("alley", blocks, Pose2D(), (), ""), Pose2D(), burger)
     assert 0.2 + 0.125 <= place.x <= 0.6 - 0.125  # the alley is 0.4 m wide
-    with pytest.raises(ParameterError, match="world 'full' has no room for a robot within 30 m of x 0 y 0"):
-        free_place(
-            World("full", (Obstacle("o/l/c", Pose3D(), Box((99.0, 99.0, 1.0))),), Pose2D(), (), ""), Pose2D(), burger
-        )
 
 
 def test_more_robots_than_there_is_room_for_are_refused(burger: RobotModel) -> None:
@@ -100,3 +96,9 @@ def test_in_a_map_the_robot_starts_in_a_known_cell_with_room_for_its_model(tmp_p
     assert _start_in_map()(path)[0].x < 2.0
     (wide,) = _start_in_map("waffle")(path)
     assert 1.22 <= wide.x <= 1.68 and abs(wide.y) <= 0.78
+
+
+@pytest.mark.parametrize("value", [0, 205])
+def test_a_map_without_room_for_a_robot_is_refused(tmp_path: Path, value: int) -> None:
+    with pytest.raises(ParameterError, match="world 'm' has no room for a robot within 30 m of x 0 y 0"):
+        _start_in_map()(write_map(tmp_path, np.full((9, 9), value)))

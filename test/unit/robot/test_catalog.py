@@ -74,7 +74,6 @@ def test_unknown_model_is_refused_with_the_known_ones(name: str) -> None:
         ("radius: 0.1\n", "radius: unknown parameter"),
         ("- 1\n", "expected lines of 'NAME: VALUE'"),
         ("a: [\n", ":2: not YAML: expected the node content"),
-        pytest.param("a: " + 5000 * "[", "nested too deeply", id="nested too deeply"),
     ],
 )
 def test_wrong_or_missing_figures_are_refused_by_name(tmp_path: Path, text: "str | bytes", expected: str) -> None:

@@ -17,7 +17,7 @@ def made(directory, seed):
     return load_world(str(path))
 
 
-@pytest.mark.parametrize("seed", [*range(1, 10), 2**31 - 1])
+@pytest.mark.parametrize("seed", [1, 2, 3, 2**31 - 1])
 def test_goals_of_a_random_world_are_reachable_and_its_walls_are_closed(tmp_path, seed):
     world = made(tmp_path, seed)
     goals = re.findall(r"\((\d), (\d)\)", random_world(seed).split("Free goals:")[1])
@@ -34,7 +34,7 @@ def test_random_world_depends_only_on_its_seed(tmp_path):
     assert all(a != b for a, b in itertools.combinations(texts, 2))
 
 
-@pytest.mark.parametrize("seed", range(1, 6))
+@pytest.mark.parametrize("seed", [1, 2, 3])
 def test_lanes_through_every_cell_have_the_documented_width(tmp_path, seed):
     world = made(tmp_path, seed)
     goals = re.findall(r"\((\d), (\d)\)", random_world(seed).split("Free goals:")[1])
