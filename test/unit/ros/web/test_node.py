@@ -1,9 +1,6 @@
 """Arguments of robocop_web are accepted unchanged or refused by name."""
 
-import os
-
 import pytest
-from support import ROOT
 
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.ros.web.node import load_params
@@ -40,10 +37,3 @@ def test_wrong_arguments_are_refused_with_the_reason(argument, reason):
     with pytest.raises(ParameterError) as refused:
         load_params([argument])
     assert reason in str(refused.value)
-
-
-def test_every_argument_is_documented():
-    with open(os.path.join(ROOT, "docs", "web.md"), encoding="utf-8") as stream:
-        text = stream.read()
-    for name in WebParams.__dataclass_fields__:
-        assert f"`{name}`" in text

@@ -64,18 +64,6 @@ def test_a_goal_that_may_be_executed_is_cancelled_once_when_driving_begins(monke
     pad.stop()
 
 
-@pytest.mark.parametrize("executing, cancels", [(True, 1), (False, 0)])
-def test_a_goal_is_cancelled_while_a_key_is_held_when_the_server_connects_only_then(monkeypatch, executing, cancels):
-    pad, context = driven(monkeypatch, Publishers())
-    pad.drive(1, LEFT)
-    context.state.change(answering=True, executing=executing)
-    pad.drive(1, LEFT)
-    context.state.change(executing=True)  # a goal that is sent on purpose while the key is held
-    pad.drive(1, LEFT)
-    assert context.requests.publish.call_count == cancels
-    pad.stop()
-
-
 def test_a_page_that_only_watches_drives_nothing(monkeypatch):
     monkeypatch.setattr(teleop, "start_daemon", lambda *_: None)
     pad, _ = driven(monkeypatch, Publishers(), live=False)
