@@ -42,7 +42,7 @@ def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
     if timeout != 0 and not flags & socket.MSG_DONTWAIT:
-        if not readers.poll([(connection.fileno(), select.POLLIN)], timeout):
+        if not readers.poll([(connection.fileno(), select.POLLIN)], timeout, receives=True):
             raise socket.timeout("timed out")
 
 
@@ -193,6 +193,7 @@ def install() -> None:
     @functools.wraps(close)
     def forget_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
         _forget(closed)
+        readers.close(closed.fileno())
         close(closed, *arguments, **options)
 
     @functools.wraps(init)

@@ -61,8 +61,11 @@ def _ready(files: Files) -> List[int]:
     return [entry.revents for entry in entries]
 
 
-def poll(files: Files, timeout: Optional[float] = None) -> bool:
-    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
+def poll(files: Files, timeout: Optional[float] = None, receives: bool = False) -> bool:
+    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before.
+
+    With `receives`, as for recv() and accept(), this also ends when another thread closes the only one.
+    """
     if any(_ready(files)) or any(file < 0 for file, _ in files):  # a closed one fails at once
         return True
     me = _thread.get_ident()
@@ -74,7 +77,7 @@ def poll(files: Files, timeout: Optional[float] = None) -> bool:
         return False
     until_ns = scheduler.deadline(timeout)
     while True:
-        waiter = Waiter(me, files)
+        waiter = Waiter(me, files, receives)
         with scheduler.guard:
             reading[me] = waiter
             scheduler.park(waiter, until_ns)
@@ -82,8 +85,21 @@ def poll(files: Files, timeout: Optional[float] = None) -> bool:
             scheduler.wait(waiter)
         finally:
             reading.pop(me, None)
-        if not waiter.granted or any(_ready(files)):  # else another thread has read it
+        # Another thread may have read it meanwhile, or closed it and opened another file of this number.
+        if not waiter.granted or not waiter.files or any(_ready(files)):
             return waiter.granted
+
+
+def close(file: int) -> None:
+    """End the waits of threads that receive from a file that is about to be closed.
+
+    Linux ends them at shutdown(), but they have their turns when its caller has closed the file, too.
+    """
+    with scheduler.guard:
+        for waiter in reading.values():
+            if waiter.receives and not waiter.awake and waiter.files[0][0] == file:
+                waiter.files, waiter.granted = [], True
+                scheduler.wake(waiter)
 
 
 def _poll(files: Files, timeout: Optional[float]) -> bool:

@@ -253,6 +253,29 @@ time.sleep(1.0)
             assert program.go_on(2 * STEP).sent == []
 
 
+def test_thread_that_receives_ends_when_another_one_closes_its_socket(tmp_path):
+    text = """
+import socket, threading
+def receive(connection):
+    try: print(connection.recv(1))
+    except OSError: print("closed", flush=True)
+server, connections = socket.create_server(("127.0.0.1", 0)), []
+for _ in range(3):
+    client = socket.create_connection(server.getsockname())
+    reader = threading.Thread(target=receive, args=[client])
+    reader.start()
+    time.sleep(0.1)
+    connections.append(server.accept()[0])
+    client.shutdown(socket.SHUT_RDWR)
+    client.close()
+    client = socket.create_connection(server.getsockname())  # has the descriptor
+    connections.append(client)
+    reader.join()
+print(threading.active_count(), round(time.monotonic() - start, 3), flush=True)
+"""
+    assert printed(tmp_path, text, 1.0) == ["closed"] * 3 + ["1 0.3"]
+
+
 def test_threads_that_have_data_to_read_go_on_in_the_order_in_which_the_grader_publishes(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
