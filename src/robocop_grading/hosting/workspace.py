@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -24,7 +25,10 @@ COMPAT = ("aro_sim", "gazebo_msgs")
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
 LOG_LINES = 25  # of a failed build's log that are shown
-MOST_SHOWN = 4_000  # bytes of them
+MOST_SHOWN = 4_000  # characters of them
+MOST_READ = 200_000  # bytes of a log's end
+# By CMake, Python, GCC and make.
+FIRST_ERROR = re.compile(r"^(CMake Error|Traceback|.*\berror: |make.*\*\*\*)", re.MULTILINE)
 
 
 def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
@@ -105,11 +109,20 @@ def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) 
             output,
             output,
         )
-        output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_SHOWN))
-        last = "\n".join(output.read().decode(errors="replace").splitlines()[-LOG_LINES:]) if status != 0 else ""
+        output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
+        text = output.read().decode(errors="replace") if status != 0 else ""
     if status != 0:
-        raise HostingError(f"{names} can't be built:\n{last}\nfull log: {log}")
+        raise HostingError(f"{names} can't be built:\n{error_of(text, folder)}\nfull log: {log}")
     return sourced(folder / "devel" / "setup.bash", underlay, run)
+
+
+def error_of(log: str, folder: Path) -> str:
+    """The part of a failed build's log that begins with the first error, else its end; paths are as from `folder`."""
+    log = log.replace(f"{folder}/", "")
+    error = FIRST_ERROR.search(log)
+    lines = log[error.start() :].splitlines()[:LOG_LINES] if error else log.splitlines()[-LOG_LINES:]
+    shown = "\n".join(lines)
+    return shown[:MOST_SHOWN] if error else shown[-MOST_SHOWN:]
 
 
 def build_once(

@@ -3,7 +3,15 @@
 from pathlib import Path
 from typing import Dict
 
+import pytest
 from support import ROOT
+
+from robocop_grading.hosting.workspace import error_of
+
+WARNING = """-- catkin 0.8.10
+CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):
+  Unknown message generator specified in ROS_LANG_DISABLE: gennodejs
+"""
 
 
 def _md5sums() -> Dict[str, str]:
@@ -56,3 +64,20 @@ def test_gazebo_types_have_the_md5sums_of_the_originals() -> None:
         "SetPhysicsProperties.srv": "97e2057080558ce4730434b5fae75c91",
         "SpawnModel.srv": "9ed9c82c96abe1a00c3e8cdaeee24413",
     }
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        "CMake Error at lab/CMakeLists.txt:12 (ad_message_files):",
+        "lab/x.cpp:1:14: error: 'retrn' was not declared in this scope",
+        "Traceback (most recent call last):",
+    ],
+)
+def test_log_of_a_failed_build_is_shown_from_the_first_error_with_paths_inside_the_workspace(error: str) -> None:
+    log = f"{WARNING}{error.replace('lab', '/build/lab')}\n" + "further\n" * 100
+    assert error_of(log, Path("/build")).splitlines()[:2] == [error, "further"]
+
+
+def test_log_of_a_failed_build_without_an_error_is_shown_by_its_end() -> None:
+    assert error_of("line\n" * 100 + "last\n", Path("/build")).splitlines()[-2:] == ["line", "last"]
