@@ -292,6 +292,12 @@ def write(answer):
 UNREADABLE = "answer to the grader can't be read"
 LIES = {  # code after LIE, and what the report says
     "silence": ("def answer(data):\n    while True: scheduler.sleep(0.01)\nwrite(answer)", "it stopped answering"),
+    "two_threads_silence": (
+        "def answer(data):\n"
+        "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
+        "    while True: scheduler.sleep(0.01)\nwrite(answer)",
+        "it stopped answering",
+    ),
     "nested": ("text = '[' * 400_000\nchannel.json = Json", UNREADABLE),
     "malformed": ('text = \'{"node": 3, "published": [[[]]], "subscribed": 7}\'\nchannel.json = Json', UNREADABLE),
     "no_time": ("write(lambda _: b'0 0 0\\n')", "the node's time did not go on"),

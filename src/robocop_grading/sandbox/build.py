@@ -19,7 +19,7 @@ from .stillness import LOOK, Stillness
 
 MAX_SOURCE = 64 * 1024**2  # bytes of a package
 BUILD_TIME = 180.0  # [s] of processor time
-MOST_STILL = 180  # looks at a command that waits for something that does not come
+MAX_IDLE = 180.0  # [s, wall] for a command that waits for something that does not come
 NO_TIME = 900.0  # [s, wall]
 PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables passed on; the others may be private
 PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
@@ -69,7 +69,7 @@ def _wait(process: "child.Child[bytes]", name: str) -> int:
     while True:
         with contextlib.suppress(subprocess.TimeoutExpired):
             return process.wait(LOOK)
-        if stillness.look() >= MOST_STILL:
+        if stillness.look() > MAX_IDLE:
             raise GradingError(f"{name} waits for something that does not come")
         if time.monotonic() > deadline:
             raise NoTimeError(f"{name} was not done within {NO_TIME:g} s")

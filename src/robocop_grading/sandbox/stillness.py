@@ -1,62 +1,51 @@
-"""Whether processes do nothing at all, which no load of the machine can make them look like.
+"""For how long processes do nothing, which no load of the machine can make them look like.
 
-A thread that waits for the processor is shown as running (R), and one that waits for a disk as D. So a process is still
-only if it waits for something that does not come, however slow the machine is.
+They do something while a thread runs, waits for the processor, or waits for a disk. The kernel counts the first two in
+/proc/PID/task/TID/schedstat; where it has no such file, no process is idle.
 """
 
 import contextlib
 import glob
 import time
 from pathlib import Path
-from typing import Dict, Optional, Set, Tuple
+from typing import Dict
 
 import psutil
 
-LOOK = 1.0  # [s, wall] from one look to the next; a thread of the agent's wakes up every 0.005 s
+LOOK = 1.0  # [s, wall] from one look to the next
 
 
 class Stillness:
     """Looks at a process and its descendants every LOOK seconds."""
 
-    def __init__(self, pid: int, spare: int = 0) -> None:
-        """`spare`: how many threads may run now and then, but not at two looks in a row."""
-        self.looks = 0  # in a row at which no thread had run since the look before, or wanted to
-        self.switches = 0  # how often their threads have begun to run since the first look
-        self._pid, self._spare, self._next = pid, spare, time.monotonic() + LOOK
-        self._wanted = False  # one wanted to run at the look before
-        self._seen: Optional[Dict[str, int]] = None  # thread -> how often it has run
+    def __init__(self, pid: int) -> None:
+        self.idle = 0.0  # [s, wall] in which none of them did anything
+        self._pid, self._looked = pid, time.monotonic()
+        self._work: Dict[str, float] = {}  # by thread, for how long [s] it has run or waited for the processor
 
-    def look(self) -> int:
-        """Look, unless the last look was a moment ago; `looks`."""
-        if time.monotonic() >= self._next:
-            self._next = time.monotonic() + LOOK
-            seen, wanting = self._threads()
-            before = self._seen
-            if before is None:
-                before = self._seen = seen
-                wanting = set(seen)
-            ran = wanting | {thread for thread in {*seen, *before} if seen.get(thread) != before.get(thread)}
-            if len(ran) > self._spare or (wanting and self._wanted):
-                self.looks = 0
-            elif not wanting:  # one that runs now and then is seldom seen to, one that starves always
-                self.looks += 1
-            self._wanted = bool(wanting)
-            self.switches += sum(max(0, count - before.get(thread, 0)) for thread, count in seen.items())
-            self._seen = seen
-        return self.looks
+    def look(self) -> float:
+        """Look, unless the last look was a moment ago; `idle`."""
+        length = time.monotonic() - self._looked
+        if length >= LOOK:
+            self._looked, before = self._looked + length, self._work
+            is_busy = self._look_at_threads()
+            done = sum(max(0.0, seconds - before.get(thread, 0.0)) for thread, seconds in self._work.items())
+            self.idle += 0.0 if is_busy else max(0.0, length - done)
+        return self.idle
 
-    def _threads(self) -> Tuple[Dict[str, int], Set[str]]:
-        """How often each thread has run, and those that run, or wait for the processor or a disk."""
-        found: Dict[str, int] = {}
-        wanting: Set[str] = set()
+    def _look_at_threads(self) -> bool:
+        """Note for how long each thread has worked [s]; return whether one of them works now."""
+        self._work, is_busy = {}, False
         with contextlib.suppress(psutil.Error):
             top = psutil.Process(self._pid)
             for process in (top, *top.children(recursive=True)):
-                for path in glob.glob(f"/proc/{process.pid}/task/*/status"):  # none of a process that has ended
-                    with contextlib.suppress(OSError):  # it has ended
-                        fields = dict(line.split(":", 1) for line in Path(path).read_text().splitlines() if ":" in line)
-                        if fields["State"].split()[0] in "RD":
-                            wanting.add(path)
-                        kinds = ("voluntary_ctxt_switches", "nonvoluntary_ctxt_switches")
-                        found[path] = sum(int(fields[kind]) for kind in kinds)
-        return found, wanting
+                for folder in map(Path, glob.glob(f"/proc/{process.pid}/task/*")):  # none of a process that has ended
+                    try:
+                        state = (folder / "stat").read_text().rpartition(")")[2].split()[0]
+                        ran, waited = map(int, (folder / "schedstat").read_text().split()[:2])
+                    except OSError:
+                        is_busy |= folder.exists()  # else it has ended
+                        continue
+                    is_busy |= state in "RD"
+                    self._work[str(folder)] = (ran + waited) / 1e9
+        return is_busy

@@ -29,10 +29,10 @@ NEVER = 1 << 62  # [ns]
 SHORTLY = 5e-5  # [s, wall] in which a message that was sent arrives
 SOON = 5e-4  # [s, wall] between two looks at whether connections have been made
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
-MOST_STILL = 20  # looks at which the node did not run and did not want to, until it is not waited for any more
+MAX_IDLE = 45.0  # [s, wall] in which the node does nothing, until its answer is not waited for any more, and
+MAX_STALL = 20.0  # [s, wall] likewise for something it has told of
 MAX_STALLS = 2  # times that the node did nothing while what it had told of did not come
 MAX_ROUNDS = 5000  # answers to requests to go on until the same time
-MOST_SWITCHES = 10_000  # times that the threads of a process without agent run; one that ends needs a hundred
 NO_TIME = 900.0  # [s, wall] for one answer
 
 
@@ -165,18 +165,15 @@ class Node:
         with contextlib.suppress(OSError):  # the answer will tell
             self._channel.sendall(f"{request}\n".encode())
 
-    def _wait(
-        self, done: Callable[[], bool], pause: float = POLL, most_switches: float = math.inf, spare: int = 0
-    ) -> bool:
-        """Wait until `done` is true; False if that can't be expected any more, as the node does nothing at all.
+    def _wait(self, done: Callable[[], bool], pause: float = POLL, max_idle: float = MAX_IDLE) -> bool:
+        """Wait until `done` is true; False if the node has done nothing for `max_idle` [s, wall] meanwhile.
 
-        Or, with `most_switches`, if its threads have run that often, or, with `spare`, if no more threads than this
-        run. NoTimeError if the machine has no time for it.
+        NoTimeError if the machine has no time for it.
         """
-        deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid, spare)
+        deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid)
         while not done():
             self._answer_calls()
-            if stillness.look() >= MOST_STILL or stillness.switches > most_switches:
+            if stillness.look() > max_idle:
                 return False
             if time.monotonic() > deadline:
                 raise NoTimeError(f"the node's turn was not over within {NO_TIME:g} s")
@@ -185,7 +182,7 @@ class Node:
 
     def _expect(self, done: Callable[[], bool], pause: float) -> bool:
         """Wait for what the node has told of; return whether it came. GraderLostError if it never comes."""
-        came = self._wait(done, pause)
+        came = self._wait(done, pause, MAX_STALL)
         self._stalls += not came
         if self._stalls > MAX_STALLS:
             raise GraderLostError("the node told the grader of messages or topics that did not come")
@@ -193,8 +190,7 @@ class Node:
 
     def _answer(self) -> Optional[_Answer]:
         """The agent's answer; None if there is none. GraderLostError if it is nothing that an agent says."""
-        # One thread looks whether the others wait. Where no other one runs, it does so for ever.
-        if not self._wait(self._has_answer, pause=0.0, spare=1):
+        if not self._wait(self._has_answer, pause=0.0):
             self._give_up()
         if b"\n" not in self._buffer:
             return None
@@ -226,7 +222,7 @@ class Node:
     def _lose(self) -> None:
         """The agent does not answer: because the process ends, or because the hand-in has ended or stopped it."""
         self._lost, self.next_ns = True, NEVER
-        if not self._wait(self._has_ended, most_switches=MOST_SWITCHES):
+        if not self._wait(self._has_ended):
             self._give_up()
         name = self._topics["node"]
         self._wait(lambda: not ros_internals.hears_from(name), SHORTLY)  # what it has sent before its end counts
