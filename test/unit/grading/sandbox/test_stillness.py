@@ -1,4 +1,4 @@
-"""A process is idle only while none of its threads runs or wants to, which has nothing to do with the machine's load."""
+"""A process is idle only while none of its threads runs or wants to, whatever load the machine has."""
 
 import os
 import signal
