@@ -23,6 +23,7 @@ from .hosting.scripts import (
     choose,
     files_below,
     interpreter,
+    listens_to_clicks,
     obstacles,
     part_of,
 )
@@ -107,9 +108,12 @@ def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -
         lab_environment(share, state),
         scripts,
         notes=[
-            note
-            for script in scripts
-            for note in (*_obstacles(script.part, choices[script.part], is_loose=True), *_advice(script))
+            *_ungraded_bridge(choices),
+            *(
+                note
+                for script in scripts
+                for note in (*_obstacles(script.part, choices[script.part], is_loose=True), *_advice(script))
+            ),
         ],
     )
 
@@ -160,12 +164,18 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
             f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}, or started by the launch "
             f"file; found: {', '.join(names[:MOST_NAMED]) or 'no Python script'}"
         )
-    notes: List[str] = list(found.notes)
+    notes = [*found.notes, *_ungraded_bridge(found.choices)]
     scripts = []
     for part, choice in found.choices.items():
         scripts.append(_script(part, choice, copy))
         notes += [*_obstacles(part, choice), *_advice(scripts[-1])]
     return Submission(package.path.name, [folder, *below], environment, scripts, found.parameters, notes)
+
+
+def _ungraded_bridge(choices: Mapping[str, Choice]) -> Iterator[str]:
+    if set(choices) == {"server"} and listens_to_clicks(choices["server"].path):
+        name = choices["server"].path.name
+        yield f"bridge: not graded: {name} has a bridge, too; only one with a script of its own can be graded"
 
 
 def _advice(script: Script) -> List[str]:

@@ -32,6 +32,7 @@ FIRST_LINE = "#!/usr/bin/env python3"
 NOT_EXECUTABLE = "is not executable"
 BYTE_ORDER_MARK = "begins with a byte-order mark"
 MOST_LINES = 20  # from a script's top in which a #! line is looked for
+IMPORT = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([\w., \t]+)", re.M)
 RELAY = re.compile(rb"^python_script = '([^'\n]+)'$", re.M)  # in what catkin_install_python makes
 
 
@@ -42,7 +43,7 @@ class Choice:
     path: Path
     node: Optional[LaunchNode]
     is_installed: bool  # by catkin_install_python: roslaunch starts it whatever its mode and its first line are
-    others: List[Path]
+    others: List[Path]  # except those that it imports
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class _Candidate:
     node: Optional[LaunchNode]
     is_installed: bool
     rank: Tuple[bool, ...]  # the smallest one is started
+    imports: Set[str]  # names of modules
 
 
 def part_of(path: Path, top: Path) -> str:
@@ -68,6 +70,11 @@ def _part_by_content(content: bytes) -> Tuple[str, bool]:
     if words & SERVERS or (words >= RAW and not has_clicks and not words & CLIENTS):
         return "server", True
     return ("bridge", has_clicks) if has_clicks or words & CLIENTS else ("", False)
+
+
+def listens_to_clicks(path: Path) -> bool:
+    """Return whether a program names the topic of 2D Nav Goals."""
+    return any(CLICKS in word for word in _names_in(read_bytes(path).decode(errors="replace")))
 
 
 def _names_in(code: str) -> Set[str]:
@@ -118,7 +125,8 @@ def choose(
                     f"{names}: each of them could be the {part}, and nothing says which one is started: "
                     "name one in the launch file, or remove the other"
                 )
-            chosen[part] = Choice(best.path, best.node, best.is_installed, [it.path for it in own[1:]])
+            others = [it.path for it in own[1:] if it.path.stem not in best.imports]
+            chosen[part] = Choice(best.path, best.node, best.is_installed, others)
     return chosen
 
 
@@ -133,25 +141,35 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[by
     launched: Dict[str, LaunchNode] = {}  # by type, the first of each
     for started in nodes:
         launched.setdefault(started.type, started)
-    for path in files_below(top):
-        is_named = path.name in PARTS or path.name in launched
-        if not is_named and path.suffix != ".py":
-            continue
-        node = launched.get(path.name)
-        part, is_sure = PARTS.get(path.name, ""), True
-        try:
-            content = read_bytes(path, top)
-        except HostingError:
-            if is_named:
-                raise
-            continue
-        if not part:
-            part, is_sure = _part_by_content(content)
+    contents = dict(_programs(top, {*PARTS, *launched}))
+    parts = {path: _part_by_content(content) for path, content in contents.items()}
+    for path, content in contents.items():
+        node, imports = launched.get(path.name), _imports(content)
+        modules = [found for other, found in parts.items() if found[0] and other != path and other.stem in imports]
+        own = (PARTS[path.name], True) if path.name in PARTS else parts[path]
+        part, is_sure = own if own[0] else max(modules, default=own)
         if part and (is_sure or node is not None):
             is_aside, *place = best_place(path, top, "scripts")
             is_installed = os.path.realpath(os.fsencode(path)) in installed
-            rank = (node is None, is_aside, path.name not in PARTS, not is_sure, not is_installed, *place)
-            yield _Candidate(part, path, node, is_installed, rank)
+            is_module = b"init_node" not in content
+            order = (node is None, is_aside, path.name not in PARTS, is_module, not own[0], not is_sure)
+            yield _Candidate(part, path, node, is_installed, (*order, not is_installed, *place), imports)
+
+
+def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]:
+    """Python files, and files of these names, with their content; HostingError if one of the latter can't be read."""
+    for path in files_below(top):
+        if path.name in names or path.suffix == ".py":
+            try:
+                yield path, read_bytes(path, top)
+            except HostingError:
+                if path.name in names:
+                    raise
+
+
+def _imports(content: bytes) -> Set[str]:
+    """The names in a program's import statements."""
+    return {name for line in IMPORT.findall(content) for name in re.findall(r"\w+", line.decode())}
 
 
 def obstacles(path: Path) -> Iterator[Tuple[str, str]]:

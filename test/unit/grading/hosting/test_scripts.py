@@ -1,7 +1,7 @@
 """The scripts that roslaunch would start, among all that a folder contains."""
 
 from pathlib import Path
-from typing import Dict, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import pytest
 from hosted_packages import tree
@@ -53,6 +53,30 @@ def test_what_is_launched_comes_first_then_what_is_executable(tmp_path: Path) ->
     tree(tmp_path, {f"nodes/{NAME}": "x"})
     (tmp_path / "nodes" / NAME).chmod(0o755)
     assert chosen(tmp_path)[0] == f"nodes/{NAME}"
+
+
+MAIN = "import rospy, goto_server as it\nrospy.init_node('goto')\nit.Server()\n"
+
+
+@pytest.mark.parametrize(
+    "main, expected, others",
+    [
+        ("main.py", "main.py", []),  # goto_server.py is a part of it
+        (NAME, NAME, ["main.py"]),
+        ("test_goto.py", "main.py", ["test_goto.py"]),
+    ],
+)
+def test_program_that_imports_the_server_is_started_not_the_module(
+    tmp_path: Path, main: str, expected: str, others: List[str]
+) -> None:
+    found = choose(tree(tmp_path, {"goto_server.py": SERVER, "main.py": MAIN, main: MAIN, "plot.py": "import main"}))
+    assert found["server"].path.name == expected and [it.name for it in found["server"].others] == others
+
+
+def test_launched_program_is_the_server_that_it_imports(tmp_path: Path) -> None:
+    tree(tmp_path, {"lab/node.py": f"{SERVER}\ninit_node", "lab/run.py": "from lab.node import main\nmain()\n"})
+    assert chosen(tmp_path) == ("lab/node.py", None)
+    assert chosen(tmp_path, "run.py") == ("lab/run.py", None)
 
 
 def test_what_the_build_installs_is_started_whatever_its_mode(tmp_path: Path) -> None:
