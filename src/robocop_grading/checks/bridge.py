@@ -52,7 +52,7 @@ def _other_position(click: Click, goal: Goal) -> str:
     """Which mistake explains a goal's position that is not the click's."""
     x, y = click.x, click.y
     for cause, there in (
-        ("The goal's position is never set", (0.0, 0.0)),
+        ("The goal's position is 0, as if it were not set", (0.0, 0.0)),
         ("x and y are swapped", (y, x)),
         ("The goal's y is not set", (x, 0.0)),
         ("The goal's x is not set", (0.0, y)),

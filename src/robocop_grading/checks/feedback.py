@@ -114,7 +114,7 @@ def _deviation(index: int, pair: Pair) -> float:
 
 def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
     """The failure with the causes that fit in all scenarios."""
-    if failure.kind not in (UNTRUE, WRONG_POSITION):
+    if failure.kind != UNTRUE:
         return failure
     scenarios = [_compared(index, records[name]) for name in names]
     tolerance = TOLERANCES[index]
@@ -202,10 +202,10 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
 
 
 def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:
-    """The first wrong value with the likely cause of all of them, among all pairs."""
+    """The first wrong value; `_explained` names its cause."""
     wrong = _wrong(pairs, partial(_deviation, index), tolerance)
     if not wrong:
         return None
-    first, cause = wrong[0], likely_cause(index, wrong, [pairs])
+    first = wrong[0]
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, cause, UNTRUE)
+    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", UNTRUE)

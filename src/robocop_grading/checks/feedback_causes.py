@@ -19,6 +19,8 @@ MOST_UNEXPLAINED = 0.3  # share of all wrong values
 MOST_PAIRS = 100  # of a scenario that are compared
 LARGE = 7.0  # [m], [rad] values beyond it are squares or degrees, of which tolerances are ten times as large
 FAR = 1.0  # [m], [rad] that a miss counts at most
+SCALED = 0.2  # [m], [rad] true errors that are larger tell by which factor others differ from them
+MAX_SPREAD = 0.1  # of such a factor
 OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
@@ -200,6 +202,12 @@ def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     if abs(middle) > OFFSET and _fits(misses, index):
         word = "large" if middle > 0.0 else "small"
         return text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
+    both = [it for pairs in scenarios for it in pairs if abs(it.truth[index]) > SCALED]
+    factors = [it.feedback.errors[index] / it.truth[index] for it in both] or [1.0]
+    factor = median(factors)
+    steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MOST_WRONG * len(factors)
+    if steady and abs(factor - 1.0) > 2.0 * MAX_SPREAD:
+        return text("{} is always {:.3g} times the true one: is its unit that of the handout?", ERRORS[index], factor)
     return text(OTHERWISE[index])
 
 

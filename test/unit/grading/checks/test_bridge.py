@@ -85,7 +85,7 @@ def test_too_few_reports_while_the_goal_is_active_fail(times: Tuple[float, ...],
     [
         (-0.4, 1.2, "x and y are swapped"),
         (1.2, 0.4, "sign of y"),
-        (0.0, 0.0, "never set"),
+        (0.0, 0.0, "as if it were not set"),
         (1.2, 0.0, "y is not set"),
         (5.0, 5.0, "does not have the message's position"),
     ],

@@ -67,6 +67,8 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("drives_straight", commanded(lambda c: replace(c, w=0.5)), "keeps turning"),
     ("reaches_goal", changed(results=()), "no terminal state"),
     ("feedback_position", fed_back(position=lambda d: d - 0.1), "always 0.10 m too small"),
+    ("feedback_position", fed_back(position=lambda d: 100.0 * d), "position_error is always 100 times the true one"),
+    ("feedback_angle", fed_back(angle=lambda a: a / 2.0), "angle_error is always 0.5 times the true one"),
     ("feedback_angle", fed_back(angle=lambda a: a + 0.4), "always 0.40 rad too large"),
     ("feedback_position", OLD, "position_error in the feedback is old"),
     ("reaches_goal", LATE, "stands at the goal, but the result comes later"),
@@ -91,9 +93,9 @@ WRONG: List[Tuple[str, Record, str]] = [
 
 @pytest.mark.parametrize("name, record, words", WRONG, ids=lambda it: it if isinstance(it, str) else "")
 def test_mistake_fails_its_check_with_the_cause(name: str, record: Record, words: str) -> None:
-    verdict = CHECKS[name](record, LIMITS)
+    verdict, explain = CHECKS[name](record, LIMITS), CHECKS[name].explain
     assert isinstance(verdict, Failed), verdict
-    assert words in verdict.cause
+    assert words in (explain({"left": record}, ["left"], verdict) if explain else verdict).cause
 
 
 @pytest.mark.parametrize(
