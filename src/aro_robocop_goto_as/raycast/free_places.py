@@ -41,6 +41,13 @@ class _Room:
         return self._distance.nearest(x, y).distance
 
 
+def occupant(world: World, pose: Pose2D, model: RobotModel) -> str:
+    """What is where a robot has no room, in words that follow "is": an obstacle, or an unknown cell of a map."""
+    if world.occupancy is not None and not world.occupancy.is_known(pose.x, pose.y):
+        return "unknown in the map"
+    return f"occupied by '{ObstacleDistance(world, body_heights(model)).nearest(pose.x, pose.y).name}'"
+
+
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
     """The pose itself if a robot's footprint has room there, else the nearest pose of a grid with room, of equal yaw.
 

@@ -127,7 +127,8 @@ class World:
 
     obstacles: in the file's order, the ground included
     spawn: world_from_footprint of a robot at the start [m, rad]
-    has_spawn: whether the file says so; otherwise `spawn` is the origin, where there may be no room for a robot
+    has_spawn: whether the file says so; otherwise `spawn` is where a robot saved with the world stood, or
+        the origin, and there may be no room for a robot
     ignored: what may have an effect in Gazebo, such as "plugin 'lift' (line 4)"
     approximated: each element that differs from the file, such as "'hill/link/c' is left out: <heightmap> (line 4)"
     path: the file, as it was given to load_world

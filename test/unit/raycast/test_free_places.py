@@ -12,7 +12,7 @@ from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.free_places import free_place
+from aro_robocop_goto_as.raycast.free_places import free_place, occupant
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
@@ -47,6 +47,12 @@ def test_in_a_world_without_a_spawn_the_robot_starts_where_there_is_room(model: 
     (robot,) = robots_from(SimParams.of(model=model).robots, NO_SPAWN, model_named)
     gaps = [math.dist((robot.spawn.x, robot.spawn.y), o.pose.position[:2]) - 0.15 for o in PILLARS]
     assert min(gaps) >= least and math.hypot(robot.spawn.x, robot.spawn.y) < 0.6
+
+
+def test_what_is_in_the_way_is_named(tmp_path: Path, burger: RobotModel) -> None:
+    assert occupant(NO_SPAWN, Pose2D(), burger) == "occupied by 'pillar_0_0/link/c'"
+    corner = load_world(write_map(tmp_path, room(), origin="[1, -0.7, 0]"))
+    assert occupant(corner, Pose2D(), burger) == "unknown in the map"
 
 
 def test_a_spawn_that_is_given_or_that_has_room_is_kept(burger: RobotModel) -> None:

@@ -8,6 +8,7 @@ import rospy
 
 from ...errors import PlaceError, WorldError
 from ...names import PACKAGE
+from ...raycast.free_places import occupant
 from ...robot.catalog import load_model
 from ...sim_params import SimParams
 from ...simulation.factory import make_simulator, robots_from
@@ -51,12 +52,15 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
         rospy.loginfo("world %s has moving obstacles, which are disabled; moving:=true enables them", world.name)
     rospy.loginfo("world %s from %s", world.name, world.path)
     first = simulator.robots[0].spawn
-    is_elsewhere = not world.has_spawn and (first.x, first.y) != (0.0, 0.0)
+    is_elsewhere = not world.has_spawn and first != world.spawn
     if is_elsewhere and not p.robots.spawn.strip() and (p.robots.robots.strip() or "1").isdecimal():
         rospy.logwarn(
-            "world %s does not say where robots start, and (0, 0) is occupied; spawning at the nearest free pose "
+            "world %s does not say where robots start, and (%g, %g) is %s; spawning at the nearest free pose "
             "(%.2f, %.2f); spawn:='X Y' chooses another one",
             world.name,
+            world.spawn.x,
+            world.spawn.y,
+            occupant(world, world.spawn, simulator.robots[0].model),
             first.x,
             first.y,
         )

@@ -1,5 +1,6 @@
 """Read the YAML file of a map_server map."""
 
+import ntpath
 import os
 from dataclasses import dataclass
 from typing import Any, Dict, Tuple
@@ -19,7 +20,10 @@ _BOOLEANS = {"0": False, "false": False, "1": True, "true": True}
 
 @dataclass(frozen=True)
 class MapSpec:
-    """The entries of the YAML file, named as on wiki.ros.org/map_server; image: a path; unknown: keys not used here."""
+    """The entries of the YAML file, named as on wiki.ros.org/map_server; image: a path; unknown: keys not used here.
+
+    image_beside: what is to be said of an image that lies beside the file instead of where the file says, or empty
+    """
 
     image: str
     resolution: float
@@ -29,6 +33,7 @@ class MapSpec:
     free_thresh: float
     mode: str
     unknown: Tuple[str, ...]
+    image_beside: str
 
 
 class _Entries:
@@ -98,8 +103,19 @@ def read_spec(path: str) -> MapSpec:
     mode = entries.text("mode", " or ".join(MODES)) if "mode" in entries.nodes else MODES[0]
     if mode not in MODES:
         raise entries.error("mode", " or ".join(MODES))
-    image = os.path.join(os.path.dirname(path), entries.text("image", f"the name of a {SUPPORTED} file"))
-    if not os.path.isfile(image):
-        raise entries.error("image", f"a {SUPPORTED} file, but there is no file {image}")
+    image, image_beside = _image(entries)
     unknown = tuple(key for key in entries.nodes if key not in (*_REQUIRED, "mode"))
-    return MapSpec(image, resolution, Pose2D(x, y, wrap_angle(yaw)), _BOOLEANS[negate], occupied, free, mode, unknown)
+    origin = Pose2D(x, y, wrap_angle(yaw))
+    return MapSpec(image, resolution, origin, _BOOLEANS[negate], occupied, free, mode, unknown, image_beside)
+
+
+def _image(entries: _Entries) -> Tuple[str, str]:
+    """The path of the image, and what is to be said of it: another machine's path means the file of that name here."""
+    folder, given = os.path.dirname(entries.path), entries.text("image", f"the name of a {SUPPORTED} file")
+    image, name = os.path.join(folder, given), ntpath.basename(given)  # which knows both machines' separators
+    if os.path.isfile(image):
+        return image, ""
+    beside = os.path.join(folder, name)
+    if (os.path.isabs(given) or ntpath.isabs(given)) and os.path.isfile(beside):
+        return beside, f"there is no image {given}; {name} beside the map's file is used"
+    raise entries.error("image", f"a {SUPPORTED} file, but there is no file {image}")

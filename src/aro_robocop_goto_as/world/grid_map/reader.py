@@ -28,4 +28,5 @@ def read_map(path: str) -> World:
     )
     name = os.path.splitext(os.path.basename(path))[0]
     ignored = tuple(f"key '{key}' of the map" for key in spec.unknown)
-    return World(name, obstacles, Pose2D(), ignored, path, occupancy=occupancy, has_spawn=False)
+    different = (spec.image_beside,) if spec.image_beside else ()
+    return World(name, obstacles, Pose2D(), ignored, path, occupancy=occupancy, has_spawn=False, approximated=different)

@@ -1,6 +1,7 @@
 """Read the worlds and models of SDF files; only their collisions are kept, as these are what robots can touch."""
 
 import os
+import re
 from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
@@ -14,6 +15,7 @@ from ..model import Obstacle, World
 from ..scripted_motion import Motion
 from . import frames, uris, xml
 from .motion_plugin import is_motion, motion_of, require_movable_shape
+from .saved_robot import is_robot, is_robot_name
 from .shapes import read_shape
 from .state import SavedPoses, state_poses
 
@@ -32,6 +34,8 @@ _UNUSED: Mapping[str, str] = {
     " particle_emitter projector self_collide sensor velocity_decay visual",
     "collision": "frame laser_retro max_contacts surface",
 }
+# Plugins of a <world> that belong to the simulator, such as gz-sim-physics-system: without effect here.
+_OF_SIMULATOR = re.compile(r"(lib)?((gz-sim|ignition-gazebo)\d?-.*system|gazebo_ros_(factory|init|state|api|force))")
 # Models of Gazebo that may be included without having their files; None: without effect here.
 _BUILT_IN: Mapping[str, Optional[bytes]] = {
     "sun": None,
@@ -52,10 +56,9 @@ def read_world(path: str) -> World:
         return reader.world(xml.name_of(root))
     reader.check_children(root, "frame", "include", "model", "state")
     reader.state = state_poses(root, reader.report)
+    reader.spawn, reader.keeps_robots = _spawn(root), False
     reader.children(root, _Parent())
-    for name, (_, element) in reader.state.items():
-        reader.report(f"state of '{name}', which is not in <world name='{xml.name_of(root)}'>", element)
-    return reader.world(xml.name_of(root), _spawn(root))
+    return reader.world(xml.name_of(root))
 
 
 def read_model(root: Element, name: str, pose: Pose3D) -> World:
@@ -104,20 +107,23 @@ class _Reader:
         self.ignored: List[str] = []
         self.approximated: List[str] = []
         self.used: Set[Tuple[str, ...]] = set()  # names of models, each with those of the models around it
-        self.state: SavedPoses = {}  # poses of models and links that have not been read yet
+        self.state: SavedPoses = {}
+        self.spawn: Optional[Pose2D] = None  # as the file says
+        self.keeps_robots = True
+        self.saved_robot: Optional[Pose2D] = None  # the first one that is left out
         self.triangles: Dict[str, np.ndarray] = {}  # of the mesh files, by path
         self.open_files = [os.path.realpath(path)]  # the world's file and the chain of includes being read
 
-    def world(self, name: str, spawn: Optional[Pose2D] = None) -> World:
+    def world(self, name: str) -> World:
         """The world with everything read so far."""
         return World(
             name,
             tuple(self.obstacles),
-            spawn or Pose2D(),
+            self.spawn or self.saved_robot or Pose2D(),
             tuple(dict.fromkeys(self.ignored)),
             self.path,
             self.models,
-            has_spawn=spawn is not None,
+            has_spawn=self.spawn is not None,
             approximated=tuple(dict.fromkeys(self.approximated)),
         )
 
@@ -132,7 +138,9 @@ class _Reader:
         for child in xml.unknown_children(element, (*read, *_UNUSED[element.tag].split())):
             self.report(f"{xml.title_of(child)} in <{element.tag}> is left out", child, is_different=True)
         for plugin in element.iterchildren("plugin"):
-            if not (is_motion(plugin) and element.tag == "model"):
+            is_ours = element.tag == "model" and is_motion(plugin)
+            is_simulator = element.tag == "world" and _OF_SIMULATOR.match(str(plugin.get("filename", "")))
+            if not (is_ours or is_simulator):
                 self.report(f"plugin '{plugin.get('name', '')}'", plugin)
 
     def children(self, element: Element, parent: _Parent) -> None:
@@ -162,6 +170,9 @@ class _Reader:
             if content is not None:
                 model = xml.root_of(parse_xml(content, uri, WorldError), ("model",))
                 self.model(model, parent, include, new_name, new_pose, static)
+            return
+        if is_robot_name(model_name) and self.may_be_robot(parent, static):
+            self.leave_out_robot(new_name or model_name, new_pose or parent.pose, include)
             return
         try:
             with xml.about(include):
@@ -194,6 +205,12 @@ class _Reader:
 
         new_name, new_pose (in the world), static: in place of the model's own, unless empty or None
         """
+        pose = frames.placed(model, parent.pose) if new_pose is None else new_pose
+        static = xml.boolean(model, "static") if static is None else static
+        if self.may_be_robot(parent, static) and is_robot(model):
+            name = new_name or xml.name_of(model)
+            self.leave_out_robot(name, pose, model if include is None else include)
+            return name
         self.check_children(model, "include", "link", "model", "pose", "static")
         if model.get("placement_frame"):
             raise xml.error(
@@ -201,12 +218,10 @@ class _Reader:
             )
         name = self.unused_name(new_name or xml.name_of(model), parent, model if include is None else include)
         names = (*parent.names, name)
-        pose = frames.placed(model, parent.pose) if new_pose is None else new_pose
-        pose, _ = self.state.pop("/".join(names), (pose, None))
+        pose = self.state.get("/".join(names), pose)
         if not parent.names:
             self.models[name] = pose
         motion = motion_of(model, pose) or parent.motion
-        static = xml.boolean(model, "static") if static is None else static
         if not (static or parent.names or motion):
             self.report(f"motion of model '{name}', which is not static", model)
         inherited = _Parent(pose, names, motion)
@@ -215,6 +230,16 @@ class _Reader:
             self.link(link, inherited)
         self.children(model, inherited)
         return name
+
+    def may_be_robot(self, parent: _Parent, static: Optional[bool]) -> bool:
+        """Return whether a model of this parent is left out if it looks like a robot."""
+        return not (self.keeps_robots or parent.names or static)
+
+    def leave_out_robot(self, name: str, pose: Pose3D, element: Element) -> None:
+        """Report a robot that was saved with the world, and keep the pose of the first one."""
+        is_start = self.spawn is None and self.saved_robot is None
+        self.report(f"the robot '{name}' is left out" + is_start * ", and a robot starts at its pose", element, True)
+        self.saved_robot = self.saved_robot or self.state.get(name, pose).on_plane()
 
     def unused_name(self, name: str, parent: _Parent, element: Element) -> str:
         """A model's name, with a number if another model beside it has the same one."""
@@ -236,7 +261,7 @@ class _Reader:
         self.check_children(link, "collision", "pose")
         xml.require_unique_names(link.iterchildren("collision"))
         names = (*parent.names, xml.name_of(link))
-        pose, _ = self.state.pop("/".join(names), (frames.placed(link, parent.pose), None))
+        pose = self.state.get("/".join(names), frames.placed(link, parent.pose))
         for collision in link.iterchildren("collision"):
             self.collision(collision, replace(parent, pose=pose, names=names))
 

@@ -11,7 +11,7 @@ _KNOWN = ("deletions", "insertions", "iterations", "light", "model", "real_time"
 _KNOWN_OF_MODELS = tuple("acceleration collision joint link model pose scale static velocity wrench".split())
 
 Report = Callable[[str, Element, bool], None]  # of what differs, the element, True
-SavedPoses = Dict[str, Tuple[Pose3D, Element]]  # model or link name: its pose in the world and its element
+SavedPoses = Dict[str, Pose3D]  # of models and links, by name, in the world
 
 
 def state_poses(world: Element, report: Report) -> SavedPoses:
@@ -29,7 +29,7 @@ def state_poses(world: Element, report: Report) -> SavedPoses:
     return poses
 
 
-def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, Tuple[Pose3D, Element]]]:
+def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, Pose3D]]:
     for element in parent.iterchildren("model", "link"):
         for child in xml.unknown_children(element, _KNOWN_OF_MODELS):
             report(f"{xml.title_of(child)} in a <{element.tag}> of <state> is left out", child, True)
@@ -38,7 +38,7 @@ def _poses(parent: Element, prefix: str, report: Report) -> Iterator[Tuple[str, 
         if scale is not None and xml.numbers(scale, 3) != (1.0, 1.0, 1.0):
             report(f"<scale> {xml.text_of(scale)} in the state of '{name}' is left out", scale, True)
         if xml.optional_child(element, "pose") is not None:
-            yield name, (_within_reach(xml.pose_in_world(element, math.inf)), element)
+            yield name, _within_reach(xml.pose_in_world(element, math.inf))
         yield from _poses(element, name + "/", report)
 
 
