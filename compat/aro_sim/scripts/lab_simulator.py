@@ -15,7 +15,8 @@ import sys
 
 LAUNCH = "robocop_launch.py"
 SHADOWING = ("PYTHONPATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")  # would resolve to this workspace first
-LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true", "gazebo_services:=true"]
+SERVICES = "gazebo_services:=true"
+LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true"]  # unless a profile says what is simulated
 LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint,
 aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map. odom_tf:=true adds the
 aro_sim: transform."""
@@ -34,8 +35,10 @@ def simulator_from(words):
     """Arguments of the lab's launch file -> those of robocop_launch.py, with the lab's behaviour."""
     words = [word for word in words if not word.startswith("__")]  # ROS's own remappings
     args, spawn_args = words[: words.index("--")], words[words.index("--") + 1 :]
-    args += [*LAB, *spawn_from(spawn_args), *shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))]
-    if [arg for arg in args if arg.startswith("odom_tf:=")][-1] == "odom_tf:=false":
+    given = shlex.split(os.environ.get("ROBOCOP_SIM_ARGS", ""))
+    has_profile = any(word.startswith("profile:=") and word != "profile:=" for word in given)
+    args += [SERVICES, *([] if has_profile else LAB), *spawn_from(spawn_args), *given]
+    if [arg for arg in args if arg.startswith("odom_tf:=")][-1:] == ["odom_tf:=false"]:
         print(LACKING, flush=True)
     return ["--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", *args]
 

@@ -29,6 +29,7 @@ class Simulator:
         """`engine` holds the same world and the robots' fleet."""
         self.p = p
         self.world = world
+        self.models_at_start = frozenset(world.models)  # names
         self.robots = tuple(robots)
         self.steps = 0
         self.rate = p.rates.physics_rate  # [Hz]

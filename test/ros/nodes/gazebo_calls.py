@@ -32,7 +32,7 @@ def position(name=ROBOT, relative_to="world"):
 
 def set_position(x, y, name=ROBOT, frame="world"):
     state = ModelState(name, Pose(position=Point(x, y, 0.0)), Twist(), frame)
-    return call("set_model_state", SetModelState, state).success
+    return call("set_model_state", SetModelState, state)
 
 
 def spawn(name, xml, x):
@@ -46,20 +46,20 @@ def main():
     answers["models"] = world.model_names
     call("pause_physics", Empty)
     before = sim_time()
-    answers["set"] = set_position(0.5, -0.25)
+    answers["set"] = set_position(0.5, -0.25).success
     answers["position"] = position()
     answers["relative"] = position(relative_to=ROBOT)
     answers["paused"] = sim_time() == before
     call("unpause_physics", Empty)
     while sim_time() == before:
         rospy.rostime.wallsleep(0.01)
-    answers["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT)
+    answers["moved by itself"] = set_position(0.5, 0.0, frame=ROBOT).success
     answers["then"] = position()
     answers["spawned"] = spawn("table", BOX, 2.0).success
     answers["spawned twice"] = spawn("table", BOX, 2.0).success
     answers["spawned nonsense"] = spawn("chair", "<sdf", 2.0).status_message[:12]
     answers["table"] = position("table")
-    answers["table moved"] = set_position(1.0, 1.0, name="table") and position("table")
+    answers["table moved"] = set_position(1.0, 1.0, name="table").success and position("table")
     topic = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1, latch=True)
     topic.publish(ModelState("table", Pose(position=Point(-2.0, 1.0, 0.0)), Twist(), "world"))
     while position("table")[:3] != [True, -2.0, 1.0]:
@@ -69,7 +69,7 @@ def main():
     answers["deleted"] = call("delete_model", DeleteModel, "table").success
     answers["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
     answers["unknown"] = position("table")
-    answers["unknown set"] = set_position(0.0, 0.0, name="table")
+    answers["unknown set"] = set_position(0.0, 0.0, name="table").status_message
     for name in ("reset_world", "reset_simulation"):
         call(name, Empty)
         answers[name] = position()

@@ -111,6 +111,7 @@ class GazeboServices:
         self._changes()
         name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
+            self._model(name)  # an error lists robots as well
             self._simulation.change_world(lambda world: with_model_at(world, name, target))
             return {"status_message": done}
         self._simulation.place(target.on_plane(), self._names.index(name))

@@ -111,17 +111,17 @@ def relative(moving: State, frame: State) -> Tuple[Pose, Twist]:
 
 
 def models(simulator: Simulator) -> List[State]:
-    """Models of the world stand still, also those whose obstacles move."""
-    found = _scenery(simulator, "")
-    for name, _, state in _robots(simulator):
-        base = raised(lifted(state.world_from_footprint), simulator.world.ground)
-        found.append((name, base, _world_twist(state)))
-    return found
+    """As Gazebo has them: the world's models, which stand still here, the robots, then what was spawned since."""
+    robots = [
+        (name, raised(lifted(state.world_from_footprint), simulator.world.ground), _world_twist(state))
+        for name, _, state in _robots(simulator)
+    ]
+    return _with_scenery(simulator, robots, "")
 
 
 def links(simulator: Simulator) -> List[State]:
     """One link for each model of the world; of a robot its base and both wheels, as Gazebo merges fixed links."""
-    found = _scenery(simulator, "::link")
+    found: List[State] = []
     for name, model, state in _robots(simulator):
         base, twist = raised(lifted(state.world_from_footprint), simulator.world.ground), _world_twist(state)
         found.append((f"{name}::base_footprint", base, twist))
@@ -129,9 +129,18 @@ def links(simulator: Simulator) -> List[State]:
             position = (0.0, side * model.wheel_separation, model.wheel_radius)
             spun = Pose3D(position, quaternion_from_rpy(0.0, angle, 0.0))
             found.append((f"{name}::{joint[: -len('joint')]}link", compose3(base, spun), twist))
-    return found
+    return _with_scenery(simulator, found, "::link")
 
 
-def _scenery(simulator: Simulator, suffix: str) -> List[State]:
+def _with_scenery(simulator: Simulator, robots: List[State], suffix: str) -> List[State]:
+    """The states of robots between those of the world's models and of what was spawned."""
     standing, world = convert.to_twist_msg(STANDSTILL), simulator.world
-    return [(name + suffix, raised(pose, world.ground), standing) for name, pose in world.models.items()]
+    first, last = (
+        [
+            (name + suffix, raised(pose, world.ground), standing)
+            for name, pose in world.models.items()
+            if (name in simulator.models_at_start) == is_first
+        ]
+        for is_first in (True, False)
+    )
+    return [*first, *robots, *last]

@@ -7,10 +7,16 @@ from typing import Callable
 import pytest
 from support import drive
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
+from aro_robocop_goto_as.reading import parse_xml
 from aro_robocop_goto_as.ros.sim import gazebo_topics
 from aro_robocop_goto_as.simulation.simulator import Simulator
+from aro_robocop_goto_as.world.edit import with_model, with_model_at
+from aro_robocop_goto_as.world.sdf.reader import read_model
 
+BOX = b"""<sdf version="1.6"><model name="box"><static>1</static><link name="l"><collision name="c"><geometry><box>
+<size>1 1 1</size></box></geometry></collision></link></model></sdf>"""
 Make = Callable[..., Simulator]
 
 
@@ -38,6 +44,17 @@ def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make
     kind = gazebo_topics.message_type("ModelStates")
     gazebo_topics.to_message(kind, gazebo_topics.models(sim)).serialize(content)
     assert b"robot_1" in content.getvalue()
+
+
+def test_what_was_spawned_comes_after_the_robot_and_what_was_moved_does_not(simulator: Make) -> None:
+    sim = simulator("empty", drive="kinematic")
+    box = parse_xml(BOX, "box", WorldError)
+    sim.change_world(with_model(sim.world, read_model(box, "goal", Pose3D((1.0, 0.0, 0.0)))))
+    sim.change_world(with_model_at(sim.world, "ground_plane", Pose3D()))
+    names = ["ground_plane", "robot_1", "goal"]
+    assert [name for name, _, _ in gazebo_topics.models(sim)] == names
+    links = [name.partition("::")[0] for name, _, _ in gazebo_topics.links(sim)]
+    assert list(dict.fromkeys(links)) == names
 
 
 @pytest.mark.parametrize(
