@@ -1,5 +1,6 @@
 """robocop_rviz_goto_ac: RViz's 2D Nav Goal -> tf2 -> GoToPosition goal, and a periodic status report."""
 
+import logging
 import threading
 import time
 from typing import Callable, Optional
@@ -165,5 +166,7 @@ class Bridge:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
+    # tf2's warning at each message while two nodes publish /clock; the server tells of them once.
+    logging.getLogger("rosout").addFilter(lambda record: not record.getMessage().startswith("Detected jump back"))
     with node(BRIDGE):
         Bridge(load_params(BridgeParams)).run()

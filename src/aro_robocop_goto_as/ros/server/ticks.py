@@ -1,8 +1,10 @@
 """The ticks of the control loop: whole multiples of its period of ROS time, 0.1 s, 0.2 s, ..."""
 
+import contextlib
 import threading
 from typing import Callable, Optional, Sequence
 
+import rosgraph
 import rospy
 from rosgraph_msgs.msg import Clock
 
@@ -11,6 +13,7 @@ from aro_robocop_goto_as.msg import TickAnswer
 from ...geometry import STANDSTILL, Twist2D
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
+from ..graph import published_topics
 
 
 class Ticks:
@@ -29,6 +32,7 @@ class Ticks:
         self._period_ns = round(period * NANOSECONDS)
         self._inputs, self._on_set_back = inputs, on_set_back
         self._has_joined = False
+        self._has_warned = False
         self._changed = threading.Condition()
         self._clock = rospy.Time()
         self._is_simulated = rospy.get_param("/use_sim_time", False)
@@ -40,6 +44,7 @@ class Ticks:
     def _on_clock(self, message: Clock) -> None:
         before, self._clock = self._clock, message.clock
         if message.clock < before:
+            self._warn_of_two_clocks()
             self._on_set_back(
                 f"simulated time was set back from {before.to_sec():.1f} to {message.clock.to_sec():.1f} s"
             )
@@ -48,6 +53,17 @@ class Ticks:
             self._has_joined = True
             self._publish(self.answered, None)
         self.wake()
+
+    def _warn_of_two_clocks(self) -> None:
+        """Warn once if two nodes publish /clock, between whose times it jumps."""
+        if self._has_warned:
+            return
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            nodes = [node for topic in published_topics() if topic.name == "/clock" for node in topic.publishers]
+            if len(nodes) > 1:
+                self._has_warned = True
+                text = "%s publish /clock, so time jumps: end all but one (rosbag play: without --clock)"
+                rospy.logwarn(text, " and ".join(sorted(nodes)))
 
     def wake(self) -> None:
         """Have whoever waits look for an interruption."""

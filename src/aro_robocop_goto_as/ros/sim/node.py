@@ -118,6 +118,7 @@ class SimNode:
         """Publish and count what is due by the wall clock."""
         if self._status.report():
             self._topics.count()
+            self._status.warn_of_full_speed(self._commands.connected)
             resume()
 
     def _publish(self, changes: AbstractSet[Change]) -> None:

@@ -10,7 +10,7 @@ from std_msgs.msg import Float64, Header
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...names import SIMULATOR
-from ...simulation.lockstep import ControllerId, TickReport
+from ...simulation.lockstep import Connected, ControllerId, TickReport
 from ...simulation.simulation import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
@@ -26,6 +26,7 @@ class StatusTopics:
         self._running = 0  # reports while simulated time ran
         self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
         self._drivers: List[ControllerId] = []
+        self._has_warned_of_full_speed = False
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
         self._diagnostics = publisher("/diagnostics", DiagnosticArray)
@@ -61,6 +62,22 @@ class StatusTopics:
         mean, slowest = sum(self._behind) / len(self._behind), min(self._behind)
         text = "the machine was too slow in %d of %d s: real-time factor %.2f on average then, %.2f at the slowest"
         rospy.logwarn(text, len(self._behind), self._running, mean, slowest)
+
+    def warn_of_full_speed(self, connected: Connected) -> None:
+        """Warn once that controllers are too slow for simulated time that waits neither for the clock nor for them."""
+        simulation = self._simulation
+        is_unbounded = simulation.time_control.pacer.factor == 0.0 and not simulation.controllers.in_lockstep
+        if not is_unbounded or self._has_warned_of_full_speed or simulation.time_control.paused:
+            return
+        nodes = sorted({controller.node for controller in connected()})
+        if nodes:
+            self._has_warned_of_full_speed = True
+            rospy.logwarn(
+                "real_time_factor 0 without lockstep: simulated time runs %.0f times as fast as the wall clock, and %s "
+                "can't keep up; use sync:=lockstep, or a real_time_factor such as 10",
+                self._report.reached,
+                " and ".join(nodes),
+            )
 
     def warn_of(self, tick: TickReport) -> None:
         """Log what went wrong in a control tick in lockstep."""

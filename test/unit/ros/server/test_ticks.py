@@ -3,13 +3,15 @@
 import threading
 import time as wall
 from types import SimpleNamespace
-from typing import Any, List
+from typing import Any, List, Tuple
 
 import pytest
 import rospy
 from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.geometry import Twist2D
+from aro_robocop_goto_as.ros.graph import Topic
+from aro_robocop_goto_as.ros.server import ticks
 from aro_robocop_goto_as.ros.server.ticks import Ticks
 
 MS = 1_000_000  # [ns]
@@ -22,6 +24,10 @@ class Time:
         self.now = rospy.Time()
         self.set_back: List[str] = []
         self.answers: List[Any] = []
+        self.warnings: List[str] = []
+        self.clocks: Tuple[str, ...] = ("/robocop_sim",)
+        monkeypatch.setattr(ticks, "published_topics", lambda: [Topic("/clock", "", self.clocks)])
+        monkeypatch.setattr(rospy, "logwarn", lambda text, *values: self.warnings.append(text % values))
         monkeypatch.setattr(rospy, "get_rostime", lambda: self.now)
         monkeypatch.setattr(rospy, "get_param", lambda name, default: True)
         monkeypatch.setattr(
@@ -119,3 +125,13 @@ def test_clock_that_was_set_back_is_told_with_both_times(time: Time) -> None:
     for now in (900, 1000, 1000, 300):
         time.reach(now)
     assert time.set_back == ["simulated time was set back from 1.0 to 0.3 s"]
+    assert time.warnings == []
+
+
+def test_a_second_publisher_of_the_clock_is_warned_of_once(time: Time) -> None:
+    time.clocks = ("/robocop_sim", "/play")
+    for now in (900, 300, 910, 310):
+        time.reach(now)
+    assert time.warnings == [
+        "/play and /robocop_sim publish /clock, so time jumps: end all but one (rosbag play: without --clock)"
+    ]

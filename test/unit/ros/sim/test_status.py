@@ -7,6 +7,7 @@ import pytest
 from fakes import FakeClock
 
 from aro_robocop_goto_as.ros.sim import status
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.time_control import Pacer
 
 RATE = 240  # [Hz]
@@ -29,6 +30,23 @@ def warnings_at(monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[flo
         simulation.time_control.pacer.ahead(simulation.simulator.steps)
         assert topics.report()
     return warnings
+
+
+@pytest.mark.parametrize(
+    "factor, in_lockstep, nodes, count", [(0, False, 1, 1), (0, True, 1, 0), (9, False, 1, 0), (0, False, 0, 0)]
+)
+def test_a_controller_at_full_speed_without_lockstep_is_warned_of_once(
+    monkeypatch: pytest.MonkeyPatch, factor: float, in_lockstep: bool, nodes: int, count: int
+) -> None:
+    warnings, simulation = [], MagicMock()
+    simulation.time_control.pacer.factor, simulation.time_control.paused = factor, False
+    simulation.controllers.in_lockstep = in_lockstep
+    monkeypatch.setattr(status, "publisher", MagicMock())
+    monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
+    topics: Any = status.StatusTopics(simulation)
+    for _ in range(2):
+        topics.warn_of_full_speed(lambda: {ControllerId(0, "/node")} if nodes else set())
+    assert len(warnings) == count and all("/node can't keep up; use sync:=lockstep" in text for text in warnings)
 
 
 def test_a_factor_that_is_kept_is_no_reason_for_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
