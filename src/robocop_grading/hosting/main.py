@@ -28,11 +28,25 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     folder = state / "with" / workspace_name(package.path)
     environment = build({package.name: package.path}, folder, compat_environment(share, state))
     words = [f"{name}:={value}" for name, value in arguments.items()]
-    found = started(package, folder, environment, run_plain, words)
+    try:
+        found = started(package, folder, environment, run_plain, words)
+    except HostingError as error:
+        if package.starts_gazebo:
+            raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
+        raise
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
+
+
+def instead_of_gazebo(package: Package) -> str:
+    """What to start instead of a launch file that starts Gazebo."""
+    others = [path.name for path in package.launch_files[1:]]
+    return (
+        f"{package.launch_files[0].name} starts Gazebo, in whose place this simulator runs: start only your own nodes, "
+        f"by a launch file without Gazebo and --launch NAME (there are: {', '.join(others) or 'no other ones'})"
+    )
 
 
 def make_startable(choice: Choice, source: Path) -> None:
@@ -86,13 +100,15 @@ def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> 
     """NAME:=VALUE words for the package's launch file, and those for the simulator's, which knows `simulator`."""
     known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
-    for_simulator = []
+    for_simulator: List[str] = []
     for word in words:
         name, _, value = word.partition(":=")
         if name in known:
             for_package[name] = value
         elif name in simulator:
             for_simulator.append(word)
+        elif name == "rviz":
+            os.environ["ROBOCOP_RVIZ"] = value  # for aro_sim, which opens RViz unless this is false
         else:
             raise HostingError(
                 f"{word}: neither {package.name}'s launch file nor the simulator's has an argument of this name; "

@@ -21,6 +21,7 @@ NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin tak
 MOST_NAMED = 10  # scripts in a message
 SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", "aro_sim"}  # packages that nothing depends on
 SIMULATOR = re.compile(r"aro_sim|robocop_sim")
+GAZEBO = re.compile(r"gazebo(?!_msgs)")
 
 
 @dataclass(frozen=True)
@@ -35,15 +36,21 @@ class Package:
     @property
     def starts_simulator(self) -> bool:
         """Whether its launch file starts the lab's simulator, itself or by including others of the package."""
+        return self._starts(SIMULATOR)
+
+    @property
+    def starts_gazebo(self) -> bool:
+        """Return whether it starts Gazebo, in the same way."""
+        return self._starts(GAZEBO)
+
+    def _starts(self, names: "re.Pattern[str]") -> bool:
         waiting, seen = [self.launch_file] if self.launch_file else [], set()
         while waiting:
             path = waiting.pop()
             seen.add(path)
             root = read_xml(path)
             included = [include.get("file", "") for include in root.iter("include")]
-            if any(
-                SIMULATOR.search(name) for name in [*included, *(node.get("pkg", "") for node in root.iter("node"))]
-            ):
+            if any(names.search(name) for name in [*included, *(node.get("pkg", "") for node in root.iter("node"))]):
                 return True
             own = {found for name in included for found in tree.find(self.path, os.path.basename(name) or "-")}
             waiting += sorted(path for path in own - seen if path.is_file())

@@ -88,7 +88,7 @@ def sim(arguments: List[str]) -> None:
         launch(given)
     if len(arguments) < 2:
         refuse("--with: expected the folder of a catkin package")
-    shown = x_display.answers()
+    shown = "rviz:=false" not in arguments and x_display.answers()
     os.environ["ROBOCOP_RVIZ"] = str(shown).lower()
     web, others = web_arguments(arguments[2:])
     program.need("hosting", *["rviz"] * shown, *["web"] * bool(web))

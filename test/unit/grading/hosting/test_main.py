@@ -1,12 +1,13 @@
 """Hosted packages: launched with the right arguments, and from scripts that can be started."""
 
+import os
 from pathlib import Path
 
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.hosting.main import launch_file, make_startable, parsed, sort_arguments
+from robocop_grading.hosting.main import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
 from robocop_grading.hosting.package import find_package
 from robocop_grading.hosting.scripts import Choice
 
@@ -19,6 +20,25 @@ def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(
     assert sort_arguments(package, given, known) == ({"speed": "0.1"}, "seed:=7 'spawn:=1 2'")
     with pytest.raises(HostingError, match="wrold:=x: neither .* they have: speed, seed, spawn"):
         sort_arguments(package, ["wrold:=x"], known)
+
+
+def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROBOCOP_RVIZ", "true")
+    package = find_package(str(tree(tmp_path, PAIR)))
+    assert sort_arguments(package, ["rviz:=false"], ["seed"]) == ({}, "")
+    assert os.environ["ROBOCOP_RVIZ"] == "false"
+
+
+def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_path: Path) -> None:
+    gazebo = '<launch><include file="$(find gazebo_ros)/launch/empty_world.launch"/></launch>'
+    files = {"package.xml": MANIFEST.format(LAB), "launch/all.launch": gazebo, "launch/nodes.launch": "<launch/>"}
+    tree(tmp_path, files)
+    package = find_package(str(tmp_path), "all.launch")
+    assert package.starts_gazebo and not find_package(str(tmp_path), "nodes.launch").starts_gazebo
+    said = instead_of_gazebo(package)
+    assert said.startswith("all.launch starts Gazebo") and "there are: nodes.launch" in said
 
 
 @pytest.mark.parametrize(
