@@ -1,4 +1,4 @@
-"""Runs every .test file of test/ros/nodes and test/neighbours by rostest, each with its own master and logs."""
+"""Runs every .test file of test/ros/nodes by rostest, each with its own master and logs."""
 
 import os
 import signal
@@ -13,14 +13,13 @@ from processes import processes_with
 
 DEADLINE = 260.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit.
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
-TEST = Path(__file__).resolve().parents[1]
-FILES = {path.stem: path for folder in ("ros/nodes", "neighbours") for path in (TEST / folder).glob("*.test")}
+FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
 LONG = ("lab", "simulator", "simulator_services", "two_robots")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
 # Most of these is also tested without processes, or with two robots (many_robots).
 SLOW = (
-    *("camera", "documented_commands", "faults", "localization_truth", "many_robots", "navigation_fast"),
-    *("navigation_lockstep", "parameters", "real_robot", "real_time_factor", "teleop"),
+    *("camera", "documented_commands", "faults", "localization_truth", "many_robots", "navigation"),
+    *("parameters", "real_robot", "real_time_factor", "teleop"),
 )
 
 
