@@ -11,7 +11,7 @@ import tf2_ros
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionActionGoal, GoToPositionResult
 from clicks import Clicks
 from geometry_msgs.msg import Point, Transform, TransformStamped
-from harness import ACTION, BRIDGE, Recorder, run, wait_for, wait_for_subscriber
+from harness import ACTION, BRIDGE, Process, Recorder, run, script, wait_for, wait_for_subscriber
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import Header
@@ -35,6 +35,11 @@ class Server:
 
 
 class BridgeWaits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        bridge = Process(script("robocop_rviz_goto_ac.py"), f"__name:={BRIDGE[1:]}", "_status_period:=0.2")
+        cls.addClassCleanup(bridge.__exit__)
+
     def test_missing_server_is_reported_with_a_misspelt_one_and_gets_the_newest_goal_when_it_starts(self):
         clicks, log = Clicks(), Recorder("/rosout", Log)
         clicks.wait_for_status(f"waiting for {ACTION}")

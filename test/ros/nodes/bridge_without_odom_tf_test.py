@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Without an odom -> base_footprint transform on TF, the bridge uses the pose of the odometry messages."""
+"""Without an odom -> base_footprint transform on TF, the bridge uses the pose of the odometry messages.
+
+The handout's own bridge, ignore_goal_frame:=true, is right only while the robot is at the origin of odom.
+"""
 
 import rospy
 from clicks import Clicks
@@ -18,7 +21,7 @@ class BridgeWithoutOdomTf(SystemTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.clicks = Clicks()
+        cls.clicks, cls.naive = Clicks(), Clicks("/naive")
         cls.tf = Recorder("/tf", TFMessage)
 
     def goal_of_the_bridge(self):
@@ -51,10 +54,20 @@ class BridgeWithoutOdomTf(SystemTest):
         self.assertLess(distance(self.goals.sent.messages[-1].goal.position, Pose2D(0.2, 0.0)), NEAR)
         goal.result("REACHED")
 
-    def test_goal_in_map_is_reached(self):
-        self.clicks.click(-0.5, -0.2, "map")
+    def click_ahead_in_the_naive_bridge(self):
+        """Click half a metre ahead of the robot; the distance [m] of its last position from there."""
+        target = compose(self.robot.pose(), Pose2D(0.5, 0.0))
+        self.goals.clear()
+        self.naive.click(0.5, 0.0, "base_footprint")
         self.goal_of_the_bridge().result("REACHED")
-        self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.5, -0.2)), NEAR)
+        sent = self.goals.sent.messages[0].goal.position
+        self.assertEqual((sent.x, sent.y), (0.5, 0.0))
+        return distance(self.robot.wait_until_it_stands(), target)
+
+    def test_naive_bridge_sends_numbers_unchanged_so_only_the_first_click_leads_where_it_points(self):
+        self.assertLess(self.click_ahead_in_the_naive_bridge(), NEAR)
+        self.goals.log.wait_for(lambda m: "ignore_goal_frame is set" in m.msg, "a warning")
+        self.assertGreater(self.click_ahead_in_the_naive_bridge(), 0.35)  # odom (0.5, 0), where it already is
 
     def test_goal_in_a_frame_without_a_transform_to_odom_is_refused(self):
         self.clicks.status.clear()

@@ -91,7 +91,7 @@ class Camera(unittest.TestCase):
 
     def test_robot_without_a_camera_has_no_camera_topics(self):
         names = [name for name, _ in rospy.get_published_topics()]
-        self.assertFalse([name for name in names if name.startswith("/blue/camera")])
+        self.assertFalse([name for name in names if name.startswith("/green/camera")])
 
 
 if __name__ == "__main__":

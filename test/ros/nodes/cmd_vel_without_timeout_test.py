@@ -28,7 +28,7 @@ class CmdVelWithoutTimeout(unittest.TestCase):
         start = robot.truth.newest().header.stamp
         robot.truth.wait_for(lambda m: (m.header.stamp - start).to_sec() > 5.0, "5 s more")
         self.assertGreater(robot.truth.newest().twist.twist.linear.x, 0.19)
-        self.assertGreater(distance(robot.pose(), Pose2D()), 1.0)
+        self.assertGreater(distance(robot.odom_pose(), Pose2D()), 1.0)
         commands.once(0.0)
         robot.wait_for_standstill()
 

@@ -11,6 +11,7 @@ from harness import DEADLINE, SERVER, SystemTest, run
 from aro_robocop_goto_as.goto_params import GotoParams
 
 LAB = " ".join((ROOT / "docs" / "lab.md").read_text(encoding="utf-8").split())
+DEFAULTS = {name: getattr(GotoParams(), name) for name in ("angular_gain", "max_angular_velocity")}
 TO_THE_RIGHT = (0.0, -0.6)  # the goal of section 10 in odom: map (-0.7, -0.6)
 
 
@@ -26,11 +27,11 @@ class LabFigures(SystemTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.tuning = Client(SERVER, timeout=DEADLINE)
+        cls.addClassCleanup(cls.tuning.update_configuration, DEFAULTS)
 
     def drive(self, x, y, **values):
         """Drive to a point in odom: seconds it takes, seconds until it drives, angle errors [rad], message."""
-        defaults = {name: getattr(GotoParams(), name) for name in ("angular_gain", "max_angular_velocity")}
-        self.tuning.update_configuration({**defaults, **values})
+        self.tuning.update_configuration({**DEFAULTS, **values})
         goal = self.goals.send(x, y)
         message = goal.result().result.message
         feedback = goal.feedback()

@@ -17,6 +17,7 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Header
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
+from aro_robocop_goto_as.ros.convert import to_quaternion
 
 RATE = 20.0  # [Hz] move_base's controller_frequency
 WAY = ((-0.55, -0.55), (0.55, -0.55), (0.55, 0.55))  # in map [m], between the pillars of the world
@@ -30,9 +31,7 @@ class Navigation(unittest.TestCase):
         cls.robot, cls.scan = Robot(), Recorder("scan", LaserScan)
         spawn = cls.robot.pose()
         cls.broadcaster = tf2_ros.StaticTransformBroadcaster()
-        at = Transform(
-            Vector3(spawn.x, spawn.y, 0.0), Quaternion(0.0, 0.0, math.sin(spawn.yaw / 2), math.cos(spawn.yaw / 2))
-        )
+        at = Transform(Vector3(spawn.x, spawn.y, 0.0), to_quaternion(spawn.yaw))
         cls.broadcaster.sendTransform(TransformStamped(Header(0, rospy.Time.now(), "map"), "odom", at))
         cls.buffer = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.buffer)

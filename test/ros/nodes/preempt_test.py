@@ -25,18 +25,6 @@ class Preempt(SystemTest):
         ended = self.robot.truth.wait_for(lambda m: m.header.stamp >= result.header.stamp, "the pose at its end")
         self.assertLess(distance(from_pose_msg(ended.pose.pose), self.robot.wait_until_it_stands()), 0.05)
 
-    def test_cancel_of_all_goals_is_served(self):
-        goal = self.driving_goal()
-        self.goals.cancel_all()
-        goal.result("PREEMPTED")
-        self.robot.wait_until_it_stands()
-
-    def test_goal_after_a_cancelled_one_is_reached(self):
-        goal = self.driving_goal()
-        goal.cancel()
-        goal.result("PREEMPTED")
-        self.goals.send(0.0, 0.0).result("REACHED")
-
     def test_newer_goal_preempts_the_older_and_is_reached(self):
         older = self.driving_goal()
         newer = self.goals.send(0.1, -0.1)
