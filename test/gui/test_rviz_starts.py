@@ -9,7 +9,7 @@ from aro_robocop_goto_as.names import absolute
 from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
 
 pytestmark = pytest.mark.slow
-TIMES = 10
+TIMES = 3
 TITLE = " - RViz$"
 DRAWN = 60.0  # [s, wall] for a picture to be complete on a busy machine
 ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel

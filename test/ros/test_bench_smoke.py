@@ -5,11 +5,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
-from processes import busy_processes, processes_with
+from processes import processes_with
 
 COMMAND = [sys.executable, str(Path(__file__).resolve().parents[1] / "robocop_bench.py")]
 DEADLINE = 120.0  # [s, wall] on a busy machine
@@ -62,20 +61,6 @@ def test_a_case_that_fails_is_reported_and_the_others_continue(tmp_path):
     assert bench.returncode == 1
     for name in ("kinematic:1", "wheels:1"):
         assert f"{name}: failed: the simulator ended with status 5: this one is broken" in bench.stdout
-
-
-@pytest.mark.slow
-def test_an_interrupt_ends_every_process_of_the_bench(tmp_path):
-    bench = start(tmp_path, "--seconds", "10", "--cases", "wheels:1")
-    deadline = time.monotonic() + DEADLINE
-    while not running(tmp_path, b"robocop_sim.py"):
-        assert bench.poll() is None and time.monotonic() < deadline
-        time.sleep(0.05)
-    with busy_processes():
-        bench.send_signal(signal.SIGINT)
-        output, errors = bench.communicate(timeout=DEADLINE)
-    assert (bench.returncode, output) == (130, ""), errors
-    assert running(tmp_path) == []
 
 
 @pytest.mark.slow
