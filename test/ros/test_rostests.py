@@ -16,7 +16,7 @@ SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
 LONG = ("lab", "messages", "time_and_pose", "two_robots")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
-SLOW = ("faults", "many_robots", "models", "navigation")
+SLOW = ("documented_commands", "faults", "many_robots", "models", "navigation")
 
 
 def run_rostest(test_file, directory):
