@@ -6,29 +6,12 @@ Every wait is for a condition and has a deadline, long enough for a busy machine
 import os
 import re
 import signal
-import socket
 import subprocess
-import xmlrpc.client
 
 import numpy as np
-import rosgraph
 import yaml
-from waiting import DEADLINE, wait_for
-
-END = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to kill a node that does not end
-CALLER = "/gui_test"
-
-
-def end(process, *signals):
-    """Send one signal after the other, SIGKILL last, until the process has ended; its exit status."""
-    for number in (*signals, signal.SIGKILL):
-        if process.poll() is None:
-            process.send_signal(number)
-        try:
-            return process.wait(END)
-        except subprocess.TimeoutExpired:
-            continue
-    raise AssertionError(f"process {process.pid} outlived SIGKILL: {process.args}")
+from systems import System, end
+from waiting import DEADLINE
 
 
 class Desktop:
@@ -111,44 +94,29 @@ class Desktop:
         return screen[y : y + high, x : x + wide, 2::-1].astype(int)
 
 
-class Ros:
+class Ros(System):
     """The whole lab by roslaunch on a master of its own: `with Ros(directory, desktop, "rviz:=true") as ros`.
 
     After a failure a screenshot is saved before the windows are closed.
     """
 
     def __init__(self, directory, desktop, *arguments):
-        self.directory = directory
+        super().__init__(directory, desktop.environment)
         self.desktop = desktop
         self.arguments = arguments
-        self.running = []
-        with socket.socket() as probe:
-            probe.bind(("localhost", 0))
-            self.port = probe.getsockname()[1]
-        uri = f"http://localhost:{self.port}"
-        self.environment = {
-            **desktop.environment,
-            "ROS_MASTER_URI": uri,
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(directory / "ros"),
-            "ROS_LOG_DIR": str(directory / "ros" / "log"),
-        }
-        self.environment.pop("ROS_IP", None)
-        self.master = rosgraph.Master(CALLER, uri)
 
     def __enter__(self):
-        self.launch()
+        try:
+            self.launch()
+        except BaseException:
+            self.end_all()
+            raise
         return self
 
     def launch(self):
         """Start the master and what comes with it; its process. May be called again when that has ended."""
         launch = self.start("roslaunch", *self.command())
-        try:
-            wait_for(lambda: launch.poll() is not None or self.master.is_online(), "a ROS master")
-            assert launch.poll() is None, f"roslaunch ended: {(self.directory / 'roslaunch.err').read_text()}"
-        except BaseException:
-            self._end()
-            raise
+        self.wait(self.master.is_online, "a ROS master", launch)
         return launch
 
     def command(self):
@@ -160,62 +128,15 @@ class Ros:
             if failure:
                 self.desktop.save_picture()
         finally:
-            self._end()
-
-    def _end(self):
-        for process, signals in reversed(self.running):
-            end(process, *signals)
-
-    def start(self, name, *command, signals=(signal.SIGINT, signal.SIGTERM)):
-        """Start a process that is ended with this system by these signals; its output goes to NAME.log and NAME.err."""
-        with open(self.directory / f"{name}.log", "wb") as log, open(self.directory / f"{name}.err", "wb") as errors:
-            process = subprocess.Popen(list(map(str, command)), env=self.environment, stdout=log, stderr=errors)
-        self.running.append((process, signals))
-        return process
-
-    def latest(self, topic):
-        """One message of a topic by `rostopic echo`."""
-        done = subprocess.run(
-            ["rostopic", "echo", "-n", "1", topic],
-            env=self.environment,
-            stdout=subprocess.PIPE,
-            check=True,
-            timeout=DEADLINE,
-        )
-        return next(yaml.safe_load_all(done.stdout))
-
-    def linked(self, node, partner, topic):
-        """Whether a node has a connection with a partner on a topic, in either direction.
-
-        Only for Python nodes: a C++ node, such as RViz, sometimes corrupts its heap when it is asked while it makes
-        connections. Ask its partner instead.
-        """
-        try:
-            with xmlrpc.client.ServerProxy(self.master.lookupNode(node)) as proxy:
-                code, _, links = proxy.getBusInfo(CALLER)
-            names = (partner, self.master.lookupNode(partner))
-        except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
-            return False
-        return code == 1 and any(link[1] in names and link[4] == topic and link[5] for link in links)
-
-    def subscriber(self, topic, prefix):
-        """Name of a node that subscribes to a topic, by its prefix; None if there is none."""
-        _, subscribers, _ = self.master.getSystemState()
-        nodes = dict(subscribers).get(topic, [])
-        return next((node for node in nodes if node.startswith(prefix)), None)
+            self.end_all()
 
 
 class Master(Ros):
     """Only a ROS master, on simulated time: `with Master(directory, desktop) as ros`."""
 
-    def command(self):
-        """What starts the master."""
-        return ["roscore", "-p", self.port]
-
-    def __enter__(self):
-        super().__enter__()
-        rosgraph.Master(CALLER, self.environment["ROS_MASTER_URI"]).setParam("/use_sim_time", True)
-        return self
+    def launch(self):
+        """Start the master; its process."""
+        return self.start_master()
 
 
 class Recorder:

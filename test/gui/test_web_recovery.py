@@ -7,7 +7,8 @@ import xmlrpc.client
 
 import pytest
 from browser import Tab, chromium
-from desktop import CALLER, Master, end
+from desktop import Master
+from systems import CALLER, end
 from waiting import wait_for
 from web import REACHED, READY, Web
 
