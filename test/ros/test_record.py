@@ -38,7 +38,7 @@ def folder(tmp_path):
 
 
 @pytest.fixture
-def robocop(folder):
+def robocop(ros, folder):
     return lambda command, *arguments: ros.start(command, ROOT / "robocop", command, *arguments, cwd=folder)
 
 
