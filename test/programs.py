@@ -14,6 +14,7 @@ class Program:
 
     deadline = waiting.DEADLINE  # [s, wall] for any one condition, and for its end
     poll = 0.01  # [s, wall]
+    start = ("rosrun", "aro_robocop_goto_as")
 
     def __init__(self, folder, *command, **environment):
         self.environment = {
@@ -29,7 +30,7 @@ class Program:
         self._log = folder / "output"
         with open(self._log, "wb") as output:
             self.process = subprocess.Popen(
-                ["rosrun", "aro_robocop_goto_as", *command],
+                [*self.start, *command],
                 env=self.environment,
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -93,9 +94,16 @@ def test_each_robot_has_the_description_of_its_own_model():
     assert robots_described() == {"/robot_description": "turtlebot3_burger"}
     assert robots_described("model:=waffle") == {"/robot_description": "turtlebot3_waffle"}
     assert robots_described("robots:=red 0 0; blue:waffle_pi 1 0", "model:=turtlebot2") == {
-        "/red/robot_description": "turtlebot2",
+        "/robot_description": "turtlebot2",
         "/blue/robot_description": "turtlebot3_waffle_pi",
     }
+
+
+@pytest.mark.parametrize("argument", ["model:=tank", "robots:=red:burger 0 0; blue:tank 1 0"])
+def test_an_unknown_model_is_refused_with_the_models_that_there_are(capfd, argument):
+    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
+        Launch(argument)
+    assert capfd.readouterr().err.startswith("ROBOT_MODEL: there is no model 'tank'; known are: burger, burger_rgbd, ")
 
 
 def test_a_robots_model_is_not_part_of_its_name():
@@ -195,7 +203,7 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
 
 
 def test_more_robots_than_launch_files_can_be_nested_are_refused():
-    command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
+    command = [sys.executable, str(LAUNCH / "robocop_launch.py"), str(LAUNCH / "robocop_goto_as.launch")]
     robots = ";".join(f"r{i} 0 {i}" for i in range(400))
     ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, text=True)
     assert ended.returncode == 1
@@ -292,7 +300,7 @@ def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():
 
 def test_a_key_without_a_value_in_a_parameter_file_is_refused_with_file_and_key(tmp_path):
     (tmp_path / "mine.yaml").write_text("position_tolerance: 0.2\ncontrol_rate:\n")
-    command = ["rosrun", "aro_robocop_goto_as", "robocop_launch.py", str(LAUNCH / "robocop_goto_as.launch")]
+    command = [sys.executable, str(LAUNCH / "robocop_launch.py"), str(LAUNCH / "robocop_goto_as.launch")]
     ended = subprocess.run([*command, f"goto_config:={tmp_path}/mine.yaml"], stderr=subprocess.PIPE, text=True)
     assert ended.returncode == 1
     assert ended.stderr.strip() == (

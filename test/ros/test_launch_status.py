@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -9,12 +10,14 @@ from programs import Program
 
 from aro_robocop_goto_as.process.ports import free_port
 
+ROOT = Path(__file__).resolve().parents[2]
 READY = "robot at x"  # in the output of a simulator that runs
 
 
 class Launch(Program):
     """The simulator alone on a master of its own."""
 
+    start = (sys.executable, str(ROOT / "launch" / "robocop_launch.py"))
     poll = 0.001  # [s, wall] because the tests interrupt it at certain moments of its start
 
     def __init__(self, folder, *arguments):
@@ -22,7 +25,7 @@ class Launch(Program):
         options = [argument for argument in arguments if argument.startswith("--")]
         rest = [argument for argument in arguments if argument not in options]
         launch_file = ("aro_robocop_goto_as", "robocop_sim.launch", "drive:=kinematic")
-        super().__init__(folder, "robocop_launch.py", "-p", str(self.port), *options, *launch_file, *rest)
+        super().__init__(folder, "-p", str(self.port), *options, *launch_file, *rest)
 
     def simulator(self):
         """Wait until the simulator runs; its process id."""

@@ -14,14 +14,14 @@ from imports import PACKAGE, Imports, within
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src"
 IMPORTS = Imports(SOURCE)
-PYTHON = ("src", "scripts", "test", "docs", "setup.py")
+PYTHON = ("src", "scripts", "launch", "test", "docs", "setup.py")
 # Correct words, and deliberate misspellings in tests.
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,poin,sise,wrold"
 PROSE = (
     *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
     *("mkdocs.yml", "robocop"),
 )
-PROSE_FOLDERS = ("action", "cfg", "compat", "config", "launch", "msg", "skeleton", "srv", "worlds")
+PROSE_FOLDERS = ("action", "cfg", "compat", "config", "msg", "skeleton", "srv", "worlds")
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
 READER = f"{GRADER}.hosting.roslaunch_reader"

@@ -42,7 +42,7 @@ def test_other_python_installations_are_ignored(tmp_path):
 def test_without_a_display_the_lab_starts_even_if_the_web_page_can_not_be_installed(checkout, index):
     (checkout / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
     shutil.copytree(ROOT / "launch", checkout / "launch")
-    (checkout / "scripts" / "robocop_launch.py").write_text("#!/usr/bin/env python3\nimport sys; print(sys.argv[1:])\n")
+    (checkout / "launch" / "robocop_launch.py").write_text("import sys; print(sys.argv[1:])\n")
     uri = f"http://localhost:{free_port()}"
     done = in_copy(checkout, "run", "world:=empty", ROS_MASTER_URI=uri, **index)
     assert (done.returncode, "'rviz:=false', 'world:=empty']" in done.stdout) == (0, True), done.stdout + done.stderr
@@ -241,6 +241,51 @@ def test_up_to_date_set_up_installs_nothing_and_adds_less_than_a_second(tmp_path
         errors.seek(0)
         assert (status, errors.read()) == (0, ""), "a step of the setup was repeated"
     assert usage.ru_utime + usage.ru_stime < 1.0
+
+
+# As apt 2.6 prints it with APT::Status-Fd, shortened; it fails once, as without package lists.
+APT = """#!/bin/sh
+[ -e {0}/updated ] || {{ touch {0}/updated; echo "E: Unable to locate package"; exit 100; }}
+case "$*" in *" update") exit ;; esac
+cat <<END
+Reading package lists...
+dlstatus:1:0.0000:Retrieving file 1 of 2
+Need to get 8791 kB of archives.
+After this operation, 22.4 MB of additional disk space will be used.
+dlstatus:2:13.8379:Retrieving file 2 of 2
+dlstatus:2:15.4224:Retrieving file 2 of 2
+dlstatus:2:100.0000:Retrieving file 2 of 2
+pmstatus:dpkg-exec:0.0000:Running dpkg
+pmstatus:libfoo:amd64:33.3333:Installing libfoo:amd64
+pmstatus:no-such-package:66.6667:Configuring: 5.0000: no-such-package
+END
+exit 1
+"""
+TOLD = """\
+installation failed; trying again with updated package lists
+Need to get 8791 kB of archives.
+After this operation, 22.4 MB of additional disk space will be used.
+downloaded 10 %
+downloaded 100 %
+installed 30 %
+installed 60 %
+"""
+
+
+def test_installation_of_debian_packages_tells_sizes_progress_and_its_log(checkout):
+    root = checkout.rename(checkout.parent / "plain")
+    (root / "deb-packages" / "run.txt").write_text("no-such-package\n")
+    programs = root / ".robocop" / "venv" / "bin"
+    programs.mkdir(parents=True)
+    for name, script in {"apt-get": APT.format(programs), "sudo": '#!/bin/sh\nexec "$@"\n'}.items():
+        (programs / name).write_text(script)
+        (programs / name).chmod(0o755)
+    done = robocop("setup", root=root)
+    log = f"{root}/.robocop/log/apt.log"
+    first, where, *told = [line[len("robocop: ") :] for line in done.stderr.splitlines() if line.startswith("robocop: ")]
+    assert (first.startswith("installing 1 Debian package"), where.endswith(log)) == (True, True)
+    assert (done.returncode, told[:-1]) == (1, TOLD.splitlines())
+    assert "status:" not in Path(log).read_text()
 
 
 def test_what_is_complete_is_used_while_another_set_up_of_the_checkout_is_running():

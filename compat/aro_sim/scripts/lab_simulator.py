@@ -46,26 +46,18 @@ def simulator_from(words):
 def main():
     """Never returns: the process becomes the program, so that ending this node ends the program."""
     program, *words = sys.argv[1:]
+    start = 'exec rosrun aro_robocop_goto_as "$@"'
     if program == LAUNCH:  # not plain roslaunch, whose exit status does not report how the simulator ended
         words = simulator_from(words)
+        start = 'exec python3 "$(rospack find aro_robocop_goto_as)/launch/$@"'
     workspace = os.environ.get("ROBOCOP_WS")
-    if not workspace:
-        os.execvp("rosrun", ["rosrun", "aro_robocop_goto_as", program, *words])
-    types = [path for path in os.environ.get("PYTHONPATH", "").split(":") if "/compat/" in path]  # gazebo_msgs
-    for name in SHADOWING:
-        os.environ.pop(name, None)
-    os.execvp(
-        "bash",
-        [
-            "bash",
-            "-c",
-            '. "$0/setup.bash"; export PYTHONPATH=$PYTHONPATH:$1; shift; exec "$@"',
-            workspace,
-            ":".join(types),
-            f"{workspace}/lib/aro_robocop_goto_as/{program}",
-            *words,
-        ],
-    )
+    if workspace:
+        types = [path for path in os.environ.get("PYTHONPATH", "").split(":") if "/compat/" in path]  # gazebo_msgs
+        for name in SHADOWING:
+            os.environ.pop(name, None)
+        sourced = [shlex.quote(word) for word in (f"{workspace}/setup.bash", ":".join(types))]
+        start = ". {}; export PYTHONPATH=$PYTHONPATH:{}; ".format(*sourced) + start
+    os.execvp("bash", ["bash", "-c", start, "aro_sim", program, *words])
 
 
 if __name__ == "__main__":

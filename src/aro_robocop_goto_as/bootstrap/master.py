@@ -72,19 +72,19 @@ def master_answers(uri: str) -> bool:
         return False
 
 
-def running_simulator(uri: str) -> Optional[str]:
-    """A description of the simulator on this master, None if there is none; MasterError as above.
+def running_simulator(uri: str, name: str = absolute("", SIMULATOR)) -> Optional[str]:
+    """A description of the simulator of this name on this master, None if there is none; MasterError as above.
 
     The master also lists nodes that were killed, or that ended after reading a cached parameter (rospy's rosout does
     that), so the node itself is asked.
     """
     try:
-        node = ask_master(uri, "lookupNode", absolute("", SIMULATOR))
+        node = ask_master(uri, "lookupNode", name)
     except OSError:
         return None
     try:
         return None if node is None or _request(node, "getPid") is None else "a simulator is already running"
     except _TIMEOUTS:
-        return f"a simulator that does not respond (/{SIMULATOR} at {node}) is registered"
+        return f"a simulator that does not respond ({name} at {node}) is registered"
     except (OSError, *_FOREIGN):  # it has ended, or another program has got its port
         return None

@@ -1,6 +1,7 @@
 """The life of a node, from init_node and its parameters to shutdown by a signal or an error."""
 
 import contextlib
+import os
 import signal
 import sys
 import threading
@@ -13,8 +14,19 @@ from ..param_loading import from_dict
 from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 
+HELP = """\
+{0}
+usage: rosrun aro_robocop_goto_as {1} {2}
+Names and meanings: docs/interfaces.md. ./robocop run and roslaunch start it with everything else."""
 ROSOUT_TOPICS = "/rosout_disable_topics_generation"
 T = TypeVar("T")
+
+
+def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTHER...]") -> None:
+    """End the program with three lines about a node if --help was given; needs no master."""
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(HELP.format(about, os.path.basename(sys.argv[0]), arguments))
+        sys.exit()
 
 
 @contextlib.contextmanager

@@ -48,8 +48,8 @@ def parse_robots(text: str) -> List[SpawnRequest]:
         name, colon, model = head.partition(":")
         if not (name.isidentifier() and name.isascii()) or bool(colon) != bool(model) or not pose.strip():
             raise ParameterError(
-                f"robots: expected 'NAME X Y [YAW]; ...' or 'NAME:MODEL X Y [YAW]; ...' with names of "
-                f"letters, digits and _, got {entry!r}"
+                f"robots: expected a number, such as 3, or 'NAME X Y [YAW]; ...' or 'NAME:MODEL X Y [YAW]; ...' with "
+                f"names of letters, digits and _, got {entry!r}"
             )
         if name in [request.name for request in requests]:
             raise ParameterError(f"robots: the name {name!r} is given twice")

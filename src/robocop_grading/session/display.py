@@ -67,8 +67,8 @@ class Display:
             self._start(["rosrun", "aro_robocop_goto_as", "robocop_web.py", *arguments], "page")
             self._guard = Guard(self._processes[-1].pid, memory=PAGE_MEMORY)
         else:
-            restarted = f"{self._share}/launch/restart_after_crash"
-            self._start([restarted, "rosrun", "rviz", "rviz", "-d", f"{self._share}/rviz/grading_watch.rviz"], "rviz")
+            restarted = ["bash", f"{self._share}/launch/restart_after_crash"]
+            self._start([*restarted, "rosrun", "rviz", "rviz", "-d", f"{self._share}/rviz/grading_watch.rviz"], "rviz")
 
     def _start(self, command: Sequence[str], name: str) -> None:
         """Start a node in the probe's session, which the grader ends as a whole."""

@@ -44,7 +44,7 @@ class Parameters(unittest.TestCase):
                     "parameters of /node_",
                     "obstacle_distanc: unknown parameter; did you mean 'obstacle_distance'?",
                     "control_rate: expected float, got str 'fast'",
-                    "position_tolerance: expected at least 1e-09, got -0.1",
+                    "position_tolerance: expected at least 0.001, got -0.1",
                 ],
             ),
             (

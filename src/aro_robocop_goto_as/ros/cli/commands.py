@@ -39,7 +39,7 @@ PS1="(robocop) $PS1"
 def launch(given: LaunchArguments, *words: str) -> NoReturn:
     """Become roslaunch, but with exit status 1 if the simulator fails."""
     quiet = [] if given.verbose else ["--quiet"]
-    program.start_script("robocop_launch.py", *quiet, PACKAGE, given.file.name, *words, *given.words)
+    program.start_launcher(*quiet, PACKAGE, given.file.name, *words, *given.words)
 
 
 def refuse_second_simulator() -> None:

@@ -1,4 +1,4 @@
-"""Prints the URDF of the model that parameter files choose, for launch files that were given no model."""
+"""Prints the URDF of the model that launch arguments or parameter files choose; refuses unknown models, with a list."""
 
 import os
 import sys
@@ -6,8 +6,9 @@ from typing import Any, Dict, List, Optional
 
 import yaml
 
-from ...errors import RobotModelError
+from ...errors import RobocopError
 from ...robot.model_names import DEFAULT_MODEL, urdf_of
+from ...world.spawn_texts import parse_robots
 
 MODEL_VARIABLE = "TURTLEBOT3_MODEL"  # the model where no file chooses one, as in the launch file
 
@@ -20,8 +21,11 @@ _Loader.add_multi_constructor("!", lambda loader, suffix, node: None)
 
 
 def main(arguments: Optional[List[str]] = None) -> None:
-    """Print the URDF. Arguments: the package's folder, the launch argument `robots`, parameter files; '' for none."""
-    package, robots, *paths = sys.argv[1:] if arguments is None else arguments
+    """Print the URDF. Arguments: the package's folder, `model` and `robots` of the launch file, parameter files; '' for none.
+
+    Called by roslaunch: exit status 1 and a reason for what the simulator would refuse after everything has started.
+    """
+    package, model, robots, *paths = sys.argv[1:] if arguments is None else arguments
     values: Dict[str, Any] = {}
     for path in filter(None, paths):
         with open(path, encoding="utf-8") as stream:  # roslaunch has loaded these files, and refuses those with errors
@@ -32,10 +36,13 @@ def main(arguments: Optional[List[str]] = None) -> None:
             "does not start their other nodes; pass it as the argument robots:=... instead",
             file=sys.stderr,
         )
-    chosen, of_environment = values.get("model"), os.environ.get(MODEL_VARIABLE)
+    chosen = model or values.get("model")
     try:
-        urdf = urdf_of(str((of_environment or DEFAULT_MODEL) if chosen is None else chosen), package)
-    except RobotModelError as error:
+        urdf = urdf_of(str((os.environ.get(MODEL_VARIABLE) or DEFAULT_MODEL) if chosen is None else chosen), package)
+        for request in parse_robots(robots) if robots.strip() and not robots.strip().isdecimal() else ():
+            chosen = request.model
+            urdf_of(request.model or DEFAULT_MODEL, package)
+    except RobocopError as error:
         note = f"; the environment variable {MODEL_VARIABLE} chose it" if chosen is None else ""
         sys.exit(f"{error.code}: {error}{note}")
     with open(urdf, encoding="utf-8") as text:

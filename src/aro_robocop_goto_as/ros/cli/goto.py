@@ -20,9 +20,9 @@ from ...errors import MasterError, RobocopError
 from ...names import COMMAND_VARIABLE, PACKAGE
 from ...process import child, orphans, signals
 from ...process.ports import free_port
+from ..share import share
 from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, WRONG_ARGUMENTS, complain, parse
 
-LAUNCHER = Path(sys.argv[0]).absolute().with_name("robocop_launch.py")  # beside the program that runs
 END_PATIENCE = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
 POLL = 0.05  # [s, wall]
 
@@ -98,7 +98,8 @@ def _own_system(arguments: List[str], log: Path) -> "Iterator[child.Child[Any]]"
     port = free_port()
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     log.parent.mkdir(parents=True, exist_ok=True)
-    command = [str(LAUNCHER), "--no-summary", "-p", str(port), PACKAGE, "robocop_goto_as.launch", *arguments]
+    launcher = [sys.executable, f"{share()}/launch/robocop_launch.py"]
+    command = [*launcher, "--no-summary", "-p", str(port), PACKAGE, "robocop_goto_as.launch", *arguments]
     orphans.adopt_orphans()
     system = None
     try:

@@ -48,7 +48,9 @@ class LaunchArguments:
         given = [_absolute(word) for word in words if word != "--verbose"]
         for word in given:
             name, separator, _ = word.partition(":=")
-            if not separator and not word.startswith("-"):
+            if word.startswith("-"):
+                refuse(f"there is no option {word}; there is: --verbose{did_you_mean(word, ['--verbose'])}")
+            if not separator:
                 refuse(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
             if separator and not name.startswith("__") and name not in known:
                 there_are = f"there is no argument {name}; there are: {' '.join(known)}"

@@ -90,6 +90,12 @@ def start_script(name: str, *arguments: str) -> NoReturn:
     start(f"{os.environ['ROBOCOP_WS']}/lib/{PACKAGE}/{name}", *arguments)
 
 
+def start_launcher(*arguments: str) -> NoReturn:
+    """Become roslaunch, but with an exit status that reports how the simulator ended."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])  # as above
+    start(str(state() / "venv" / "bin" / "python"), f"{ROOT}/launch/robocop_launch.py", *arguments)
+
+
 def become(*command: str) -> NoReturn:
     """Replace this process by a program; in a dry run, print it."""
     if is_dry_run():

@@ -6,6 +6,7 @@ OpenGL add warnings of their own.
 
 import argparse
 import os
+import sys
 from pathlib import Path
 from typing import List, Optional, Tuple
 
@@ -23,6 +24,8 @@ from ...process import x_display
 from .rviz_config import SHARE, Observed, adapted
 
 STDERR = 2  # file descriptor
+# Runs until roslaunch ends it: a launch file ends with RViz, so RViz's node stays where there is no RViz.
+IDLE = "setpriv --pdeathsig TERM -- sleep infinity".split()
 WORLD_TOPIC = "/robocop_sim/world"
 ODOM_TF = "/robocop_sim/odom_tf"  # parameter of the simulator
 MESSAGE_TIMEOUT = 5.0  # [s, wall] for a latched message of a topic that is published
@@ -38,6 +41,9 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
     parser.add_argument("--trail", action="store_true", help="of odometry: no server is there that publishes one")
     options, rest = parser.parse_known_args(arguments)
+    if not x_display.answers():
+        print("robocop: no usable display; RViz is not started", file=sys.stderr, flush=True)
+        os.execvp("setpriv", IDLE)
     seen = observe(options.frame, options.wait, not options.trail)
     config = options.config or _written(adapted(seen))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
@@ -46,7 +52,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     if log:
         with open(log, "ab") as stream:
             os.dup2(stream.fileno(), STDERR)
-    os.execv(again, [again, program, "-d", config, "-f", options.frame, *rest])
+    os.execv("/bin/bash", ["bash", again, program, "-d", config, "-f", options.frame, *rest])
 
 
 def observe(frame: str, wait: float, server: bool) -> Observed:

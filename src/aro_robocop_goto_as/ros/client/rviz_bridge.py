@@ -21,7 +21,7 @@ from aro_robocop_goto_as.msg import (
 from ...bridge_params import BridgeParams
 from ...errors import FrameError
 from ...names import ACTION, BRIDGE, place
-from ..node_main import load_params, node
+from ..node_main import answer_help, load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer
 from .goal_states import STATES, UNFINISHED, ending
@@ -168,5 +168,6 @@ def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
     # tf2's warning at each message while two nodes publish /clock; the server tells of them once.
     logging.getLogger("rosout").addFilter(lambda record: not record.getMessage().startswith("Detected jump back"))
+    answer_help("The bridge: makes goals of robocop_goto_as from 2D Nav Goals of RViz (/move_base_simple/goal).")
     with node(BRIDGE):
         Bridge(load_params(BridgeParams)).run()

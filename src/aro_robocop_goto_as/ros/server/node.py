@@ -20,7 +20,7 @@ from ...names import ACTION, SERVER
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
 from ..connected_nodes import is_connected_to, sender
-from ..node_main import load_params, node
+from ..node_main import answer_help, load_params, node
 from .goal_execution import Ending, GoalExecution, feedback_of
 from .inputs import Inputs
 from .server_markers import Display
@@ -162,6 +162,7 @@ class GotoNode:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't go on, with the reason logged."""
+    answer_help("The go-to action server robocop_goto_as: turns the robot to a goal, drives there, stops at obstacles.")
     with node(SERVER):
         server = GotoNode(load_params(GotoParams))
         rospy.spin()

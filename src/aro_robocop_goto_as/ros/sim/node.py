@@ -1,16 +1,21 @@
 """robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
+import sys
+import threading
+import time
 from typing import AbstractSet, Any, Callable
 
+import rosgraph
 import rospy
 
-from ...errors import ParameterError
+from ...bootstrap import master
+from ...errors import MasterError, ParameterError
 from ...names import SIMULATOR
 from ...sim_params import SimParams, TopicParams
 from ...simulation.simulation import Change, Simulation
 from ...simulation.simulator import Simulator
-from ..node_main import load_params, node
+from ..node_main import answer_help, load_params, node
 from ..publishing.publisher import resume
 from .command_topics import CommandTopics
 from .loading import load_simulator
@@ -19,6 +24,7 @@ from .status import StatusTopics
 from .step_topics import StepTopics
 from .world_topics import WorldTopics
 
+MASTER_PERIOD = 2.0  # [s, wall] between two looks whether the ROS master is still there
 SHORT = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
 
 
@@ -140,9 +146,34 @@ class SimNode:
             rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
 
+def refuse_second() -> None:
+    """End the program if a simulator has this one's name: the master would end that one, in the middle of its run."""
+    given = rosgraph.names.load_mappings(sys.argv)
+    name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), given.get("__name", SIMULATOR))
+    try:
+        running = master.running_simulator(master.master_uri(), name)
+    except MasterError as error:
+        sys.exit(f"{SIMULATOR}: {error}")
+    if running:
+        sys.exit(f"{SIMULATOR}: {running} as {name} on {master.master_uri()}; stop it first, or use another ROS_MASTER_URI")
+
+
+def end_with_master() -> None:
+    """Wait until the ROS master's port is closed, then end the node, which nobody could find any more."""
+    while not rospy.is_shutdown():
+        with contextlib.suppress(MasterError):  # it is busy
+            if not master.master_answers(master.master_uri()):
+                rospy.logfatal("the ROS master at %s has ended, and so does the simulator", master.master_uri())
+                rospy.signal_shutdown("the ROS master has ended")
+        time.sleep(MASTER_PERIOD)
+
+
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
+    answer_help("The simulator: a world and its robots; publishes scan, odom, tf and clock, obeys cmd_vel.")
+    refuse_second()
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
         with contextlib.closing(load_simulator(load_params(SimParams))) as simulator:
+            threading.Thread(target=end_with_master, daemon=True).start()
             SimNode(simulator).run()

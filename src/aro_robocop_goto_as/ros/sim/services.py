@@ -95,7 +95,7 @@ class Services:
     def _reset(self, seed: Optional[int]) -> str:
         self._simulation.reset(seed)
         seed, time = self._simulator.seed, self._simulator.time
-        return f"robots at their spawn poses, odometry at zero, seed {seed}; time continues from {time:.3f} s"
+        return f"robots at their spawn poses, odometry zero, seed {seed}, at {time:.3f} s"
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:
         time = self._simulation.time_control

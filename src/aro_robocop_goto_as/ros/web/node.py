@@ -18,7 +18,7 @@ from ...web.page import set_up
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
 from ...web_params import WebParams
-from ..node_main import node
+from ..node_main import answer_help, node
 from .goals import Goals
 from .lab import Lab
 from .log import Log
@@ -179,6 +179,7 @@ class WebNode:
 
 def main() -> None:
     """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
+    answer_help("The web page that shows the running system in a browser.", "[web_port:=N] [web_host:=ADDRESS]")
     try:
         p = load_params(sys.argv[1:])
         player = Player(p.replay, p.replay_speed) if p.replay else None

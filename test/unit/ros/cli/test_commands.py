@@ -11,7 +11,7 @@ from aro_robocop_goto_as.process.ports import free_port
 from aro_robocop_goto_as.ros.cli import program
 from aro_robocop_goto_as.ros.cli.commands import COMMANDS, web_arguments
 
-LAUNCH = "/devel/lib/aro_robocop_goto_as/robocop_launch.py --quiet aro_robocop_goto_as"
+LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
 
 
 def test_help_lists_every_command():

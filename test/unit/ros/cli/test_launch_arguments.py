@@ -25,9 +25,9 @@ def test_arguments_are_those_with_a_default_wherever_the_lines_break(file):
     assert names(file) == ["world", "web"]
 
 
-def test_verbose_is_no_argument_of_the_file_and_options_of_roslaunch_pass(file):
-    given = LaunchArguments.parse(file, ["--verbose", "--screen", "__name:=x", "web:=1"])
-    assert (given.verbose, given.words) == (True, ("--screen", "__name:=x", "web:=1"))
+def test_verbose_is_no_argument_of_the_file_and_remappings_of_ros_pass(file):
+    given = LaunchArguments.parse(file, ["--verbose", "__name:=x", "web:=1"])
+    assert (given.verbose, given.words) == (True, ("__name:=x", "web:=1"))
 
 
 def test_the_last_value_counts(file):
@@ -39,6 +39,7 @@ def test_the_last_value_counts(file):
     "word, message",
     [
         ("world=x", "expected NAME:=VALUE, such as world:=stage_1; got 'world=x'"),
+        ("--verbos", "there is no option --verbos; there is: --verbose; did you mean --verbose?"),
         ("needed:=1", "there is no argument needed; there are: world web"),
         ("map:=x", "there is no argument map; there are: world web; did you mean world?"),
         ("speed:=3", "there is no argument speed; there are: world web"),

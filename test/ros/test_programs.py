@@ -1,0 +1,105 @@
+"""The package's programs as rosrun and roslaunch start them: without ./robocop, a display or a master."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import rosgraph
+from programs import Program
+from waiting import DEADLINE, wait_for
+
+from aro_robocop_goto_as.process.ports import free_port
+
+ROOT = Path(__file__).resolve().parents[2]
+NODES = ("robocop_goto_as.py", "robocop_rviz_goto_ac.py", "robocop_sim.py", "robocop_web.py")
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").glob("*.py")))
+def test_each_program_answers_help_without_a_master(name):
+    environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+    command = ["rosrun", "aro_robocop_goto_as", name, "--help"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=DEADLINE)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "usage: " in done.stdout
+    assert name not in NODES or len(done.stdout.splitlines()) == 3
+
+
+class Roslaunch(Program):
+    """roslaunch without a display."""
+
+    start = ("roslaunch",)
+
+    def __init__(self, folder, file, *arguments):
+        self.port = free_port()
+        super().__init__(folder, "-p", str(self.port), "aro_robocop_goto_as", file, *arguments, DISPLAY="")
+
+    @property
+    def uri(self):
+        return f"http://localhost:{self.port}"
+
+
+@pytest.fixture
+def roslaunch(tmp_path):
+    started = []
+
+    def start(*arguments):
+        started.append(Roslaunch(tmp_path, *arguments))
+        return started[-1]
+
+    yield start
+    for launched in started:
+        launched.kill()
+
+
+def test_without_a_display_roslaunch_leaves_rviz_out_with_one_warning_and_goes_on(roslaunch):
+    launched = roslaunch("robocop_goto_as.launch", "drive:=kinematic")
+    launched.wait_until(lambda: "RViz is not started" in launched.output, "the warning")
+    goto = [sys.executable, launched_script("robocop_goto.py"), "--frame", "odom", "0.2", "0"]
+    done = subprocess.run(
+        goto, env={**launched.environment, "ROS_MASTER_URI": launched.uri}, capture_output=True, text=True, timeout=DEADLINE
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert launched.output.count("no usable display") == 1 and "Traceback" not in launched.output
+    launched.process.send_signal(signal.SIGINT)
+    assert launched.wait_for_exit() == 0
+    assert launched.processes("sleep") == []
+
+
+def launched_script(name):
+    return str(ROOT / "scripts" / name)
+
+
+def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch, tmp_path):
+    launched = roslaunch("robocop_sim.launch", "drive:=kinematic")
+    master = rosgraph.Master("/test", launched.uri)
+    wait_for(lambda: any("robocop_sim/reset" in name for name, _ in services(master)), lambda: launched.output)
+    simulator = launched.wait_for_process("robocop_sim.py")
+    environment = {**launched.environment, "ROS_MASTER_URI": launched.uri}
+    second = [sys.executable, launched_script("robocop_sim.py")]
+    done = subprocess.run(second, env=environment, capture_output=True, text=True, timeout=DEADLINE)
+    assert (done.returncode, "a simulator is already running as /robocop_sim" in done.stderr) == (1, True)
+    assert launched.process.poll() is None and launched.processes("robocop_sim.py") == [simulator]
+
+    os.kill(launched.process.pid, signal.SIGSTOP)  # roslaunch itself would end the simulator, too
+    try:
+        os.kill(launched.processes("rosmaster")[0], signal.SIGKILL)
+        wait_for(lambda: ended(simulator), lambda: launched.output)
+    finally:
+        os.kill(launched.process.pid, signal.SIGCONT)
+    assert "has ended, and so does the simulator" in launched.output
+
+
+def services(master):
+    try:
+        return master.getSystemState()[2]
+    except (OSError, rosgraph.MasterException):
+        return []
+
+
+def ended(pid):
+    """Whether a process is gone, or waits for its stopped parent to notice."""
+    stat = Path(f"/proc/{pid}/stat")
+    return not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
