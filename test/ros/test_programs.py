@@ -59,7 +59,11 @@ def test_without_a_display_roslaunch_leaves_rviz_out_with_one_warning_and_goes_o
     launched.wait_until(lambda: "RViz is not started" in launched.output, "the warning")
     goto = [sys.executable, launched_script("robocop_goto.py"), "--frame", "odom", "0.2", "0"]
     done = subprocess.run(
-        goto, env={**launched.environment, "ROS_MASTER_URI": launched.uri}, capture_output=True, text=True, timeout=DEADLINE
+        goto,
+        env={**launched.environment, "ROS_MASTER_URI": launched.uri},
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert launched.output.count("no usable display") == 1 and "Traceback" not in launched.output

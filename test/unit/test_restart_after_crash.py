@@ -12,7 +12,9 @@ COUNT = "echo run >> log; "
 
 def run(folder, command):
     """The exit status, standard error, and how often the command ran."""
-    done = subprocess.run(["bash", SCRIPT, "bash", "-c", COUNT + command], cwd=folder, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run(
+        ["bash", SCRIPT, "bash", "-c", COUNT + command], cwd=folder, stderr=subprocess.PIPE, text=True
+    )
     return done.returncode, done.stderr, len((folder / "log").read_text().splitlines())
 
 

@@ -282,7 +282,9 @@ def test_installation_of_debian_packages_tells_sizes_progress_and_its_log(checko
         (programs / name).chmod(0o755)
     done = robocop("setup", root=root)
     log = f"{root}/.robocop/log/apt.log"
-    first, where, *told = [line[len("robocop: ") :] for line in done.stderr.splitlines() if line.startswith("robocop: ")]
+    first, where, *told = [
+        line[len("robocop: ") :] for line in done.stderr.splitlines() if line.startswith("robocop: ")
+    ]
     assert (first.startswith("installing 1 Debian package"), where.endswith(log)) == (True, True)
     assert (done.returncode, told[:-1]) == (1, TOLD.splitlines())
     assert "status:" not in Path(log).read_text()

@@ -14,7 +14,14 @@ EXCEPTIONS = {
     "3. A server": "serves until it is interrupted",
     "rostopic echo -n 2 /my_action/": "shows the feedback of section 3's server",
 }
-ONCE = ("rosmsg", "rosrun dynamic_reconfigure", "rosrun aro_robocop_goto_as robocop_goto.py", "rosservice", "rostopic list", "rostopic pub")
+ONCE = (
+    "rosmsg",
+    "rosrun dynamic_reconfigure",
+    "rosrun aro_robocop_goto_as robocop_goto.py",
+    "rosservice",
+    "rostopic list",
+    "rostopic pub",
+)
 ENDLESS = ("rostopic echo",)
 PROGRAMS = ("rosmsg", "rosservice", "rostopic", "rosrun")
 

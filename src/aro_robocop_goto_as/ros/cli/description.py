@@ -21,7 +21,7 @@ _Loader.add_multi_constructor("!", lambda loader, suffix, node: None)
 
 
 def main(arguments: Optional[List[str]] = None) -> None:
-    """Print the URDF. Arguments: the package's folder, `model` and `robots` of the launch file, parameter files; '' for none.
+    """Print the URDF. Arguments: the package's folder, `model`, `robots`, parameter files; '' for none.
 
     Called by roslaunch: exit status 1 and a reason for what the simulator would refuse after everything has started.
     """

@@ -155,7 +155,9 @@ def refuse_second() -> None:
     except MasterError as error:
         sys.exit(f"{SIMULATOR}: {error}")
     if running:
-        sys.exit(f"{SIMULATOR}: {running} as {name} on {master.master_uri()}; stop it first, or use another ROS_MASTER_URI")
+        sys.exit(
+            f"{SIMULATOR}: {running} as {name} on {master.master_uri()}; stop it first, or use another ROS_MASTER_URI"
+        )
 
 
 def end_with_master() -> None:
