@@ -6,9 +6,8 @@ from typing import Any, Dict, List, Optional
 
 import yaml
 
-from ...errors import RobocopError
+from ...errors import RobotModelError
 from ...robot.model_names import DEFAULT_MODEL, urdf_of
-from ...world.spawn_texts import parse_robots
 
 MODEL_VARIABLE = "TURTLEBOT3_MODEL"  # the model where no file chooses one, as in the launch file
 
@@ -39,10 +38,10 @@ def main(arguments: Optional[List[str]] = None) -> None:
     chosen = model or values.get("model")
     try:
         urdf = urdf_of(str((os.environ.get(MODEL_VARIABLE) or DEFAULT_MODEL) if chosen is None else chosen), package)
-        for request in parse_robots(robots) if robots.strip() and not robots.strip().isdecimal() else ():
-            chosen = request.model
-            urdf_of(request.model or DEFAULT_MODEL, package)
-    except RobocopError as error:
+        for robot in filter(None, (part.strip() for part in robots.split(";"))):  # as in launch/each_robot.launch
+            chosen = robot.split()[0].partition(":")[2]
+            urdf_of(chosen or DEFAULT_MODEL, package)
+    except RobotModelError as error:
         note = f"; the environment variable {MODEL_VARIABLE} chose it" if chosen is None else ""
         sys.exit(f"{error.code}: {error}{note}")
     with open(urdf, encoding="utf-8") as text:
