@@ -69,6 +69,7 @@ def folder(tmp_path):
     solution = copy_of("as_taught", tmp_path).rename(tmp_path / "solution")
     shutil.copy(solution / "scripts" / "robocop_goto_as.py", solution)
     shutil.copytree(solution, tmp_path / "hand_ins" / "somebody")
+    shutil.copy(ROOT / "config" / "grading.yaml", tmp_path / "my_plan.yaml")
     shutil.copytree(solution, tmp_path / "my_package")
     shutil.copytree(solution, tmp_path / "catkin_ws" / "src" / "my_package")
     launch = next((tmp_path / "my_package" / "launch").iterdir())
