@@ -57,7 +57,7 @@ ORDER = {
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading sim_params process robot names sensors simulation world",
-    "ros.sim": "errors geometry sim_params process raycast robot ros names sensors simulation world",
+    "ros.sim": "bootstrap errors geometry sim_params process raycast robot ros names sensors simulation world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation trail",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
     "ros.web": "bootstrap errors geometry param_loading ros ros.client names trail web web_params",
