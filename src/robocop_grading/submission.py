@@ -155,7 +155,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
     folder = builds / workspace_name(package.path)
     below = [] if package.name == LAB else [_lab_folder(state)]
     underlay = lab_environment(share, state) if below else compat_environment(share, state)
-    environment = build(package.name, package.path, folder, underlay, below, sandbox)
+    environment = build(package.sources, folder, underlay, below, sandbox)
     copy = folder / "src" / package.name
     found = started(package, folder, environment, runner_in(sandbox, folder, [*below, READER], LAUNCH_TIME))
     if not found.choices:

@@ -26,7 +26,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
     folder = state / "with" / workspace_name(package.path)
-    environment = build({package.name: package.path}, folder, compat_environment(share, state))
+    environment = build(package.sources, folder, compat_environment(share, state))
     words = [f"{name}:={value}" for name, value in arguments.items()]
     try:
         found = started(package, folder, environment, run_plain, words)

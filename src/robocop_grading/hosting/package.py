@@ -2,7 +2,7 @@
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
@@ -32,6 +32,12 @@ class Package:
     path: Path
     launch_file: Optional[Path]  # None: its nodes are started directly
     launch_files: Sequence[Path] = ()  # all of them, this one first
+    needed: Mapping[str, Path] = field(default_factory=dict)  # packages beside it on which it depends, by name
+
+    @property
+    def sources(self) -> Dict[str, Path]:
+        """The packages to be built, by name."""
+        return {self.name: self.path, **self.needed}
 
     @property
     def starts_simulator(self) -> bool:
@@ -94,7 +100,24 @@ def find_package(path: str, launch: str = "") -> Package:
             f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
             f"or one that makes an action server; found: {', '.join(scripts[:MOST_NAMED]) or 'no Python script'}"
         )
-    return Package(name, folder, launch_file, launch_files)
+    return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
+
+
+def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mapping[str, Path]:
+    """The packages beside the one in `folder` on which it depends, directly or not, by name."""
+    others: Dict[str, Path] = {}
+    for other, path in named:
+        if other != name and NAME.fullmatch(other):
+            others.setdefault(other, path)
+    needed: Dict[str, Path] = {}
+    waiting = [folder]
+    while waiting:
+        root = read_xml(waiting.pop() / "package.xml")
+        depends = {(element.text or "").strip() for element in root if element.tag.endswith("depend")}
+        found = {other: path for other, path in others.items() if other in depends and other not in needed}
+        needed.update(found)
+        waiting += found.values()
+    return needed
 
 
 def _manifests(top: Path) -> Iterator[Path]:

@@ -76,24 +76,24 @@ def _wait(process: "child.Child[bytes]", name: str) -> int:
 
 
 def build(
-    name: str, source: Path, folder: Path, underlay: Environment, reads: Sequence[Path], sandbox: Optional[Sandbox]
+    sources: Mapping[str, Path], folder: Path, underlay: Environment, reads: Sequence[Path], sandbox: Optional[Sandbox]
 ) -> Environment:
-    """Build a copy of the package at `source` in a workspace at `folder`; the environment with it on top.
+    """Build copies of packages (name -> folder) in a workspace at `folder`; the environment with it on top.
 
     In the sandbox links are copied as links: they must not lead to files that the author may not read. GradingError
     says why the build failed.
     """
-    copied = 0
+    copied, names = 0, " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
         nonlocal copied
         copied += os.stat(path).st_size
         if copied > MAX_SOURCE:
-            raise GradingError(f"{source}: expected a package of less than {MAX_SOURCE // 1024**2} MB")
+            raise GradingError(f"{names}: expected packages of less than {MAX_SOURCE // 1024**2} MB")
         shutil.copy2(path, target)
 
     try:
-        copy_sources({name: source}, folder, sandbox is None, copy)
+        copy_sources(sources, folder, sandbox is None, copy)
     except (OSError, shutil.Error) as error:
-        raise GradingError(f"{source}: can't be copied: {error}") from error
-    return make(folder, name, underlay, runner_in(sandbox, folder, reads))
+        raise GradingError(f"{names}: can't be copied: {error}") from error
+    return make(folder, names, underlay, runner_in(sandbox, folder, reads))

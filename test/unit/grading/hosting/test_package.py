@@ -20,6 +20,15 @@ def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> No
         assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
 
 
+def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> None:
+    depends = {LAB: "<exec_depend>maths</exec_depend>", "maths": "<depend>units</depend>", "units": "", "other": ""}
+    for name, lines in depends.items():
+        tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
+    tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": ""})
+    package = find_package(str(tmp_path))
+    assert package.sources == {name: tmp_path / "src" / name for name in (LAB, "maths", "units")}
+
+
 @pytest.mark.parametrize(
     "files, expected",
     [
