@@ -19,15 +19,20 @@ class Trail:
         self.points: Tuple[Vector3, ...] = ()  # [m] in the frame of the odometry
         self._newest: Optional[Tuple[float, Vector3]] = None  # time [s] and position
 
-    def add(self, time: float, x: float, y: float) -> None:
-        """Continue to a position [m] at a time [s]; start again if the robot was placed there or time was set back."""
+    def add(self, time: float, x: float, y: float) -> bool:
+        """Continue to a position [m] at a time [s]; start again if the robot was placed there or time was set back.
+
+        Return whether the trail starts again.
+        """
         if not math.isfinite(x + y):
-            return
-        point = (x, y, HEIGHT)
+            return False
+        point, is_placed = (x, y, HEIGHT), False
         if self._newest is not None:
             before, position = self._newest
-            if time < before or math.dist(position, point) > SLACK + FASTEST * (time - before):
+            is_placed = time < before or math.dist(position, point) > SLACK + FASTEST * (time - before)
+            if is_placed:
                 self.points = ()
         self._newest = (time, point)
         if not self.points or math.dist(self.points[-1], point) >= SPACING:
             self.points = (*self.points[1 - LONGEST :], point)
+        return is_placed

@@ -11,7 +11,7 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.web.page import CAMERA, FIELD, LOOK_AT
+from aro_robocop_goto_as.web.page import AHEAD, FIELD, RIGHT, UP, corners_of, view_of
 
 CHROMIUM = "/usr/bin/chromium"
 # As root Chromium raises its own priority, and drawing in software it then takes a processor from everything else.
@@ -45,12 +45,13 @@ def chromium():
 class Tab:
     """One tab with the web page, and everything that it complained about or asked other servers for."""
 
-    def __init__(self, browser, url, size=SIZE):
+    def __init__(self, browser, url, size=SIZE, touch=False):
         self.url = url
         self.size = size
         self.errors = []
         self.foreign = []
-        self.page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+        viewport = {"width": size[0], "height": size[1]}
+        self.page = browser.new_page(viewport=viewport, is_mobile=touch, has_touch=touch)
         self.page.set_default_timeout(DEADLINE * 1000)
         self.page.on("console", lambda message: message.type == "error" and self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -108,18 +109,23 @@ class Tab:
         self.page.get_by_role("option", name=wanted).click()
 
     def pixel(self, x, y):
-        """Where the initial camera shows a point of the floor [m]: columns from the left, rows from the top."""
-        ahead = np.subtract(LOOK_AT, CAMERA)
-        ahead = ahead / np.linalg.norm(ahead)
-        right = np.cross(ahead, (0.0, 0.0, 1.0))
-        right = right / np.linalg.norm(right)
-        seen = np.subtract((x, y, 0.0), CAMERA)
-        scale = self.size[1] / 2.0 / math.tan(FIELD / 2.0) / (seen @ ahead)
-        return self.size[0] / 2.0 + scale * (seen @ right), self.size[1] / 2.0 - scale * (seen @ np.cross(right, ahead))
+        """Where the first view shows a point of the floor [m]: columns from the left, rows from the top."""
+        away = np.subtract((x, y, 0.0), view_of(corners_of(()), *self.size)[0])
+        scale = self.size[1] / 2.0 / math.tan(FIELD / 2.0) / (away @ AHEAD)
+        return self.size[0] / 2.0 + scale * (away @ RIGHT), self.size[1] / 2.0 - scale * (away @ UP)
 
     def click_floor(self, x, y):
         """Click on a point of the floor [m], which nothing on the screen may cover."""
         self.page.mouse.click(*self.pixel(x, y))
+
+    def tap_floor(self, x, y, seconds):
+        """Touch a point of the floor [m] with a finger, for so long."""
+        column, row = self.pixel(x, y)
+        session = self.page.context.new_cdp_session(self.page)
+        touch = "Input.dispatchTouchEvent"
+        session.send(touch, {"type": "touchStart", "touchPoints": [{"x": column, "y": row}]})
+        self.page.wait_for_timeout(1000.0 * seconds)
+        session.send(touch, {"type": "touchEnd", "touchPoints": []})
 
     @contextlib.contextmanager
     def held(self, label):

@@ -10,7 +10,7 @@ from web import REACHED, Web
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
 
 FIRST, SECOND = "robot_1", "robot_2"
-READY = r"empty[\s\S]*robocop_goto_as is ready"
+READY = r"empty[\s\S]*server\s+ready"
 AWAY = 0.5  # [m]
 
 

@@ -10,7 +10,7 @@ from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
 
-READY = r"stage_4[\s\S]*robocop_goto_as is ready"  # of simulator and bridge
+READY = r"stage_4[\s\S]*server\s+ready"  # of simulator and bridge
 REACHED = 0.15  # [m] from the goal: the server's tolerance and half the click's
 
 
@@ -45,11 +45,11 @@ class Web:
         with socket.socket() as probe:
             return probe.connect_ex(("localhost", self.port)) == 0
 
-    def status(self, **headers):
+    def status(self, path="/", **headers):
         """The status of the answer to an HTTP request; 101 = the page's WebSocket is opened."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=DEADLINE)
         try:
-            connection.request("GET", "/", headers=headers)
+            connection.request("GET", path, headers=headers)
             return connection.getresponse().status
         finally:
             connection.close()

@@ -15,9 +15,13 @@ TEXT_SIZE, TEXT_HEIGHT = 0.14, 0.9  # [m] of a capital letter; above the floor, 
 ROBOT_COLOR = ColorRGBA(0.35, 0.78, 0.98, 1.0)
 GOAL_COLOR = ColorRGBA(0.9, 0.2, 0.7, 0.9)
 REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
+# Of the sector ahead of a robot in which the server looks for obstacles, by how near the nearest is:
+FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
+UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
 TRAIL_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.8)
 LINE_WIDTH = 0.02  # [m]
 RING_RADIUS, RING_WIDTH = 0.25, 0.03  # [m] around the largest of the robots, a waffle
+GOAL = "goal_circle", "goal_pin"  # namespaces
 SEGMENTS = 24  # of an arc; enough to look round
 
 
@@ -68,11 +72,11 @@ def goal_color(is_unfinished: bool, is_reached: bool) -> ColorRGBA:
 
 def goal(tolerance: float, x: float, y: float, frame: str, color: ColorRGBA = GOAL_COLOR) -> Tuple[Marker, Marker]:
     """A circle of radius `tolerance` [m] around the goal, and a pin at the goal."""
-    pin = marker("goal_pin", Marker.CYLINDER, frame, color)
+    pin = marker(GOAL[1], Marker.CYLINDER, frame, color)
     pin.scale.x = pin.scale.y = 0.02
     pin.scale.z = 0.4
     pin.pose.position.x, pin.pose.position.y, pin.pose.position.z = x, y, 0.2
-    return circle("goal_circle", tolerance, x, y, frame, color), pin
+    return circle(GOAL[0], tolerance, x, y, frame, color), pin
 
 
 def text(namespace: str, content: str, frame: str, number: int = 0) -> Marker:

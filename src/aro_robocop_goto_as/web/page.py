@@ -7,14 +7,21 @@ import numpy as np
 
 from ..geometry import Vector3
 
-CAMERA, LOOK_AT, FIELD = (0.5, -6.6, 6.8), (0.5, -0.2, 0.0), 0.75  # [m] in the fixed frame, [rad]; shows ROOM
-ROOM = 5.0  # [m] along both sides, its middle in the origin
+FIELD = 0.75  # [rad] of the cameras' view from its lower to its upper edge
+AHEAD = np.array((0.0, 0.69, -0.73)) / math.hypot(0.69, 0.73)  # where the cameras look at first: y, and down
+RIGHT = np.array((1.0, 0.0, 0.0))
+UP = np.cross(RIGHT, AHEAD)
+ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at least
 FARTHEST_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
+DESK = (1300, 800)  # [pixel] of the window that "reset view" is made for
 PHONE = 576  # [pixel] of width, below which viser shows the panel at the bottom
-PHONE_LOOK_AT = (0.0, -3.4, 0.0)  # [m], as the panel covers the lower part
-PHONE_AWAY = 0.75  # of CAMERA's distance, in a view that is as wide as it is high
-# viser's panel is as wide on a phone as elsewhere, and covers more than half of it.
-STYLE = """<style>
+PANEL, PHONE_PANEL = 345, 0.46  # what the panel covers: [pixel] of a window's width, share of a phone's height
+FILLED = 0.94  # share of what the panel leaves free
+# viser's panel is as wide on a phone as elsewhere, and covers more than half of it. And viser takes no notice of a
+# press on its canvas that the canvas has captured, as browsers do by themselves for a finger: a tap was no click.
+STYLE = """<style onload="window.addEventListener(
+  'pointerdown', e => e.target.tagName === 'CANVAS' && e.target.releasePointerCapture(e.pointerId), true
+)">
 @media (max-width: 36em) {
   div[style*="max-height: 60%"] { max-height: 45% !important; }
   div[style*="max-height: 60%"], div[style*="max-height: 60%"] div[style*="width: 20em"] { width: 100% !important; }
@@ -35,41 +42,77 @@ def set_up(server: Any) -> None:
     viser's own lights come from a picture that a browser without a graphics card needs minutes for, and until then it
     shows the scene at a twentieth of its brightness.
     """
-    scene, camera = server.scene, server.initial_camera
+    scene = server.scene
     scene.set_up_direction("+z")
     scene.configure_environment_map(None)
     scene.configure_default_lights(False)
     scene.add_light_ambient("/light/everywhere", intensity=1.6)
     scene.add_light_directional("/light/sun", intensity=1.8, position=SUN)
-    camera.position, camera.look_at, camera.fov = CAMERA, LOOK_AT, FIELD
     server.gui.add_html(STYLE)
-    server.on_client_connect(lambda client: fit_view(client, camera))
 
 
-def show_places(server: Any, places: Iterable[Vector3]) -> None:
-    """Turn all cameras to the origin, where robots start, and these places [m]; they show ROOM or what is larger."""
+class Cameras:
+    """The cameras of all browsers show the origin, where robots start, and ROOM or what is larger."""
+
+    def __init__(self, server: Any) -> None:
+        self._server = server
+        self._corners = corners_of(())
+        server.initial_camera.fov = FIELD
+        self._set_first()
+        server.on_client_connect(self._turn)
+
+    def show(self, places: Iterable[Vector3]) -> None:
+        """Turn to the origin and these places [m], unless that is what they show: a chosen view then stays."""
+        corners = corners_of(places)
+        if not np.allclose(corners, self._corners):
+            self._corners = corners
+            self._set_first()
+            for client in self._server.get_clients().values():
+                self._turn(client)
+
+    def _set_first(self) -> None:
+        first = self._server.initial_camera
+        first.position, first.look_at = view_of(self._corners, *DESK)
+
+    def _turn(self, client: Any) -> None:
+        camera = client.camera
+        position, look_at = view_of(self._corners, camera.image_width, camera.image_height)
+        camera.position = position
+        camera.look_at = look_at  # after the position, which moves it as well
+
+
+def corners_of(places: Iterable[Vector3]) -> np.ndarray:
+    """Corners (8, 3) [m] of a box around the origin and these places, as large as ROOM at least."""
     points = np.clip([(0.0, 0.0, 0.0), *places], -FARTHEST_SHOWN, FARTHEST_SHOWN)[:, :2]
     low, high = points.min(axis=0), points.max(axis=0)
-    scale, middle = max(1.0, float((high - low).max()) / ROOM), np.append((low + high) / 2.0, 0.0)
-    position, look_at = middle + np.multiply(CAMERA, scale), middle + np.multiply(LOOK_AT, scale)
-    camera = server.initial_camera
-    if np.allclose([position, look_at], [camera.position, camera.look_at]):
-        return  # such as the same world, drawn anew: a view that somebody has chosen stays
-    camera.position, camera.look_at = position, look_at
-    for client in server.get_clients().values():
-        fit_view(client, camera)
+    half = np.maximum((high - low) / 2.0, ROOM / 2.0)
+    x, y = (low + high) / 2.0
+    return np.array(
+        [(x + i * half[0], y + j * half[1], z) for i in (-1.0, 1.0) for j in (-1.0, 1.0) for z in (0.0, HEIGHT)]
+    )
 
 
-def fit_view(client: Any, first: Any) -> None:
-    """Show what the first camera shows, on a phone above the panel."""
-    camera, position, look_at = client.camera, first.position, first.look_at
-    if camera.image_width < PHONE:
-        away = np.subtract(position, look_at)
-        scale = np.linalg.norm(away) / np.linalg.norm(np.subtract(CAMERA, LOOK_AT))
-        look_at = look_at + scale * np.subtract(PHONE_LOOK_AT, LOOK_AT)
-        position = look_at + away * PHONE_AWAY / camera.aspect
-    camera.position = position
-    camera.look_at = look_at  # after the position, which moves it as well
+def view_of(corners: np.ndarray, width: int, height: int) -> Tuple[np.ndarray, np.ndarray]:
+    """The nearest camera that shows corners (n, 3) [m] in the free part of a window [pixel], in its middle.
+
+    Returns its position and the point of the floor in the middle of the window [m].
+    """
+    phone = width < PHONE
+    edge = 2.0 * math.tan(FIELD / 2.0)  # the window's height, one metre ahead of the camera
+    free_width, free_height = (width if phone else width - PANEL) / height * edge, (1.0 - PHONE_PANEL * phone) * edge
+    sideways = (free_width - width / height * edge) / 2.0, free_width * FILLED / 2.0  # middle and half of the free part
+    upwards = (edge - free_height) / 2.0, free_height * FILLED / 2.0
+    # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ AHEAD) from a position p. So each edge of the free part
+    # limits p @ (RIGHT - edge * AHEAD), by the corner that is nearest to this edge; the same for UP.
+    limits = []
+    for axis, (middle, half) in ((RIGHT, sideways), (UP, upwards)):
+        low = float((corners @ (axis - (middle - half) * AHEAD)).min())
+        high = float((corners @ (axis - (middle + half) * AHEAD)).max())
+        limits.append((low, high, middle, half))
+    ahead = min((low - high) / (2.0 * half) for low, high, _, half in limits)
+    right, up = ((low + high) / 2.0 + middle * ahead for low, high, middle, _ in limits)
+    position = right * RIGHT + up * UP + ahead * AHEAD
+    return position, position - position[2] / AHEAD[2] * AHEAD
 
 
 def set_theme(server: Any, dark: bool) -> None:

@@ -148,6 +148,6 @@ class PageScene:
             return handle
         fixed, changeable = _options(shape)
         handle = getattr(self._api, f"add_{shape.kind}")(name, **fixed, **changeable, **where)
-        if shape.kind == FRAME:
+        if shape.kind == FRAME and shape.text:
             self._api.add_label(f"{name}/name", shape.text, anchor="top-left", font_screen_scale=0.8)
         return handle

@@ -17,14 +17,14 @@ class PageState:
     forgotten: bool = False  # the master answers, but is another one than the node registered with
     master_problem: str = "it has not been asked yet"  # why the ROS master does not answer, empty if it does
     robots: Tuple[str, ...] = ("",)  # namespaces; "" is a robot without one
-    topics: Tuple[Tuple[str, str], ...] = ()  # that somebody publishes, with their types
     chosen: str = ""  # the robot that a visitor chose last
-    answer: str = ""  # the outcome of the last request
+    answer: str = ""  # why the last request failed, empty if it did not
     simulated: bool = False  # a simulator has reported
     factor: float = 1.0  # simulated seconds per second, as the simulator reached it
     factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
     answering: bool = False  # there is a server of the selected robot, which publishes its status
     executing: Optional[bool] = None  # the selected robot's server executes a goal; None until it is known
+    resets: int = 0  # how often robots were placed at their start again, or elsewhere
     root: str = ""  # the frame that the scene is drawn in
     pose: Optional[Pose3D] = None  # of the selected robot, in that frame
 

@@ -2,11 +2,14 @@
 
 import html
 import re
-from typing import Iterable, Tuple
+from typing import Iterable, Mapping, Tuple
 
 LONGEST = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
-BLOCK = "margin:0.4em 0;padding:0.3em 0.5em;white-space:pre-wrap;overflow-wrap:anywhere;font-size:0.9em"
+GOAL = r"goal x \S+ y \S+(?: in \S+)?"
+OFF = re.compile(rf"([\d.]+) m from the {GOAL} after ([\d.]+ s)")
+STOPPED = re.compile(rf"{GOAL} stopped after ([\d.]+ s): (.*)")
+OBSTACLE = re.compile(r"(OBSTACLE: )obstacle ([\d.]+ m ahead)(?: \(limit [\d.]+ m\))?")
 LEVELS = {4: "color:#e8590c", 8: "color:#e03131", 16: "color:#e03131"}  # of rosgraph_msgs/Log: WARN, ERROR, FATAL
 ALERT = "margin:0 0.8em 0.6em;padding:0.5em 0.7em;border-radius:4px;background:#b3261e;color:#fff;font-size:0.9em"
 
@@ -15,6 +18,22 @@ def plain(text: str) -> str:
     """Text of any origin for the page: escaped, on one line, of limited length."""
     text = " ".join(text.split())
     return html.escape(text if len(text) <= LONGEST else text[: LONGEST - 1] + "…")
+
+
+def position(x: float, y: float) -> str:
+    """A position on the floor [m]."""
+    return f"({x:.2f}, {y:.2f})"
+
+
+def short(message: str) -> str:
+    """A message of this package's server in fewer words: without the goal's position and the limit; others as they are.
+
+    REACHED: 0.098 m from the goal x 0.42 y -0.38 in odom after 8.1 s -> REACHED: 0.10 m off, 8.1 s
+    """
+    message = " ".join(message.split())
+    message = OFF.sub(lambda found: f"{float(found[1]):.2f} m off, {found[2]}", message)
+    message = STOPPED.sub(r"\2, \1", message)
+    return OBSTACLE.sub(r"\1\2", message).replace("; ", ", ")
 
 
 def table(rows: Iterable[Tuple[str, str]]) -> str:
@@ -33,7 +52,7 @@ def alert(message: str) -> str:
 
 
 def answer(message: str) -> str:
-    """What became of the last request; nothing for an empty message."""
+    """Why the last request failed; nothing for an empty message."""
     return f'<div style="{STYLE}" role="status">{plain(message)}</div>' if message else ""
 
 
@@ -42,11 +61,6 @@ def history(ended: Iterable[Tuple[bool, str]]) -> str:
     marks = {True: '<span style="color:#2b8a3e">✓</span>', False: '<span style="color:#e8590c">✗</span>'}
     lines = "".join(f"<div>{marks[reached]} {plain(line)}</div>" for reached, line in ended)
     return f'<div style="{STYLE}">{lines or "no goal has ended yet"}</div>'
-
-
-def block(content: str) -> str:
-    """Text with lines of its own, as a terminal shows it."""
-    return f'<pre style="{BLOCK}">{html.escape(content)}</pre>'
 
 
 def log(lines: Iterable[Tuple[int, str, str]]) -> str:
@@ -58,25 +72,15 @@ def log(lines: Iterable[Tuple[int, str, str]]) -> str:
     return f'<div style="{STYLE}">{shown or "nothing yet"}</div>'
 
 
-def topics(rows: Iterable[Tuple[str, str, str, str]]) -> str:
-    """Topics: name, type, rate and newest message of each; the last two may be empty."""
-    shown = "".join(
-        f'<div style="margin-bottom:0.4em"><b>{plain(name)}</b> {plain(rate)}'
-        f'<div style="opacity:0.7">{plain(newest or kind)}</div></div>'
-        for name, kind, rate, newest in rows
+def legend(what: str, colors: Mapping[str, Tuple[int, int, int]]) -> str:
+    """What colours mean: each as a small square, with its words."""
+    squares = "".join(
+        f'<span style="color:rgb{color}"> ■</span> <span style="white-space:nowrap">{plain(name)}</span>'
+        for name, color in colors.items()
     )
-    return f'<div style="{STYLE}">{shown or "no topics"}</div>'
+    return f'<div style="{STYLE}">{plain(what)}:{squares}</div>'
 
 
-def steps(expected: str, commands: Iterable[Tuple[str, str]]) -> str:
-    """A section of the lab: what one will see, and commands, each with what it prints.
-
-    A click on a command selects the whole of it, so that it can be copied.
-    """
-    shown = "".join(
-        f'<pre style="{BLOCK};user-select:all;border-left:3px solid #1c7ed6">{html.escape(command.strip())}</pre>'
-        + (f'<pre style="{BLOCK};opacity:0.75">{html.escape(printed.strip())}</pre>' if printed else "")
-        for command, printed in commands
-    )
-    seen = re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(f"You will see {expected}")) if expected else ""
-    return f'<div style="{STYLE}">{seen}{shown}</div>'
+def link(address: str, words: str) -> str:
+    """A link that is opened in a tab of its own."""
+    return f'<div style="{STYLE}"><a href="{html.escape(address)}" target="_blank">{plain(words)}</a></div>'

@@ -8,91 +8,84 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.web.page import CAMERA, FARTHEST_CLICK, FIELD, LOOK_AT, fit_view, floor_point, show_places
+from aro_robocop_goto_as.web import page
+from aro_robocop_goto_as.web.page import AHEAD, FARTHEST_CLICK, FIELD, HEIGHT, RIGHT, UP, Cameras, floor_point
 
-CORNERS = [(x, y, 0.0) for x in (-2.5, 2.5) for y in (-2.5, 2.5)]  # [m] of a room of 5 x 5 m
-FREE = 0.55  # of a phone's height, above the panel
-PANEL = 0.42  # of a desk's height: the panel's width
-
-
-def seen(camera: SimpleNamespace, point: np.ndarray) -> np.ndarray:
-    """Where a point appears: from the left and from the top, as shares of the view's height."""
-    ahead = np.subtract(camera.look_at, camera.position)
-    ahead = ahead / np.linalg.norm(ahead)
-    right = np.cross(ahead, (0.0, 0.0, 1.0))
-    right = right / np.linalg.norm(right)
-    away = np.subtract(point, camera.position)
-    scale = 0.5 / math.tan(FIELD / 2.0) / (away @ ahead)
-    return np.array((camera.aspect / 2.0 + scale * (away @ right), 0.5 - scale * (away @ np.cross(right, ahead))))
+PHONES, DESKS = [(390, 844), (360, 640), (430, 932)], [(1300, 800), (900, 620), (1920, 1000)]  # [pixel]
 
 
-FIRST = SimpleNamespace(position=np.array(CAMERA), look_at=np.array(LOOK_AT))
-PHONE, DESK = (390, 844), (1300, 800)  # [pixel]
+def room(low=(-2.5, -2.5), high=(2.5, 2.5)) -> np.ndarray:
+    return np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (0.0, HEIGHT)])
 
 
-def opened(width: int, height: int) -> SimpleNamespace:
-    client = SimpleNamespace(camera=SimpleNamespace(image_width=width, aspect=width / height))
-    fit_view(client, FIRST)
-    return client
+def server_of(*sizes) -> SimpleNamespace:
+    clients = [SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height)) for width, height in sizes]
+    connected = []
+    server = SimpleNamespace(initial_camera=SimpleNamespace(), get_clients=lambda: dict(enumerate(clients)))
+    server.on_client_connect = connected.append
+    server.cameras = Cameras(server)
+    for client in clients:
+        connected[0](client)
+    return server
 
 
-@pytest.mark.parametrize("width, height", [PHONE, (360, 640), (430, 932)])
-def test_a_phone_shows_the_whole_room_above_the_panel(width: int, height: int) -> None:
-    camera = opened(width, height).camera
-    for corner in CORNERS:
-        column, row = seen(camera, np.array(corner))
-        assert 0.0 < column < camera.aspect and 0.0 < row < FREE, corner
+def seen(camera: SimpleNamespace, points: np.ndarray) -> np.ndarray:
+    """Where points (n, 3) [m] appear: (n, 2) [pixel] from the left and from the top."""
+    scale = camera.image_height / 2.0 / math.tan(FIELD / 2.0)
+    away = points - camera.position
+    offset = np.stack([away @ RIGHT, -(away @ UP)], axis=1) / (away @ AHEAD)[:, None]
+    return np.array((camera.image_width, camera.image_height)) / 2.0 + scale * offset
 
 
-def test_a_window_of_a_desk_has_the_first_view() -> None:
-    camera = opened(*DESK).camera
-    assert (*camera.position, *camera.look_at) == (*CAMERA, *LOOK_AT)
+def expect_in_the_middle_of_the_free_part(camera: SimpleNamespace, corners: np.ndarray) -> None:
+    phone = camera.image_width < page.PHONE
+    free = np.array((camera.image_width, camera.image_height * (1.0 - page.PHONE_PANEL)))
+    if not phone:
+        free = np.array((camera.image_width - page.PANEL, camera.image_height))
+    low, high = seen(camera, corners).min(axis=0), seen(camera, corners).max(axis=0)
+    assert (low + high) / 2.0 == pytest.approx(free / 2.0, abs=0.05 * camera.image_height)
+    assert max((high - low) / free) == pytest.approx(page.FILLED)
 
 
-def cameras_after(places) -> list:
-    """The first camera, and those of a phone and a desk, which were open before, when these places are shown."""
-    clients = [opened(*PHONE), opened(*DESK)]
-    server = server_of(clients)
-    show_places(server, places)
-    return [server.initial_camera, *(client.camera for client in clients)]
+@pytest.mark.parametrize("size", PHONES + DESKS)
+@pytest.mark.parametrize("places", [[], [(1.9, 0.0, 0.2)], [(-2.5, -2.5, 0.0), (2.5, 2.5, 0.0)]])
+def test_the_room_fills_the_part_of_the_window_that_the_panel_leaves_free(size, places) -> None:
+    server = server_of(size)
+    server.cameras.show(places)
+    middle = np.array((*np.mean([(0.0, 0.0), *(place[:2] for place in places)][:2], axis=0), 0.0)) * (len(places) == 1)
+    expect_in_the_middle_of_the_free_part(server.get_clients()[0].camera, room() + middle)
 
 
-def server_of(clients) -> SimpleNamespace:
-    first = SimpleNamespace(position=np.array(CAMERA), look_at=np.array(LOOK_AT))
-    return SimpleNamespace(initial_camera=first, get_clients=lambda: dict(enumerate(clients)))
+@pytest.mark.parametrize("size", PHONES + DESKS)
+@pytest.mark.parametrize("low, high", [((-0.6, -0.6), (7.0, 5.4)), ((-9.0, 3.0), (-2.0, 9.0))])
+def test_all_cameras_show_a_larger_world_and_the_origin(size, low, high) -> None:
+    server = server_of(size)
+    server.cameras.show([(*low, 0.0), (*high, 0.0)])
+    corners = room((min(low[0], 0.0), min(low[1], 0.0)), (max(high[0], 0.0), max(high[1], 0.0)))
+    expect_in_the_middle_of_the_free_part(server.get_clients()[0].camera, corners)
 
 
 def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew() -> None:
-    client = opened(*DESK)
-    server, places = server_of([client]), [(8.0, 0.0, 0.0)]
-    show_places(server, places)
-    client.camera.position = (1.0, 2.0, 3.0)
-    show_places(server, places)
-    assert client.camera.position == (1.0, 2.0, 3.0)
-
-
-@pytest.mark.parametrize("places", [[], CORNERS, [(1.9, 0.0, 0.2)], [(-2.5, -2.5, 0.0), (0.5, 2.5, 0.0)]])
-def test_a_room_that_is_not_larger_than_usual_is_shown_in_the_usual_size(places) -> None:
-    first, _, desk = cameras_after(places)
-    away = np.subtract(CAMERA, LOOK_AT)
-    assert first.position - first.look_at == pytest.approx(away) == desk.position - desk.look_at
-    assert places != CORNERS or (*first.position, *first.look_at) == (*CAMERA, *LOOK_AT)
-
-
-@pytest.mark.parametrize("low, high", [((-0.6, -0.6), (7.0, 5.4)), ((-9.0, 3.0), (-2.0, 9.0))])
-def test_all_cameras_show_a_larger_world_and_the_origin(low, high) -> None:
-    _, phone, desk = cameras_after([(*low, 0.0), (*high, 0.0)])
-    for corner in [(x, y, 0.0) for x in (low[0], high[0], 0.0) for y in (low[1], high[1], 0.0)]:
-        column, row = seen(phone, np.array(corner))
-        assert 0.0 < column < phone.aspect and 0.0 < row < FREE, corner
-        column, row = seen(desk, np.array(corner))
-        assert 0.0 < column < desk.aspect - PANEL and 0.0 < row < 1.0, corner
+    server, places = server_of((1300, 800)), [(8.0, 0.0, 0.0)]
+    server.cameras.show(places)
+    camera = server.get_clients()[0].camera
+    camera.position = chosen = (1.0, 2.0, 3.0)
+    server.cameras.show(places)
+    assert camera.position == chosen
 
 
 def test_what_is_very_far_away_does_not_make_the_robot_invisible() -> None:
-    _, _, near = cameras_after([(10.0, 0.0, 0.0)])
-    _, _, far = cameras_after([(500.0, 0.0, 0.0)])
-    assert near.position == pytest.approx(far.position)
+    near, far = server_of((1300, 800)), server_of((1300, 800))
+    near.cameras.show([(10.0, 0.0, 0.0)])
+    far.cameras.show([(500.0, 0.0, 0.0)])
+    assert near.initial_camera.position == pytest.approx(far.initial_camera.position)
+
+
+def test_the_first_camera_looks_at_the_floor_ahead_of_it() -> None:
+    first = server_of().initial_camera
+    assert first.look_at[2] == pytest.approx(0.0)
+    away = first.look_at - first.position
+    assert away / np.linalg.norm(away) == pytest.approx(AHEAD)
 
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0.1, 20), st.floats(-9, 9), st.floats(-9, 9))

@@ -18,8 +18,7 @@ from .goal_execution import GoalExecution
 from .inputs import Inputs
 from .tuning import Tuning
 
-FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
-UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
+IDLE = "idle"  # the state before the first goal, and after a reset
 TEXT_WIDTH = 26  # characters per line
 MARKER_PERIOD = 0.1  # [s]
 NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the obstacle distance
@@ -28,10 +27,10 @@ NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the ob
 def cone_color(clearance: Optional[float], limit: float) -> ColorRGBA:
     """Red below the limit [m], yellow within twice the limit, green beyond it, grey without a scan."""
     if clearance is None:
-        return UNKNOWN
+        return markers.UNKNOWN
     if clearance < limit:
-        return BLOCKED
-    return NEAR if clearance < NEAR_FACTOR * limit else FREE
+        return markers.BLOCKED
+    return markers.NEAR if clearance < NEAR_FACTOR * limit else markers.FREE
 
 
 def _safety_cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marker:
@@ -48,7 +47,7 @@ def _safety_cone(p: GotoParams, clearance: Optional[float], frame: str) -> Marke
 def server_markers(
     p: GotoParams, inputs: Inputs, newest: Optional[GoalExecution], state: str, trail: Sequence[Vector3]
 ) -> MarkerArray:
-    """All of the server's markers; without a goal until the first one. The trail is in odom [m]."""
+    """All of the server's markers; without a goal until the first one, and after a reset. The trail is in odom [m]."""
     made, scan, odom = [], inputs.scan, inputs.odom
     if scan is not None and scan.message.header.frame_id:
         made.append(_safety_cone(p, inputs.clearance(), scan.message.header.frame_id))
@@ -61,6 +60,8 @@ def server_markers(
             color = markers.goal_color(newest.outcome is None, newest.outcome is Outcome.REACHED)
             x, y = newest.goal.x, newest.goal.y
             made += markers.goal(p.position_tolerance, x, y, frame, color)
+        else:
+            made += [markers.deletion(name) for name in markers.GOAL]
     return MarkerArray(made)
 
 
@@ -69,7 +70,7 @@ class Display:
 
     def __init__(self, tuning: Tuning, inputs: Inputs) -> None:
         self.newest: Optional[GoalExecution] = None
-        self.state = "idle"
+        self.state = IDLE
         self._tuning, self._inputs = tuning, inputs
         self._trail = Trail()
         self._topic = rospy.Publisher("~markers", MarkerArray, queue_size=1, latch=True)
@@ -79,7 +80,9 @@ class Display:
         odom = self._inputs.odom
         if odom is not None:
             position = odom.message.pose.pose.position
-            self._trail.add(odom.stamp_ns / NANOSECONDS, position.x, position.y)
+            is_placed = self._trail.add(odom.stamp_ns / NANOSECONDS, position.x, position.y)
+            if is_placed and (self.newest is None or self.newest.outcome is not None):  # a running goal goes on
+                self.newest, self.state = None, IDLE
         if self._topic.get_num_connections():
             robot = rospy.get_namespace().strip("/")
             state = f"{robot}: {self.state}" if robot else self.state  # its text may stand beside another robot

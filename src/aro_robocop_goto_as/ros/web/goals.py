@@ -82,8 +82,8 @@ class Goals(Part):
         gui, live = context.server.gui, context.state.now.live
         self._feedback_html = gui.add_html("")
         self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
-        cancel_button = gui.add_button("Cancel goal", icon="x", visible=live)
-        cancel_button.on_click(lambda _: cancel(context.requests))
+        self._cancel = gui.add_button("Cancel goal", icon="x", visible=live)
+        self._cancel.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
         self._robot = ""  # the one that the next four are about
         self._status: Optional[rospy.Subscriber] = None  # of its server
@@ -91,6 +91,8 @@ class Goals(Part):
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds
         self._feedback: Any = None  # the message
         self._history = GoalHistory()
+        self._resets = 0  # how often robots had been placed when the newest goal was shown
+        self._forgotten = ""  # a goal that ended before, which its server still reports for some seconds
         self._watched: Set[str] = set()
         context.server.scene.on_click()(self._on_click)
 
@@ -109,7 +111,7 @@ class Goals(Part):
         pose.header.frame_id = frame  # with time zero, which means the newest transforms
         pose.pose.position.x, pose.pose.position.y = point
         pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)
-        where = names.place(*point, frame)
+        where = text.position(*point)
         if not place:  # a 2D Nav Goal, which the bridge makes a goal of
             requests.publish(f"goal {where}", "move_base_simple/goal", pose, ": is the bridge running?")
         elif state.simulated:
@@ -138,7 +140,8 @@ class Goals(Part):
 
     def _on_status(self, _: float, message: GoalStatusArray) -> None:
         self._executing = any(STATES.get(entry.status) in UNFINISHED for entry in message.status_list)
-        self._newest = max(message.status_list, key=lambda entry: entry.goal_id.stamp, default=self._newest)
+        known = (entry for entry in message.status_list if entry.goal_id.id != self._forgotten)
+        self._newest = max(known, key=lambda entry: entry.goal_id.stamp, default=self._newest)
 
     def _on_goal(self, _: float, message: GoToPositionActionGoal) -> None:
         self._history.sent(message.goal_id.id, message.goal.position.x, message.goal.position.y)
@@ -148,6 +151,9 @@ class Goals(Part):
         self._history.ended(robot, goal_id, state, message.result.message)
 
     def show(self, state: PageState) -> None:
+        if state.resets != self._resets and self._newest is not None and not self._executing:
+            self._newest, self._forgotten = None, self._newest.goal_id.id
+        self._resets = state.resets
         connected = self._status is not None and bool(publishers_of(self._status))
         if not connected and not state.recorded:  # its server is gone
             self._executing = self._newest = self._feedback = None
@@ -162,8 +168,9 @@ class Goals(Part):
         rows = self._goal_rows(state.selected)
         if self._feedback is not None:
             feedback = self._feedback
-            errors = f"{feedback.position_error:.2f} m", f"{feedback.angle_error:.2f} rad"
-            rows += [("position error", errors[0]), ("angle error", errors[1]), ("feedback", feedback.message)]
+            errors = f"{feedback.position_error:.2f} m, {feedback.angle_error:.2f} rad"
+            rows += [("errors", errors), ("feedback", feedback.message)]
+        self._cancel.disabled = not answering or self._executing is False
         self._feedback_html.content = text.table(rows) if rows else ""
         if self._history_html is not None:
             several = len(state.robots) > 1
@@ -188,9 +195,12 @@ class Goals(Part):
         self.context.scene.show("goal", drawn.placed(self.context.locate))
 
     def _ended(self, ended: Ended, several: bool) -> Tuple[bool, str]:
-        goal = "goal" if ended.goal is None else self.context.place(ended.robot, *ended.goal)
-        robot = f"{ended.robot} " if several else ""
-        return ended.state == "SUCCEEDED", f"{robot}{goal}: {ended.message or ended.state}"
+        outcome, colon, message = text.short(ended.message).partition(": ")
+        if not (colon and outcome.isupper()):  # of another server
+            outcome, message = ended.state, ended.message
+        place = "" if ended.goal is None else self.context.place(ended.robot, *ended.goal)
+        words = " ".join(filter(None, (ended.robot if several else "", outcome, place)))
+        return ended.state == "SUCCEEDED", ", ".join(filter(None, (words, message)))
 
     def forget(self) -> None:
         self._history, self._feedback, self._executing, self._newest = GoalHistory(), None, None, None

@@ -9,6 +9,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...errors import FrameError
 from ...geometry import Pose3D, compose3
 from ...web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Shape, color_of
+from ...web.text import short
 from ..convert import from_quaternion
 
 KINDS = {
@@ -42,7 +43,7 @@ def to_shape(marker: Marker) -> Optional[Shape]:
         return None
     if (kind == MESH and (not points or len(points) % 3)) or (kind == LINE and len(points) < 2):
         return None
-    return Shape(kind, size, *color_of(color), points, marker.text[:500])
+    return Shape(kind, size, *color_of(color), points, short(marker.text[:500]))
 
 
 class MarkerStore:

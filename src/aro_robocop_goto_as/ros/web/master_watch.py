@@ -53,9 +53,7 @@ def look(state: SharedState) -> str:
         return f"the ROS master at {uri} reports a failure"
     publishers, _, services = system
     forgotten = registered and not _knows_this_node(services)
-    known = dict(types)
-    topics = tuple(sorted((topic, known.get(topic, "")) for topic, nodes in publishers if nodes))
-    state.change(robots=robots_of(known, publishers) or ("",), topics=topics, forgotten=forgotten)
+    state.change(robots=robots_of(dict(types), publishers) or ("",), forgotten=forgotten)
     return f"the ROS master at {uri} was restarted, connecting to it" if forgotten else ""
 
 

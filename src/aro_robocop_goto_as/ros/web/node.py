@@ -12,15 +12,15 @@ import yaml
 from ...errors import ParameterError, RobocopError
 from ...names import WEB
 from ...param_loading import from_dict
-from ...web import access
+from ...web import access, text
 from ...web.frames import FrameTree
-from ...web.page import set_up
-from ...web.scene import PageScene
+from ...web.page import Cameras, set_up
+from ...web.scene import PageScene, color_of
 from ...web.state import PageState, SharedState
 from ...web_params import WebParams
+from .. import markers
 from ..node_main import answer_help, node
 from .goals import Goals
-from .lab import Lab
 from .log import Log
 from .master_watch import watch_master
 from .part import Context, Inbox, Part
@@ -30,17 +30,17 @@ from .replay import Replay, failures
 from .requests import Requests
 from .robots import Robots
 from .scenery import Scenery
-from .server import start_server
+from .server import LAB, start_server
 from .status import Status
 from .teleop import Teleop
 from .time_controls import TimeControls
-from .topics import Topics
 from .view import View
 
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
 TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
 MASTER_PERIOD = 0.1  # [s, wall] between two checks for a ROS master at the start
+SECTOR = {"free": markers.FREE, "near": markers.NEAR, "too near": markers.BLOCKED, "no scan": markers.UNKNOWN}
 ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
 
@@ -72,17 +72,15 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
         parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
+        sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
+        context.server.gui.add_html(text.legend("sector ahead", sector))
+        if live and LAB.is_file():
+            context.server.gui.add_html(text.link("/lab.md", "The lab, step by step"))
     with tabs.add_tab("Plots"):
         for plotted in PLOTTED:
             parts.append(Plot(context, plotted) if player is None else RecordedPlot(context, plotted, player, failed))
         if not p.view_only:
             parts.append(Log(context))
-    if not p.view_only:  # a page that is only looked at subscribes to nothing that it does not need for the scene
-        with tabs.add_tab("Topics"):
-            parts.append(Topics(context))
-    if live:
-        with tabs.add_tab("Lab"):
-            parts.append(Lab(context))
     with tabs.add_tab("View"):
         parts.append(View(context))
     return parts
@@ -101,8 +99,9 @@ class WebNode:
         scene, requests = PageScene(server.scene), Requests(self._state)
         context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
+        cameras = Cameras(server)
         status = Status(context)
-        self._parts = [Robots(context), status, *add_parts(context, p, player), Scenery(context)]
+        self._parts = [Robots(context), status, *add_parts(context, p, player), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
         self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are

@@ -9,6 +9,7 @@ import rospy
 
 from ... import names
 from ...geometry import Pose3D, compose3
+from ...web import text
 from ...web.frames import FrameTree
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
@@ -33,13 +34,13 @@ class Context:
         return self.frames.lookup(self.state.now.root, frame.lstrip("/"))
 
     def place(self, robot: str, x: float, y: float) -> str:
-        """A position in a robot's odom [m] in words: in the fixed frame where that is known, with the frame's name."""
+        """A position in a robot's odom [m] in words: in the fixed frame, or where that is unknown in odom, it says."""
         odom = self.frame_of(robot, "odom")
         fixed_from_odom = self.frames.lookup(self.fixed_frame, odom)
         if fixed_from_odom is None:
-            return names.place(x, y, odom)
+            return f"{text.position(x, y)} in {odom}"
         x, y, _ = compose3(fixed_from_odom, Pose3D((x, y, 0.0))).position
-        return names.place(x, y, self.fixed_frame)
+        return text.position(x, y)
 
     def frame_of(self, robot: str, link: str) -> str:
         """A link's frame, which has the robot's name as a prefix if there are several robots."""

@@ -22,7 +22,7 @@ MOST = 900  # samples: 30 Hz
 HEIGHT = 110  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
-AXES = ({"size": 40, "grid": {"show": False}}, {"size": 42})
+TIME = {"size": 32, "grid": {"show": False}, "labelSize": 18, "labelFont": "12px sans-serif"}
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
 SHARE = "share"  # scale from 0 to 1, of what marks a time
 PLAYED: Dict[str, Any] = {"label": "played", "scale": SHARE, "stroke": "#868e96", "fill": "rgba(134,142,150,0.18)"}
@@ -54,25 +54,28 @@ PLOTTED = (
 )
 
 
-def add_plot(gui: Any, texts: Tuple[str, str, str], data: Sequence[Any], span: Tuple[float, float], *marks: Any) -> Any:
-    """A plot with its title, two figures and marks; data: times [s], the figures, the marks; span: of the time axis."""
-    title, *labels = texts
+def add_plot(gui: Any, texts: Tuple[str, ...], data: Sequence[Any], span: Tuple[float, float], *marks: Any) -> Any:
+    """A plot with two figures and marks; data: times [s], the figures, the marks; span: of the time axis [s].
+
+    texts: title, labels of the figures and of the time axis
+    """
+    title, *labels, axis = texts
     figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
     series = ({"label": "t [s]"}, *figures, *({"points": {"show": False}, **mark} for mark in marks))
     scales = {"x": {"time": False, "range": span}, "y": {"range": AROUND_ZERO}, SHARE: {"range": (0.0, 1.0)}}
-    look = {"axes": AXES, "legend": {"live": False}, "height": HEIGHT, "padding": (10, 12, 0, 0)}
+    look = {"axes": ({**TIME, "label": axis}, {"size": 42}), "legend": {"live": False}, "height": HEIGHT, "padding": (10, 12, 0, 0)}
     return gui.add_uplot(tuple(data), series, title=title, scales=scales, **look)
 
 
 class Plot(Part):
-    """The last seconds; sent only while something is received."""
+    """The last seconds until now; sent only while there is something in them."""
 
     def __init__(self, context: Context, plotted: Plotted) -> None:
         super().__init__(context)
         self._plotted = plotted
-        self._handle = add_plot(context.server.gui, plotted.texts, columns((), 0.0), (-SPAN, 0.0))
+        self._handle = add_plot(context.server.gui, (*plotted.texts, "time [s], 0 is now"), columns((), 0.0), (-SPAN, 0.0))
         self._samples: Deque[Sample] = deque(maxlen=MOST)
-        self._changed = False
+        self._changed = False  # the robot
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
@@ -84,12 +87,13 @@ class Plot(Part):
 
     def _on_message(self, at: float, message: Any) -> None:
         self._samples.append((at, *self._plotted.figures(message)))
-        self._changed = True
 
     def show(self, state: PageState) -> None:
         now = time.monotonic()
-        if self._changed and now - self._shown_at >= PERIOD:
+        if (self._changed or self._samples) and now - self._shown_at >= PERIOD:
             self._shown_at, self._changed = now, False
+            while self._samples and now - self._samples[0][0] > SPAN:
+                self._samples.popleft()
             self._handle.data = columns(self._samples, now)
 
 
@@ -107,7 +111,7 @@ class RecordedPlot(Part):
             self._marked = (spikes,)
         nothing, marks = np.zeros(POINTS), (PLAYED, FAILED)[: 1 + len(self._marked)]
         data = (self._times, nothing, nothing, nothing, *self._marked)
-        self._handle = add_plot(context.server.gui, plotted.texts, data, (0.0, player.duration), *marks)
+        self._handle = add_plot(context.server.gui, (*plotted.texts, "time [s]"), data, (0.0, player.duration), *marks)
         self._figures: Tuple[np.ndarray, ...] = ()  # not read yet
         self._position = math.nan  # [s] that is shown
 
@@ -125,9 +129,8 @@ class RecordedPlot(Part):
 
 
 def columns(samples: Iterable[Sample], now: float) -> Tuple[np.ndarray, ...]:
-    """Those of the last seconds: times before `now` [s], negative, and both figures; all (n,), and never empty."""
-    recent = [sample for sample in samples if now - sample[0] <= SPAN]
-    table = np.array(recent or [(now, 0.0, 0.0)])
+    """Times before `now` [s], negative, and both figures; all (n,), and never empty."""
+    table = np.array([*samples] or [(now, 0.0, 0.0)])
     table[:, 0] -= now
     return tuple(np.ascontiguousarray(column) for column in table.T)
 

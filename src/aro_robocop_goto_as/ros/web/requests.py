@@ -16,7 +16,7 @@ MOST_WAITING = 8  # requests
 
 
 class Requests:
-    """Carries out one request after the other; the state holds the last one's outcome.
+    """Carries out one request after the other; the state says what the last one failed with.
 
     Requests are ignored where nobody may send them, and while there is no ROS master, which the page says.
     """
@@ -38,7 +38,7 @@ class Requests:
             publisher = self._publishers[topic]
             connected = wait_until(lambda: publisher.get_num_connections() > 0, CONNECT_PATIENCE)
             publisher.publish(message)
-            return f"sent to {topic}" if connected else f"nobody subscribes to {topic}{otherwise}"
+            return "" if connected else f"nobody subscribes to {topic}{otherwise}"
 
         self._post(what, publish)
 
@@ -48,7 +48,8 @@ class Requests:
         def call() -> str:
             name = absolute(SIMULATOR, service)
             rospy.wait_for_service(name, SERVICE_PATIENCE)
-            return str(getattr(rospy.ServiceProxy(name, kind)(*arguments), "message", "set"))
+            answer = rospy.ServiceProxy(name, kind)(*arguments)
+            return "" if getattr(answer, "success", True) else answer.message
 
         self._post(what, call)
 
@@ -60,7 +61,7 @@ class Requests:
                 self._answer(what, f"ignored, because {self._waiting} is still waiting for its answer")
 
     def _answer(self, what: str, outcome: str) -> None:
-        self._state.change(answer=f"{what}: {outcome}")
+        self._state.change(answer=f"{what}: {outcome}" if outcome else "")
 
     def _step(self) -> None:
         what, job = self._jobs.get()

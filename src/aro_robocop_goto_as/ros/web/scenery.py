@@ -10,7 +10,7 @@ from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
 from ...names import SERVER, SIMULATOR, absolute
-from ...web.page import show_places
+from ...web.page import Cameras
 from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
 from .marker_shapes import MarkerStore, to_pose
@@ -27,8 +27,9 @@ UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 
 class Scenery(Part):
     """Scan and map wait until their frames are known, and are drawn once."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, cameras: Cameras) -> None:
         super().__init__(context)
+        self._cameras = cameras
         self._world, self._server = MarkerStore(), MarkerStore()
         self._scan: Optional[LaserScan] = None  # that is not drawn yet, as the map
         self._map: Optional[OccupancyGrid] = None
@@ -58,7 +59,7 @@ class Scenery(Part):
         scene, locate = self.context.scene, self.context.locate
         world = self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ())
         if world and not scene.draws("world"):
-            show_places(self.context.server, (pose.position for _, pose in world.values()))
+            self._cameras.show(pose.position for _, pose in world.values())
         scene.show("world", world)
         scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
         pose = None if self._scan is None else locate(self._scan.header.frame_id)

@@ -4,12 +4,14 @@ import contextlib
 import io
 import os
 import socket
+from pathlib import Path
 from typing import Any, Iterator, Optional
 
 from ...errors import WebError
 from ...web import access
 from ...web_params import WebParams
 
+LAB = Path(__file__).parents[4] / "docs" / "lab.md"
 LARGEST_REQUEST = 1 << 20  # [byte] that a page may send at once
 HEADERS = {
     "Content-Security-Policy": access.CONTENT_POLICY,
@@ -52,7 +54,12 @@ def _checked_requests(p: WebParams, listening: Optional[socket.socket]) -> Itera
     def checking_serve(handler: Any, host: str, port: int, process_request: Any, **options: Any) -> Any:
         def process(connection: Any, request: Any) -> Any:
             reason = access.refusal(request.headers.get_all("Host"), request.headers.get_all("Origin"), names, origins)
-            response = connection.respond(403, reason + "\n") if reason else process_request(connection, request)
+            if reason:
+                response = connection.respond(403, reason + "\n")
+            elif request.path == "/lab.md" and LAB.is_file():
+                response = connection.respond(200, LAB.read_text(encoding="utf-8"))
+            else:
+                response = process_request(connection, request)
             if response is not None:
                 response.headers.update(HEADERS)
             return response

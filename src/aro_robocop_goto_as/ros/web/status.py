@@ -10,7 +10,6 @@ from aro_robocop_goto_as.msg import SimStatus
 from ...geometry import Pose3D
 from ...names import ACTION, BRIDGE, SIMULATOR, absolute
 from ...web import text
-from ...web.page import LOOK_AT
 from ...web.scene import TEXT, Shape
 from ...web.state import PageState
 from .part import Context, Inbox, Part
@@ -75,20 +74,16 @@ class Status(Part):
     def _show_notice(self) -> None:
         empty = not any(self.context.scene.draws(group) for group in GROUPS)
         notice = Shape(TEXT, text="waiting for the simulator, or for a robot's topics")
-        self.context.scene.show("notice", {"notice": (notice, Pose3D(LOOK_AT))} if empty else {})
+        self.context.scene.show("notice", {"notice": (notice, Pose3D())} if empty else {})
 
     def _rows(self, state: PageState) -> List[Tuple[str, str]]:
         rows, sim = [], self._sim
         if sim is not None:
-            asked = f"{sim.factor_asked:g}" if sim.factor_asked > 0.0 else "as fast as possible"
-            speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}, requested {asked}"
-            rows += [
-                ("world", f"{sim.world} (seed {sim.seed}, {sim.drive}, {sim.sync})"),
-                ("time", f"{sim.stamp.to_sec():.0f} s, {speed}"),
-            ]
+            speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}"
+            rows += [("world", sim.world), ("time", f"{sim.stamp.to_sec():.0f} s, {speed}")]
         if len(state.robots) != 1:
             rows.append(("robots", str(len(state.robots))))
         answers = "answers, no report from the bridge" if state.answering else "does not publish its status"
-        ready = f"{ACTION} is ready"  # what the bridge adds to that, and its words for a goal, the page shows elsewhere
-        report = ready if self._bridge.startswith(ready) else self._bridge
-        return [*rows, ("server", f"{ACTION} executes a goal" if state.executing else report or answers)]
+        # What the bridge adds to that, and its words for a goal, the page shows elsewhere.
+        report = "ready" if self._bridge.startswith(f"{ACTION} is ready") else self._bridge
+        return [*rows, ("server", "executes a goal" if state.executing else report or answers)]

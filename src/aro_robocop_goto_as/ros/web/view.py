@@ -3,7 +3,7 @@
 import math
 import time
 from dataclasses import replace
-from typing import Optional
+from typing import Dict, List, Mapping, Optional
 
 import numpy as np
 from nav_msgs.msg import Odometry
@@ -20,7 +20,7 @@ from .part import Context, Inbox, Part
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
 TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
-CROWDED = 0.06  # [m] between two frames; nearer ones hide each other's names
+CROWDED = 0.6  # [m] between two frames; the names of nearer ones are below each other beside one of them
 STILL = 0.005  # [m] that the robot may move before the cameras follow
 
 
@@ -52,7 +52,8 @@ class View(Part):
     def _on_odometry(self, _: float, message: Odometry) -> None:
         position = message.pose.pose.position
         self._odom = message.header.frame_id
-        self._trail.add(message.header.stamp.to_sec(), position.x, position.y)
+        if self._trail.add(message.header.stamp.to_sec(), position.x, position.y):
+            self.context.state.change(resets=self.context.state.now.resets + 1)
 
     def _on_image(self, _: float, message: Image) -> None:
         self._message = message
@@ -71,14 +72,8 @@ class View(Part):
         self.context.scene.show("trail", group)
 
     def _show_frames(self) -> None:
-        group: Group = {}
-        for name in self.context.frames.names() if self._frames.value else ():
-            pose = self.context.locate(name)
-            if pose is not None and all(
-                math.dist(pose.position, other.position) > CROWDED for _, other in group.values()
-            ):
-                group[name] = (Shape(FRAME, text=name), pose)
-        self.context.scene.show("frames", group)
+        located = {name: self.context.locate(name) for name in self.context.frames.names() if self._frames.value}
+        self.context.scene.show("frames", frames({name: pose for name, pose in located.items() if pose is not None}))
 
     def _show_image(self) -> None:
         now = time.monotonic()
@@ -104,6 +99,15 @@ class View(Part):
 
     def forget(self) -> None:
         self._trail = Trail()
+
+
+def frames(poses: Mapping[str, Pose3D]) -> Group:
+    """The axes of frames; those that are near each other have their names beside the first of them."""
+    first: Dict[str, List[str]] = {}
+    for name, pose in poses.items():
+        near = (other for other in first if math.dist(pose.position, poses[other].position) < CROWDED)
+        first.setdefault(next(near, name), []).append(name)
+    return {name: (Shape(FRAME, text="\n".join(first.get(name, ()))), pose) for name, pose in poses.items()}
 
 
 def camera_image(message: Image) -> Optional[np.ndarray]:

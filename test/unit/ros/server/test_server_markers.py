@@ -10,14 +10,8 @@ from visualization_msgs.msg import Marker
 from aro_robocop_goto_as.goto import Goal, Outcome
 from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.ros import markers
-from aro_robocop_goto_as.ros.server.server_markers import (
-    BLOCKED,
-    FREE,
-    NEAR,
-    UNKNOWN,
-    cone_color,
-    server_markers,
-)
+from aro_robocop_goto_as.ros.markers import BLOCKED, FREE, NEAR, UNKNOWN
+from aro_robocop_goto_as.ros.server import server_markers
 
 ODOM, SCAN = Odometry(child_frame_id="base_footprint"), LaserScan()
 ODOM.header.frame_id, SCAN.header.frame_id = "odom", "base_scan"
@@ -26,11 +20,27 @@ INPUTS = SimpleNamespace(odom=SimpleNamespace(message=ODOM), scan=SimpleNamespac
 
 def shown(goal, trail=()):
     """The markers by namespace."""
-    return {marker.ns: marker for marker in server_markers(GotoParams(), INPUTS, goal, "idle", trail).markers}
+    return {marker.ns: marker for marker in server_markers.server_markers(GotoParams(), INPUTS, goal, "idle", trail).markers}
 
 
-def test_there_is_no_goal_before_the_first_one():
-    assert set(shown(None)) == {"safety_cone", "robot_ring", "state", "trail"}
+def test_there_is_no_goal_before_the_first_one_and_after_a_reset():
+    assert {name for name, marker in shown(None).items() if marker.action == Marker.DELETE} == {*markers.GOAL, "trail"}
+
+
+@pytest.mark.parametrize("outcome, stays", [(Outcome.OBSTACLE, False), (None, True)])
+def test_a_goal_that_has_ended_is_gone_when_the_robot_is_placed_elsewhere(monkeypatch, outcome, stays):
+    published = []
+    topic = SimpleNamespace(get_num_connections=lambda: 1, publish=published.append)
+    monkeypatch.setattr(server_markers.rospy, "Publisher", lambda *_, **__: topic)
+    monkeypatch.setattr(server_markers.rospy, "Timer", lambda *_, **__: None)
+    odom = Odometry(child_frame_id="base_footprint")
+    inputs = SimpleNamespace(odom=SimpleNamespace(message=odom, stamp_ns=0), scan=None)
+    display = server_markers.Display(SimpleNamespace(params=GotoParams()), inputs)
+    display.newest, display.state = SimpleNamespace(goal=Goal(1.0, -2.0), outcome=outcome), "OBSTACLE"
+    for x in (0.0, 1.0):
+        odom.pose.pose.position.x, inputs.odom.stamp_ns = x, inputs.odom.stamp_ns + 10**8
+        display._publish(None)
+    assert (display.newest is not None, display.state) == (stays, "OBSTACLE" if stays else server_markers.IDLE)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +57,7 @@ def test_goal_stays_when_it_has_ended_and_its_colour_says_how(outcome, color):
 
 @pytest.mark.parametrize("clearance, color", [(None, UNKNOWN), (0.29, BLOCKED), (0.31, NEAR), (0.61, FREE)])
 def test_sector_ahead_says_by_its_colour_how_near_an_obstacle_is(clearance, color):
-    assert cone_color(clearance, 0.3) == color
+    assert server_markers.cone_color(clearance, 0.3) == color
 
 
 def test_trail_is_a_line_in_odom_which_is_removed_when_it_starts_again():

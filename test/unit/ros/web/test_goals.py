@@ -28,7 +28,7 @@ def test_a_click_sends_a_2d_nav_goal():
     part, context = made()
     part._on_click(CLICK)
     what, topic, pose, _ = context.requests.publish.call_args[0]
-    assert (what, topic, pose.header.frame_id) == ("goal x 1.00 y 2.00 in map", "move_base_simple/goal", "map")
+    assert (what, topic, pose.header.frame_id) == ("goal (1.00, 2.00)", "move_base_simple/goal", "map")
     assert (pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w) == (1.0, 2.0, 1.0)
 
 
@@ -58,7 +58,7 @@ def shown(part, context):
     """Whether the server is there, whether it executes a goal, and whether feedback is shown."""
     part.show(context.state.now)
     state = context.state.now
-    return state.answering, state.executing, "angle error" in part._feedback_html.content
+    return state.answering, state.executing, "errors" in part._feedback_html.content
 
 
 def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_long_both_take():
@@ -83,9 +83,9 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
     part._on_status(0.0, GoalStatusArray(status_list=[status]))
-    assert part._goal_rows("red") == [("goal", "ACTIVE x 1.00 y 0.00 in odom")]
+    assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
-    assert part._goal_rows("red") == [("goal", "ACTIVE x 0.30 y 0.20 in map")]
+    assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20)")]
 
 
 def test_the_history_holds_the_last_goals_with_their_positions():

@@ -3,10 +3,12 @@
 import time
 from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
 from geometry_msgs.msg import Twist
 
-from aro_robocop_goto_as.ros.web.plots import MOST, PLOTTED, POINTS, SPAN, Plot, RecordedPlot, columns
+from aro_robocop_goto_as.ros.web import plots
+from aro_robocop_goto_as.ros.web.plots import MOST, PLOTTED, POINTS, SPAN, Plot, RecordedPlot, columns, held
 from aro_robocop_goto_as.ros.web.replay import Failure
 from aro_robocop_goto_as.web.state import PageState
 
@@ -36,6 +38,18 @@ def test_the_whole_recording_is_plotted_with_the_played_part_and_the_failures_ma
     assert times[failed > 0.0] == pytest.approx([15.0], abs=20.0 / POINTS)
 
 
+def test_plot_are_sent_only_when_the_cursor_moves(player, context):
+    plot = RecordedPlot(context, PLOTTED[1], player, [])
+    plot.subscribe_to_robot(MagicMock(), "")
+    plot.show(PageState())
+    sent = plot._handle.data
+    plot.show(PageState())
+    assert plot._handle.data is sent
+    player.position = 6.0
+    plot.show(PageState())
+    assert plot._handle.data is not sent and np.sum(plot._handle.data[3]) > np.sum(sent[3])
+
+
 def test_the_last_messages_are_plotted_until_another_robot_is_selected(context):
     plot, inbox = Plot(context, PLOTTED[1]), MagicMock()
     plot.subscribe_to_robot(inbox, "blue")
@@ -51,9 +65,24 @@ def test_the_last_messages_are_plotted_until_another_robot_is_selected(context):
     assert plot._handle.data[0].shape == (1,)
 
 
-def test_a_plot_shows_the_last_seconds_relative_to_now():
-    samples = [(float(second), float(second), -float(second)) for second in range(100)]
-    times, first, second_figure = columns(samples, 99.0)
-    assert times.tolist() == [float(t) for t in range(-int(SPAN), 1)]
-    assert first[-1] == 99.0 and second_figure[-1] == -99.0
-    assert columns(samples, 109.0)[0][0] == -SPAN
+def test_a_plot_goes_on_to_now_when_nothing_more_is_received_and_forgets_what_is_older_than_it_shows(
+    context, monkeypatch
+):
+    plot, now = Plot(context, PLOTTED[1]), [100.0]
+    monkeypatch.setattr(plots.time, "monotonic", lambda: now[0])
+    plot._on_message(100.0, Twist())
+    plot._on_message(110.0, Twist())
+    for now[0], times in ((115.0, [-15.0, -5.0]), (100.0 + SPAN + 1.0, [9.0 - SPAN]), (111.0 + SPAN, [0.0])):
+        plot.show(PageState())
+        assert plot._handle.data[0].tolist() == times
+
+
+def test_a_plot_without_samples_is_not_empty():
+    assert [column.shape for column in columns((), 5.0)] == [(1,)] * 3
+
+
+def test_a_figure_holds_its_newest_value_and_is_zero_before_the_first():
+    times = np.array((0.0, 1.0, 1.5, 2.0, 9.0))
+    first, second = held(((1.0, 5.0, -5.0), (2.0, 7.0, -7.0)), times)
+    assert first.tolist() == [0.0, 5.0, 5.0, 7.0, 7.0] and second.tolist() == [0.0, -5.0, -5.0, -7.0, -7.0]
+    assert [figure.tolist() for figure in held((), times)] == [[0.0] * 5] * 2
