@@ -67,8 +67,12 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
     """Add what the panel shows below the status: goals, tabs."""
     live, goals = context.state.now.live, Goals(context)
     failed = [] if player is None else failures(player.path, player.beginning)
-    parts: List[Part] = [goals] if player is None else [Replay(context, player, failed, p.replay_speed), goals]
+    replay = None if player is None else Replay(context, player, failed, p.replay_speed)
+    parts: List[Part] = [goals] if replay is None else [replay, goals]
     tabs = context.server.gui.add_tab_group()
+    if replay is not None and failed:
+        with tabs.add_tab("Checks"):
+            replay.add_failures()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
         parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]

@@ -31,14 +31,18 @@ class Replay(Part):
         """speed: at the beginning"""
         super().__init__(context)
         gui = context.server.gui
-        self._player, self._reported = player, bool(failed)
+        self._player, self._failed = player, failed
         self._progress = gui.add_html("")
         buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
         buttons.on_click(lambda event: player.play(event.target.value == PLAY))
         longest = max(round(player.duration, 1), 0.1)
         self._time = Slider(gui, "Time", longest, 0.0, "seconds since the beginning", player.seek, low=0.0)
         Slider(gui, "Speed", 10.0, speed, "recorded seconds per second", player.set_speed)
-        for failure in failed:
+
+    def add_failures(self) -> None:
+        """List the failed checks in the part of the panel that is open now."""
+        gui = self.context.server.gui
+        for failure in self._failed:
             with gui.add_folder(f"✗ {failure.check}, failed at {failure.time:.1f} s"):
                 gui.add_html(text.answer(failure.text))
                 gui.add_button("Show the moment", icon="player-skip-back").on_click(self._to(failure))
@@ -50,7 +54,7 @@ class Replay(Part):
         position, speed = self._player.position, self._player.speed
         how = f"factor {speed:g}" if speed else "paused"
         rows = [("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")]
-        if self._reported:  # the causes of its failures name times, too
+        if self._failed:  # the causes of its failures name times, too
             rows.append(("in the report", f"{self._player.beginning + position:.1f} s"))
         self._progress.content = text.table(rows)
         self._time.show(round(position, 1))
@@ -73,5 +77,9 @@ def failures(bag: str, beginning: float) -> List[Failure]:
 
 def _failure(check: Any, beginning: float) -> Failure:
     failure = check["failure"]
-    text = f"{failure['cause']} Expected {failure['expected']}, got {failure['seen']}."
+    text = f"{_sentence(failure['cause'])} Expected {failure['expected']}, got {_sentence(failure['seen'])}"
     return Failure(str(check["name"]), float(failure["time"]) - beginning, text)
+
+
+def _sentence(text: str) -> str:
+    return text if text.endswith((".", "?", "!")) else f"{text}."

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.web.state import PageState
 
 
 def check(name: str, scenario: str, time: Optional[float]) -> Dict[str, Any]:
-    failure = None if time is None else {"expected": "A", "seen": "B", "time": time, "cause": "Why."}
+    failure = None if time is None else {"expected": "A", "seen": "B", "time": time, "cause": "Why"}
     return {"name": name, "part": "server", "scenario": scenario, "failure": failure}
 
 
