@@ -19,7 +19,9 @@ def room(low=(-2.5, -2.5), high=(2.5, 2.5)) -> np.ndarray:
 
 
 def server_of(*sizes) -> SimpleNamespace:
-    clients = [SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height)) for width, height in sizes]
+    clients = [
+        SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height)) for width, height in sizes
+    ]
     connected = []
     server = SimpleNamespace(initial_camera=SimpleNamespace(), get_clients=lambda: dict(enumerate(clients)))
     server.on_client_connect = connected.append

@@ -13,7 +13,6 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from aro_robocop_goto_as.srv import SetPose
 
-from ... import names
 from ...names import ACTION, absolute
 from ...web import text
 from ...web.page import floor_point

@@ -7,7 +7,6 @@ from typing import Any, Callable, Deque, List, Optional, Tuple
 
 import rospy
 
-from ... import names
 from ...geometry import Pose3D, compose3
 from ...web import text
 from ...web.frames import FrameTree

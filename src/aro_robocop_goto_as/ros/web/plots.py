@@ -22,7 +22,7 @@ MOST = 900  # samples: 30 Hz
 HEIGHT = 110  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
-TIME = {"size": 32, "grid": {"show": False}, "labelSize": 18, "labelFont": "12px sans-serif"}
+TIME: Dict[str, Any] = {"size": 32, "grid": {"show": False}, "labelSize": 18, "labelFont": "12px sans-serif"}
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
 SHARE = "share"  # scale from 0 to 1, of what marks a time
 PLAYED: Dict[str, Any] = {"label": "played", "scale": SHARE, "stroke": "#868e96", "fill": "rgba(134,142,150,0.18)"}
@@ -63,7 +63,12 @@ def add_plot(gui: Any, texts: Tuple[str, ...], data: Sequence[Any], span: Tuple[
     figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
     series = ({"label": "t [s]"}, *figures, *({"points": {"show": False}, **mark} for mark in marks))
     scales = {"x": {"time": False, "range": span}, "y": {"range": AROUND_ZERO}, SHARE: {"range": (0.0, 1.0)}}
-    look = {"axes": ({**TIME, "label": axis}, {"size": 42}), "legend": {"live": False}, "height": HEIGHT, "padding": (10, 12, 0, 0)}
+    look = {
+        "axes": ({**TIME, "label": axis}, {"size": 42}),
+        "legend": {"live": False},
+        "height": HEIGHT,
+        "padding": (10, 12, 0, 0),
+    }
     return gui.add_uplot(tuple(data), series, title=title, scales=scales, **look)
 
 
@@ -73,7 +78,9 @@ class Plot(Part):
     def __init__(self, context: Context, plotted: Plotted) -> None:
         super().__init__(context)
         self._plotted = plotted
-        self._handle = add_plot(context.server.gui, (*plotted.texts, "time [s], 0 is now"), columns((), 0.0), (-SPAN, 0.0))
+        self._handle = add_plot(
+            context.server.gui, (*plotted.texts, "time [s], 0 is now"), columns((), 0.0), (-SPAN, 0.0)
+        )
         self._samples: Deque[Sample] = deque(maxlen=MOST)
         self._changed = False  # the robot
         self._shown_at = 0.0  # [s, wall]

@@ -20,7 +20,9 @@ INPUTS = SimpleNamespace(odom=SimpleNamespace(message=ODOM), scan=SimpleNamespac
 
 def shown(goal, trail=()):
     """The markers by namespace."""
-    return {marker.ns: marker for marker in server_markers.server_markers(GotoParams(), INPUTS, goal, "idle", trail).markers}
+    return {
+        marker.ns: marker for marker in server_markers.server_markers(GotoParams(), INPUTS, goal, "idle", trail).markers
+    }
 
 
 def test_there_is_no_goal_before_the_first_one_and_after_a_reset():
