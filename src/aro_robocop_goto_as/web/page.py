@@ -59,7 +59,7 @@ class Cameras:
         self._corners = corners_of(())
         server.initial_camera.fov = FIELD
         self._set_first()
-        server.on_client_connect(self._turn)
+        server.on_client_connect(self._add)
 
     def show(self, places: Iterable[Vector3]) -> None:
         """Turn to the origin and these places [m], unless that is what they show: a chosen view then stays."""
@@ -73,6 +73,14 @@ class Cameras:
     def _set_first(self) -> None:
         first = self._server.initial_camera
         first.position, first.look_at = view_of(self._corners, *DESK)
+
+    def _add(self, client: Any) -> None:
+        def on_update(camera: Any) -> None:
+            if np.allclose(camera.position, self._server.initial_camera.position):
+                self._turn(client)
+
+        client.camera.on_update(on_update)  # a slow browser may show the first view later; and "reset view" does
+        self._turn(client)
 
     def _turn(self, client: Any) -> None:
         camera = client.camera

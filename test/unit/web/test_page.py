@@ -20,7 +20,8 @@ def room(low=(-2.5, -2.5), high=(2.5, 2.5)) -> np.ndarray:
 
 def server_of(*sizes) -> SimpleNamespace:
     clients = [
-        SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height)) for width, height in sizes
+        SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height, on_update=lambda _: None))
+        for width, height in sizes
     ]
     connected = []
     server = SimpleNamespace(initial_camera=SimpleNamespace(), get_clients=lambda: dict(enumerate(clients)))
@@ -74,6 +75,18 @@ def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew
     camera.position = chosen = (1.0, 2.0, 3.0)
     server.cameras.show(places)
     assert camera.position == chosen
+
+
+def test_a_browser_that_reports_the_first_view_later_is_turned_again() -> None:
+    server, reported = server_of((390, 844)), []
+    client = SimpleNamespace(camera=SimpleNamespace(image_width=390, image_height=844, on_update=reported.append))
+    server.cameras._add(client)
+    shown, client.camera.position = client.camera.position, server.initial_camera.position
+    reported[0](client.camera)
+    assert client.camera.position == pytest.approx(shown)
+    client.camera.position = chosen = np.array((1.0, 2.0, 3.0))
+    reported[0](client.camera)
+    assert client.camera.position is chosen
 
 
 def test_what_is_very_far_away_does_not_make_the_robot_invisible() -> None:
