@@ -17,7 +17,6 @@ class WebParams:
     web_linear_velocity: float = positive(0.2, high=100.0)
     web_angular_velocity: float = positive(1.0, high=100.0)
     replay: str = ""
-    replay_speed: float = parameter(1.0, low=0.1, high=10.0)
     replay_waits: bool = True
     view_only: bool = False
 

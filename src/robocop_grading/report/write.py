@@ -22,6 +22,7 @@ from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
 MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖"}  # of outcomes in the summary
+LEAD = 1.0  # [s] before a failure, from where on a replay shows it
 MOST_LINES = 60  # of a node's output in the report
 
 
@@ -200,8 +201,16 @@ def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str,
             "svg": _plot(plot, record, moments),
             "also_passed": [other.sentence for other in others] if passed else [],
             "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
+            "start": _start(check, record),
             "anchor": f"{check.part}-{check.name}",
         }
+
+
+def _start(check: CheckResult, record: Record) -> str:
+    """The time of the scenario's bag [s] a little before a check failed; nothing for one that passed."""
+    if check.failure is None or not record.samples:
+        return ""
+    return f"{max(0.0, check.failure.time - record.samples[0].time - LEAD):.1f}"
 
 
 # -- pages made from templates/ --

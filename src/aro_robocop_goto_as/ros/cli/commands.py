@@ -3,6 +3,7 @@
 The shell script `robocop` starts it when nothing may be installed yet, so it uses Python's standard library only.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -132,12 +133,25 @@ def record(arguments: List[str]) -> None:
     program.start("rosrun", "rosbag", "record", "--quiet", f"--output-name={bag}", "--regex", RECORDED)
 
 
+def _seconds(words: List[str]) -> str:
+    """The number after --start."""
+    try:
+        if math.isfinite(value := float(words[0])) and value >= 0.0:
+            return words[0]
+    except (IndexError, ValueError):
+        pass
+    refuse(f"replay: --start: expected seconds after the recording's beginning, got {' '.join(words) or 'nothing'}")
+
+
 def replay(arguments: List[str]) -> None:
     """Play a bag in the web page, and in RViz if a display is available."""
     bag = arguments[0] if arguments else ""
     if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
         refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
-    given = LaunchArguments.parse(REPLAY, arguments[1:])
+    rest = arguments[1:]
+    if rest[:1] == ["--start"]:
+        rest = [f"start:={_seconds(rest[1:2])}", *rest[2:]]
+    given = LaunchArguments.parse(REPLAY, rest)
     shown = x_display.answers()
     program.need("web", *["rviz"] * shown)
     refuse_second_simulator()

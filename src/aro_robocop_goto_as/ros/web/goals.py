@@ -200,6 +200,3 @@ class Goals(Part):
         place = "" if ended.goal is None else self.context.place(ended.robot, *ended.goal)
         words = " ".join(filter(None, (ended.robot if several else "", outcome, place)))
         return ended.state == "SUCCEEDED", ", ".join(filter(None, (words, message)))
-
-    def forget(self) -> None:
-        self._history, self._feedback, self._executing, self._newest = GoalHistory(), None, None, None

@@ -34,6 +34,3 @@ class Log(Part):
 
     def show(self, state: PageState) -> None:
         self._html.content = text.log(reversed(self._lines))
-
-    def forget(self) -> None:
-        self._lines.clear()

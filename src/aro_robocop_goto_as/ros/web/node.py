@@ -24,9 +24,8 @@ from .goals import Goals
 from .log import Log
 from .master_watch import watch_master
 from .part import Context, Inbox, Part
-from .player import Player
-from .plots import PLOTTED, Plot, RecordedPlot
-from .replay import Replay, failures
+from .plots import PLOTTED, Plot
+from .replay import Replay
 from .requests import Requests
 from .robots import Robots
 from .scenery import Scenery
@@ -63,14 +62,13 @@ def load_params(arguments: Sequence[str]) -> WebParams:
     return from_dict(WebParams, raw, f"arguments of {WEB}")
 
 
-def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[Part]:
+def add_parts(context: Context, p: WebParams) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs."""
     live, goals = context.state.now.live, Goals(context)
-    failed = [] if player is None else failures(player.path, player.beginning)
-    replay = None if player is None else Replay(context, player, failed, p.replay_speed)
+    replay = Replay(context, p.replay, p.replay_waits) if p.replay else None
     parts: List[Part] = [goals] if replay is None else [replay, goals]
     tabs = context.server.gui.add_tab_group()
-    if replay is not None and failed:
+    if replay is not None and replay.failed:
         with tabs.add_tab("Checks"):
             replay.add_failures()
     with tabs.add_tab("Control" if live else "Goals"):
@@ -82,7 +80,7 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
             context.server.gui.add_html(text.link("/lab.md", "The lab, step by step"))
     with tabs.add_tab("Plots"):
         for plotted in PLOTTED:
-            parts.append(Plot(context, plotted) if player is None else RecordedPlot(context, plotted, player, failed))
+            parts.append(Plot(context, plotted))
         if not p.view_only:
             parts.append(Log(context))
     with tabs.add_tab("View"):
@@ -93,19 +91,18 @@ def add_parts(context: Context, p: WebParams, player: Optional[Player]) -> List[
 class WebNode:
     """Updates all parts of the page. Visitors' requests arrive in viser's threads; `run` does everything else.
 
-    With a player it shows a recording. To a recording, and if `view_only` is set, nobody can send requests.
+    To a recording, and if `view_only` is set, nobody can send requests.
     """
 
-    def __init__(self, server: Any, p: WebParams, player: Optional[Player] = None) -> None:
+    def __init__(self, server: Any, p: WebParams) -> None:
         self._server = server
-        self._player, self._waits = player, p.replay_waits
-        self._state = SharedState(PageState(live=player is None and not p.view_only, recorded=player is not None))
+        self._state = SharedState(PageState(live=not p.replay and not p.view_only, recorded=bool(p.replay)))
         scene, requests = PageScene(server.scene), Requests(self._state)
         context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
         cameras = Cameras(server)
         status = Status(context)
-        self._parts = [Robots(context), status, *add_parts(context, p, player), Scenery(context, cameras)]
+        self._parts = [Robots(context), status, *add_parts(context, p), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
         self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are
@@ -113,8 +110,6 @@ class WebNode:
         self._visitors = threading.Event()  # a browser has come or gone
         server.on_client_connect(lambda _: self._visitors.set())
         server.on_client_disconnect(lambda _: self._visitors.set())
-        if player is not None:
-            player.on_seek = self._forget
         watch_master(self._state, status.show_master_problem)
 
     def wait_for_master(self) -> None:
@@ -126,16 +121,11 @@ class WebNode:
         """Serve until shutdown; True if the master has been replaced by one that does not know this node."""
         self._state.change(registered=True)
         rospy.on_shutdown(self._end)
-        player = self._player
-        if player is not None:
-            player.start()
         while not rospy.is_shutdown():
             if self._state.now.forgotten:
                 self._end()
                 return True
             visited = bool(self._server.get_clients())
-            if player is not None and (visited or not self._waits):
-                player.begin()
             if not self._state.now.master_problem:  # otherwise, connections that exist go on
                 self._connect(visited)
             for inbox in (self._always, self._system, self._detail):
@@ -173,24 +163,17 @@ class WebNode:
         for part in self._parts:
             part.end()
 
-    def _forget(self) -> None:
-        self._always.clear()
-        self._detail.clear()
-        for part in self._parts:
-            part.forget()
-
 
 def main() -> None:
     """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
     answer_help("The web page that shows the running system in a browser.", "[web_port:=N] [web_host:=ADDRESS]")
     try:
         p = load_params(sys.argv[1:])
-        player = Player(p.replay, p.replay_speed) if p.replay else None
         server = start_server(p)
     except RobocopError as error:
         sys.exit(f"{WEB}: {error.code}: {error}")
     print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
-    web = WebNode(server, p, player)
+    web = WebNode(server, p)
     web.wait_for_master()
     replaced = False
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused

@@ -105,8 +105,5 @@ class Part:
     def show(self, state: PageState) -> None:
         """Show what was received in panel and scene."""
 
-    def forget(self) -> None:
-        """Forget what was received, because another moment of a recording is shown."""
-
     def end(self) -> None:
         """Do what has to be done before topics are closed."""

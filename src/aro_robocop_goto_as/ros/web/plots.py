@@ -1,10 +1,9 @@
-"""Plots of the errors and the commanded velocities: of the last seconds, or of a whole recording."""
+"""Plots of the errors and the commanded velocities of the last seconds."""
 
-import math
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import Any, Deque, Dict, Iterable, Sequence, Tuple
+from typing import Any, Callable, Deque, Iterable, Sequence, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
@@ -14,8 +13,9 @@ from aro_robocop_goto_as.msg import GoToPositionActionFeedback
 from ...names import ACTION, absolute
 from ...web.state import PageState
 from .part import Context, Inbox, Part
-from .player import Figures, Player, Sample
-from .replay import Failure
+
+Sample = Tuple[float, float, float]  # time [s] and two figures
+Figures = Callable[[Any], Tuple[float, float]]  # those of a message
 
 SPAN = 30.0  # [s, wall] that a plot of a running system shows
 MOST = 900  # samples: 30 Hz
@@ -24,10 +24,6 @@ PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
 TIME: Dict[str, Any] = {"size": 32, "grid": {"show": False}, "labelSize": 18, "labelFont": "12px sans-serif"}
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
-SHARE = "share"  # scale from 0 to 1, of what marks a time
-PLAYED: Dict[str, Any] = {"label": "played", "scale": SHARE, "stroke": "#868e96", "fill": "rgba(134,142,150,0.18)"}
-FAILED: Dict[str, Any] = {"label": "check failed", "scale": SHARE, "stroke": "#e03131", "width": 2}
-POINTS = 400  # of a recording's plot
 
 
 @dataclass(frozen=True)
@@ -54,15 +50,15 @@ PLOTTED = (
 )
 
 
-def add_plot(gui: Any, texts: Tuple[str, ...], data: Sequence[Any], span: Tuple[float, float], *marks: Any) -> Any:
-    """A plot with two figures and marks; data: times [s], the figures, the marks; span: of the time axis [s].
+def add_plot(gui: Any, texts: Tuple[str, ...], data: Sequence[Any], span: Tuple[float, float]) -> Any:
+    """A plot with two figures; data: times [s], the figures; span: of the time axis [s].
 
     texts: title, labels of the figures and of the time axis
     """
     title, *labels, axis = texts
     figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
-    series = ({"label": "t [s]"}, *figures, *({"points": {"show": False}, **mark} for mark in marks))
-    scales = {"x": {"time": False, "range": span}, "y": {"range": AROUND_ZERO}, SHARE: {"range": (0.0, 1.0)}}
+    series = ({"label": "t [s]"}, *figures)
+    scales = {"x": {"time": False, "range": span}, "y": {"range": AROUND_ZERO}}
     look = {
         "axes": ({**TIME, "label": axis}, {"size": 42}),
         "legend": {"live": False},
@@ -104,46 +100,8 @@ class Plot(Part):
             self._handle.data = columns(self._samples, now)
 
 
-class RecordedPlot(Part):
-    """The whole recording, shaded up to the moment that is shown; the times at which checks failed are marked."""
-
-    def __init__(self, context: Context, plotted: Plotted, player: Player, failed: Sequence[Failure]) -> None:
-        super().__init__(context)
-        self._plotted, self._player = plotted, player
-        self._times = np.linspace(0.0, player.duration, POINTS)
-        self._marked: Tuple[np.ndarray, ...] = ()
-        if failed:
-            spikes = np.zeros(POINTS)
-            spikes[np.clip(np.searchsorted(self._times, [failure.time for failure in failed]), 0, POINTS - 1)] = 1.0
-            self._marked = (spikes,)
-        nothing, marks = np.zeros(POINTS), (PLAYED, FAILED)[: 1 + len(self._marked)]
-        data = (self._times, nothing, nothing, nothing, *self._marked)
-        self._handle = add_plot(context.server.gui, (*plotted.texts, "time [s]"), data, (0.0, player.duration), *marks)
-        self._figures: Tuple[np.ndarray, ...] = ()  # not read yet
-        self._position = math.nan  # [s] that is shown
-
-    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        """Read the recording; the plot of the robot before is gone."""
-        samples = self._player.samples(absolute(robot, self._plotted.topic), self._plotted.figures)
-        self._figures, self._position = held(samples, self._times), math.nan
-
-    def show(self, state: PageState) -> None:
-        position = self._player.position
-        if not self._figures or abs(position - self._position) < self._player.duration / POINTS:
-            return
-        self._position = position
-        self._handle.data = (self._times, *self._figures, np.where(self._times <= position, 1.0, 0.0), *self._marked)
-
-
 def columns(samples: Iterable[Sample], now: float) -> Tuple[np.ndarray, ...]:
     """Times before `now` [s], negative, and both figures; all (n,), and never empty."""
     table = np.array([*samples] or [(now, 0.0, 0.0)])
     table[:, 0] -= now
     return tuple(np.ascontiguousarray(column) for column in table.T)
-
-
-def held(samples: Iterable[Sample], times: np.ndarray) -> Tuple[np.ndarray, ...]:
-    """Each figure at these times (n,) [s]: its newest value, 0 before the first one."""
-    table = np.array([(-np.inf, 0.0, 0.0), *samples])
-    newest = np.searchsorted(table[:, 0], times, side="right") - 1
-    return tuple(np.ascontiguousarray(column) for column in table[newest, 1:].T)

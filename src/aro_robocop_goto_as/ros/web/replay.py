@@ -1,17 +1,29 @@
-"""The controls of a recording: play, pause, time and speed, and the checks that failed in it, from its report."""
+"""What a page that shows a recording has besides: pause, the recorded time, and the checks that failed in it.
 
+`rosbag play` publishes the recording, with its clock.
+"""
+
+import contextlib
 import json
+import shlex
+import threading
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, List, Sequence
+from typing import Any, List
 
+import rosbag
+import rospy
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool
+
+from ...errors import ParameterError
 from ...web import text
-from ...web.slider import Slider
 from ...web.state import PageState
-from .part import Context, Part
-from .player import Player
+from .part import Context, Inbox, Part
 
 PLAY, PAUSE = "Play", "Pause"
+PAUSE_SERVICE = "/player/pause_playback"  # of rosbag's player, by its name in launch/replay.launch
+SERVICE_TIMEOUT = 20.0  # [s, wall] for the player to offer it
 BEFORE = 1.0  # [s, recorded] before a failure, from where on it is shown
 
 
@@ -23,41 +35,67 @@ class Failure:
     time: float
     text: str
 
+    @property
+    def start(self) -> str:
+        """For `--start`: a little before the failure [s]."""
+        return f"{max(self.time - BEFORE, 0.0):.1f}"
+
 
 class Replay(Part):
     """Only a page that shows a recording has this part."""
 
-    def __init__(self, context: Context, player: Player, failed: Sequence[Failure], speed: float) -> None:
-        """speed: at the beginning"""
+    def __init__(self, context: Context, bag: str, waits: bool) -> None:
+        """`waits`: the recording is paused until the first browser shows the page."""
         super().__init__(context)
         gui = context.server.gui
-        self._player, self._failed = player, failed
-        self._progress = gui.add_html("")
-        buttons = gui.add_button_group("Recording", (PLAY, PAUSE))
-        buttons.on_click(lambda event: player.play(event.target.value == PLAY))
-        longest = max(round(player.duration, 1), 0.1)
-        self._time = Slider(gui, "Time", longest, 0.0, "seconds since the beginning", player.seek, low=0.0)
-        Slider(gui, "Speed", 10.0, speed, "recorded seconds per second", player.set_speed)
+        self._waits = waits
+        self._now = self._shown = ""
+        self._time = gui.add_html("")
+        gui.add_button_group("Recording", (PLAY, PAUSE)).on_click(lambda event: _pause(event.target.value == PAUSE))
+        self._bag, self.failed = bag, failures(bag, beginning_of(bag))
 
     def add_failures(self) -> None:
         """List the failed checks in the part of the panel that is open now."""
         gui = self.context.server.gui
-        for failure in self._failed:
+        for failure in self.failed:
             with gui.add_folder(f"✗ {failure.check}, failed at {failure.time:.1f} s"):
-                gui.add_html(text.answer(failure.text))
-                gui.add_button("Show the moment", icon="player-skip-back").on_click(self._to(failure))
+                command = f"./robocop replay {shlex.quote(self._bag)} --start {failure.start}"
+                gui.add_html(text.answer(f"{failure.text} To see the moment: {command}"))
 
-    def _to(self, failure: Failure) -> Callable[[Any], None]:
-        return lambda _: self._player.seek(max(failure.time - BEFORE, 0.0))
+    def subscribe(self, inbox: Inbox) -> None:
+        """Subscribe to the recorded clock."""
+        inbox.subscribe("/clock", Clock, self._on_clock)
+
+    def _on_clock(self, _at: float, message: Clock) -> None:
+        self._now = f"{message.clock.to_sec():.0f} s"
 
     def show(self, state: PageState) -> None:
-        position, speed = self._player.position, self._player.speed
-        how = f"factor {speed:g}" if speed else "paused"
-        rows = [("recording", f"{position:.0f} of {self._player.duration:.0f} s, {how}")]
-        if self._failed:  # the causes of its failures name times, too
-            rows.append(("in the report", f"{self._player.beginning + position:.1f} s"))
-        self._progress.content = text.table(rows)
-        self._time.show(round(position, 1))
+        if self._waits:
+            self._waits = False
+            _pause(False)
+        if self._now != self._shown:
+            self._shown = self._now
+            self._time.content = text.table([("recorded time", self._now)])
+
+
+def _pause(paused: bool) -> None:
+    """Pause the recording or go on, in a thread, as the player may still be starting."""
+
+    def call() -> None:
+        with contextlib.suppress(rospy.ROSException, rospy.ServiceException):  # it has ended
+            rospy.wait_for_service(PAUSE_SERVICE, SERVICE_TIMEOUT)
+            rospy.ServiceProxy(PAUSE_SERVICE, SetBool)(paused)
+
+    threading.Thread(target=call, daemon=True).start()
+
+
+def beginning_of(bag: str) -> float:
+    """Time of a bag's first message [s]; ParameterError for a file that is no bag or has none."""
+    try:
+        with rosbag.Bag(bag) as opened:
+            return float(opened.get_start_time())
+    except (OSError, rosbag.ROSBagException) as error:
+        raise ParameterError(f"replay: {bag}: {error}") from error
 
 
 def failures(bag: str, beginning: float) -> List[Failure]:

@@ -43,7 +43,7 @@ class View(Part):
         self._followed: Optional[Vector3] = None
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self.forget()
+        self._trail = Trail()
         self._message = None
         self._image.visible = False
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
@@ -96,9 +96,6 @@ class View(Part):
             for client in self.context.server.get_clients().values():
                 if client.camera.update_timestamp:
                     client.camera.position = client.camera.position + moved
-
-    def forget(self) -> None:
-        self._trail = Trail()
 
 
 def frames(poses: Mapping[str, Pose3D]) -> Group:

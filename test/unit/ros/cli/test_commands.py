@@ -195,6 +195,9 @@ def test_record_without_a_running_system_says_what_to_start(tmp_path, monkeypatc
 def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     command, _, messages = dry_run("replay", f"{tmp_path}/run.bag", "rate:=2")
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false rate:=2")
+    command, _, _ = dry_run("replay", f"{tmp_path}/run.bag", "--start", "12.5")
+    assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false start:=12.5")
+    assert "--start: expected seconds" in robocop("replay", __file__, "--start", "soon").stderr
     assert "would set up: run web\n" in messages
     done = robocop("replay", "nowhere.bag")
     assert (done.returncode, done.stdout) == (1, "")
