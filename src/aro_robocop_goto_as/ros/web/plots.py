@@ -3,7 +3,7 @@
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import Any, Callable, Deque, Iterable, Sequence, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, Sequence, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
