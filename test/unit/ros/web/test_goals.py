@@ -4,9 +4,10 @@ from unittest.mock import MagicMock
 
 import pytest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
-from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal
+from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 
 from aro_robocop_goto_as.geometry import Pose2D, lifted
+from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web import goals
 from aro_robocop_goto_as.ros.web.part import Context
 from aro_robocop_goto_as.web.frames import FrameTree
@@ -22,6 +23,15 @@ def made(**state):
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
     part.subscribe_to_robot(inbox, "red")
     return part, context
+
+
+def test_nothing_is_known_of_a_robot_that_was_chosen_just_now():
+    part, context = made()
+    part.show(context.state.now)
+    assert context.state.now.answering
+    context.state.change(chosen="blue")
+    part.show(context.state.now)
+    assert (context.state.now.answering, context.state.now.executing) == (False, None)
 
 
 def test_a_click_sends_a_2d_nav_goal():
@@ -76,6 +86,18 @@ def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_
     assert shown(part, context) == (False, None, False)
 
 
+def test_the_history_names_the_robot_whose_server_sent_the_result():
+    part, _ = made()
+    goal, result = GoToPositionActionGoal(), GoToPositionActionResult()
+    goal.goal_id.id = result.status.goal_id.id = "goal"
+    goal.goal.position.x = 1.0
+    result.status.status, result.result.message = GoalStatus.SUCCEEDED, "REACHED"
+    part._on_goal(0.0, goal)
+    part._on_result("blue", 0.0, result)
+    (ended,) = part._history.latest
+    assert (ended.robot, ended.state, ended.message, ended.goal) == ("blue", "SUCCEEDED", "REACHED", (1.0, 0.0))
+
+
 def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names():
     part, context = made()
     goal, status = GoToPositionActionGoal(), GoalStatus(status=GoalStatus.ACTIVE)
@@ -86,6 +108,36 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
     assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+
+
+def drawn(part, context):
+    """The goal's shapes by name."""
+    part.show(context.state.now)
+    group = next(call[0][1] for call in reversed(context.scene.show.call_args_list) if call[0][0] == "goal")
+    return {name: (shape.color, pose.position) for (name, _), (shape, pose) in group.items()}
+
+
+@pytest.mark.parametrize(
+    "status, color",
+    [
+        (GoalStatus.ACTIVE, markers.GOAL_COLOR),
+        (GoalStatus.SUCCEEDED, markers.REACHED),
+        (GoalStatus.ABORTED, markers.NOT_REACHED),
+    ],
+)
+def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status_is_no_longer_reported(status, color):
+    part, context = made(root="red/odom")
+    context.frames.update("red/odom", "red/base_footprint", lifted(Pose2D(0.0, 0.0, 0.0)))
+    context.scene.draws.return_value = False
+    goal = GoToPositionActionGoal()
+    goal.goal_id.id, goal.goal.position.x = "goal", 1.0
+    part._on_goal(0.0, goal)
+    part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(goal.goal_id, status, "")]))
+    part._on_status(0.0, GoalStatusArray())
+    rgb = tuple(round(255 * value) for value in (color.r, color.g, color.b))
+    assert drawn(part, context) == {"goal_circle": (rgb, (1.0, 0.0, 0.0)), "goal_pin": (rgb, (1.0, 0.0, 0.2))}
+    context.scene.draws.return_value = True  # the server's markers
+    assert drawn(part, context) == {}
 
 
 def test_the_history_holds_the_last_goals_with_their_positions():
