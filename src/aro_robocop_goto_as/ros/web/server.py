@@ -11,7 +11,7 @@ from ...errors import WebError
 from ...web import access
 from ...web_params import WebParams
 
-LAB = Path(__file__).parents[4] / "docs" / "lab.md"
+LAB = Path(__file__).resolve().parents[4] / "docs" / "lab.md"
 LARGEST_REQUEST = 1 << 20  # [byte] that a page may send at once
 HEADERS = {
     "Content-Security-Policy": access.CONTENT_POLICY,
