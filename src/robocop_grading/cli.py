@@ -6,7 +6,7 @@ import sys
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
@@ -20,7 +20,7 @@ from .judge import CheckResult, Grade, Outcome, printable, printable_lines, tota
 from .plan import MIDDLE, Plan, load
 from .report.write import make_report_folder
 from .runner import Runner
-from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, open_sandbox
+from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, Sandbox, expect_private, open_sandbox
 from .submission import prepare_submission
 from .texts import load as load_texts
 from .viewer import choose_viewer
@@ -90,9 +90,14 @@ def _marked(text: str, check: CheckResult) -> str:
     return f"{text} (extra)" if check.extra else text
 
 
-def unpacked_path(path: str, folder: Path) -> Tuple[str, List[str]]:
-    """The path of what is graded, in `folder` if it has to be unpacked, and what is not used of it."""
+def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
+    """The path of what is graded, in `folder` if it has to be unpacked, and what is not used of it.
+
+    GradingError for a path that a sandbox would not hide from other submissions.
+    """
     given = Path(os.path.realpath(Path(path).expanduser()))
+    if sandbox is not None:
+        expect_private(given)
     if given.is_file() and given.suffix.lower() in packing.OTHER_ARCHIVES and not packing.is_packed(given):
         raise GradingError(f"{path}: can't be unpacked: expected zip or tar")
     if not packing.is_packed(given):
@@ -133,7 +138,7 @@ def main() -> None:
         with scratch_folder(), exclusive(folder_in_use):
             if sys.stderr.isatty():
                 _show("package: build")
-            path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"))
+            path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"), sandbox)
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):

@@ -267,10 +267,10 @@ def test_single_archive_is_graded_as_what_it_contains(tmp_path):
     folder, out = tmp_path / "class", tmp_path / "out"
     folder.mkdir()
     (folder / "lab.zip").write_bytes(zipped({**ONE, "lab/old.7z": b""}))
-    path, notes = unpacked_path(str(folder / "lab.zip"), out)
+    path, notes = unpacked_path(str(folder / "lab.zip"), out, None)
     assert (Path(path) / "lab" / SERVER).read_text() == "pass"
     assert notes == ["lab/old.7z was not unpacked: expected zip or tar"]
-    assert unpacked_path(str(folder), out)[0] == str(out / "class")
+    assert unpacked_path(str(folder), out, None)[0] == str(out / "class")
     (folder / "lab.rar").touch()
     with pytest.raises(GradingError, match="lab.rar: can't be unpacked: expected zip or tar"):
-        unpacked_path(str(folder / "lab.rar"), out)
+        unpacked_path(str(folder / "lab.rar"), out, None)
