@@ -149,7 +149,7 @@ def test_a_rosbag_of_a_run_plays_back_every_message(ros, reference):
     ros.wait((ros.directory / "counts.json.ready").exists, "the counter listens", counter)
     # At the end of the bag, rosbag would end without what its connections have not sent yet.
     options = ("--quiet", "--rate=20", "--queue=100000", "--wait-for-subscribers", "--keep-alive")
-    player = ros.start("rosrun", "rosbag", "play", *options, str(bag))
+    player = ros.start("player", "rosrun", "rosbag", "play", *options, str(bag))
     ros.wait(counts.exists, "the first message", player, counter)
     ros.wait(lambda: json.loads(counts.read_text()) == run["counts"], f"all of {run['counts']}", player, counter)
 
@@ -220,7 +220,8 @@ def test_controller_that_hangs_causes_one_miss_and_is_waited_for_again_when_it_c
 
 @pytest.mark.slow
 def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again(ros):
-    simulator = ros.simulator(drive="kinematic", physics_rate=60, imu_rate=60, world="empty", lockstep_timeout=0.5)
+    figures = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60, "world": "empty", "scan_samples": 3600}
+    simulator = ros.simulator(lockstep_timeout=0.5, **figures)  # long scans fill the sockets soon
     server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
     remote = Remote(ros, simulator)
     remote.wait_for_driver(SERVER, server)
@@ -236,5 +237,5 @@ def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again
         lambda: remote.step(0.1) or SERVER in remote.status()["drivers"], "it answers each tick", simulator, server
     )
     topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
-    goal = ros.start("rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
+    goal = ros.start("goal", "rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
     ros.wait(lambda: remote.step(0.5) or "REACHED" in server.text(), "the goal", simulator, server, goal)
