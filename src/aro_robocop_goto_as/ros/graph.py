@@ -1,17 +1,13 @@
 """The ROS graph as the master knows it: published topics, topics between two nodes, action servers."""
 
-import contextlib
-import socket
 from dataclasses import dataclass
-from typing import Collection, Dict, List, Tuple
-from urllib.parse import urlparse
+from typing import Dict, List, Tuple
 
 import rosgraph
 import rospy
 
 # Topics of an action's server and clients, after its name; their types end in ActionResult and ActionGoal.
 RESULT, GOAL = "/result", "/goal"
-CONNECTION_TIMEOUT = 5.0  # [s, wall]
 
 
 @dataclass(frozen=True)
@@ -35,22 +31,6 @@ def published_topics() -> List[Topic]:
         (Topic(name, types.get(name, ""), tuple(nodes)) for name, nodes in publishers if nodes),
         key=lambda topic: topic.name,
     )
-
-
-def has_living_publisher(topic: str, but: Collection[str] = ()) -> bool:
-    """Whether a publisher of a topic that the master knows, `but` these nodes, accepts connections.
-
-    A node that was killed does not.
-    """
-    with contextlib.suppress(OSError, rosgraph.MasterException):
-        master = rosgraph.Master(rospy.get_name())
-        publishers, _, _ = master.getSystemState()
-        for node in {*dict(publishers).get(topic, [])} - {*but}:
-            with contextlib.suppress(OSError, rosgraph.MasterException):
-                address = urlparse(master.lookupNode(node))
-                socket.create_connection((address.hostname, address.port), CONNECTION_TIMEOUT).close()
-                return True
-    return False
 
 
 def unpublished_topics() -> List[str]:

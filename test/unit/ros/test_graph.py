@@ -1,6 +1,5 @@
 """What the master knows -> topics and action servers."""
 
-import socket
 from types import SimpleNamespace
 
 import pytest
@@ -38,20 +37,3 @@ def test_topic_that_only_this_node_subscribes_to_is_nobody_elses_loss():
 
 def test_action_server_is_known_by_the_type_of_its_result():
     assert graph.action_servers() == {"/go": "p/GoAction"}
-
-
-def test_node_that_was_killed_is_known_to_the_master_and_does_not_live(master):
-    assert not graph.has_living_publisher("/odom")
-    assert not graph.has_living_publisher("/unknown")
-    with socket.create_server(("localhost", 0)) as server:
-        master.lookupNode = lambda _: f"http://localhost:{server.getsockname()[1]}/"
-        assert graph.has_living_publisher("/odom")
-        assert not graph.has_living_publisher("/odom", but={"/sim"})
-
-
-def test_nobody_lives_when_the_master_does_not_answer(master):
-    def unanswered():
-        raise rosgraph.MasterError("no answer")
-
-    master.getSystemState = unanswered
-    assert not graph.has_living_publisher("/odom")
