@@ -6,7 +6,7 @@ import signal
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
 signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # ./robocop blocks it while Python starts
 
-from robocop_grading.hosting.main import main  # noqa: E402
+from robocop_grading.sim_with import main  # noqa: E402
 
 if __name__ == "__main__":
     main()

@@ -2,8 +2,8 @@
 
 Data flows in this order; only session/ and agent/ use ROS:
 
-    packing           archives, and folders with archives -> a folder of what was handed in
-    submission        path -> the scripts to grade, built in a sandbox (sandbox/)
+    files/            archives, and folders with archives -> a folder of what was handed in
+    submission        path -> the scripts to grade (builds/), built in a sandbox (sandbox/)
     plan              config/grading.yaml -> scenarios, limits, points
     session/          runs the scenarios with the hand-in's node, in the ordinary simulation -> records
     agent/            in the node's process: keeps it in simulated time, and says when its turn is over
@@ -14,7 +14,7 @@ Data flows in this order; only session/ and agent/ use ROS:
     runner, grader    one part, and all of this for one submission
     cli               robocop grade
     classroom/        robocop grade-class: many submissions on dask workers
-    hosting/          other people's packages, built; also for robocop sim --with
+    sim_with          robocop sim --with: the same builds, started beside the simulator
 
 handout holds the handout's names and figures, and the tolerances around them.
 """

@@ -11,11 +11,10 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
-from . import packing
+from .builds.workspace import exclusive, places
+from .files import packing, tree
+from .files.scratch import scratch_folder
 from .grader import grade as grade_submission
-from .hosting import tree
-from .hosting.scratch import scratch_folder
-from .hosting.workspace import exclusive, places
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines, total
 from .plan import MIDDLE, Plan, load
 from .report.write import make_report_folder

@@ -9,7 +9,7 @@ from typing import Dict, List, Mapping, Optional
 from aro_robocop_goto_as.errors import UngradableError
 
 from . import judge
-from .hosting.tree import remove, temporary_folder
+from .files.tree import remove, temporary_folder
 from .judge import Grade
 from .record import Record
 from .report import write as report

@@ -10,8 +10,8 @@ from typing import Optional, Tuple
 
 from aro_robocop_goto_as.errors import UngradableError
 
-from .hosting.tree import remove
-from .hosting.workspace import exclusive
+from .builds.workspace import exclusive
+from .files.tree import remove
 
 # With a version, as pip takes it, and not an option of pip or dpkg.
 NAME = r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?"

@@ -11,7 +11,7 @@ from typing import Optional
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 
-from .hosting.workspace import places
+from .builds.workspace import places
 
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image

@@ -10,10 +10,10 @@ from typing import Any, Iterator, List, Mapping, Optional, Sequence
 from aro_robocop_goto_as.errors import GradingError, RobocopError
 
 from .advice import advice, next_todo
-from .hosting import workspace
-from .hosting.launch_file import READER
-from .hosting.package import MOST_NAMED, Package, find_package, started
-from .hosting.scripts import (
+from .builds import workspace
+from .builds.launch_file import READER
+from .builds.package import MOST_NAMED, Package, find_package, started
+from .builds.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
     NODE_NAMES,
@@ -27,8 +27,8 @@ from .hosting.scripts import (
     obstacles,
     part_of,
 )
-from .hosting.tree import read_text
-from .hosting.workspace import Environment, compat_environment, places, workspace_name
+from .builds.workspace import Environment, compat_environment, places, workspace_name
+from .files.tree import read_text
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
 from .skeleton import make

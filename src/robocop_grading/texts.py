@@ -9,8 +9,8 @@ import yaml
 
 from aro_robocop_goto_as.errors import HostingError, PlanError
 
-from .hosting.tree import read_bytes
-from .hosting.workspace import places
+from .builds.workspace import places
+from .files.tree import read_bytes
 
 FILE = "config/grading_texts.yaml"  # of this package
 

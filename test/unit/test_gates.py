@@ -24,8 +24,8 @@ PROSE = (
 PROSE_FOLDERS = ("action", "cfg", "compat", "config", "msg", "skeleton", "srv", "worlds")
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
-READER = f"{GRADER}.hosting.roslaunch_reader"
-MAY_IMPORT_ROS = ("ros", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.hosting.main", READER)
+READER = f"{GRADER}.builds.roslaunch_reader"
+MAY_IMPORT_ROS = ("ros", f"{GRADER}.agent.ros", f"{GRADER}.session", f"{GRADER}.sim_with", READER)
 MAY_IMPORT_PYBULLET = ("physics", "sensors.camera_renderer")
 # Every folder (or module beside the folders), and what its modules may import; each row names only rows above it.
 ORDER = {
@@ -64,9 +64,11 @@ ORDER = {
     "ros.cli": "bootstrap errors geometry param_loading sim_params process reading robot ros ros.client names "
     "suggestions web web_params world",
     f"{GRADER}.agent": "",
-    f"{GRADER}.hosting": "errors process ros.cli names",
-    GRADER: f"errors geometry {GRADER}.hosting param_loading process sim_params web web_params world",
-    f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.hosting process",
+    f"{GRADER}.files": "errors process",
+    f"{GRADER}.builds": f"errors process names {GRADER}.files",
+    f"{GRADER}.sim_with": f"errors process ros.cli {GRADER}.files {GRADER}.builds",
+    GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading process sim_params web web_params world",
+    f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.files {GRADER}.builds process",
     f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sim_params simulation "
     f"web world {GRADER}",
 }

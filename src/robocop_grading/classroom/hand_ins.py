@@ -6,8 +6,8 @@ from typing import List, Tuple
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 
-from .. import packing
-from ..archives import is_archive
+from ..files import packing
+from ..files.archives import is_archive
 
 EXPECTED = "a folder, a zip or tar archive, or a Python file"
 EXPORTED = ("submission_metadata.yml",)  # written by Gradescope itself into what it exports

@@ -18,9 +18,9 @@ from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
+from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED, TEXTS_HELP
-from ..hosting.scratch import scratch_folder
-from ..hosting.workspace import exclusive, places
+from ..files.scratch import scratch_folder
 from ..judge import points_in_words, printable_lines
 from ..plan import LARGEST_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder

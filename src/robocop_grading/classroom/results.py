@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..hosting import tree
+from ..files import tree
 from ..judge import alike, total
 from ..plan import PARTS, Plan
 from ..report.write import render

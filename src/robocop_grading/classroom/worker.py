@@ -12,9 +12,9 @@ from typing import Dict, Iterator, Optional, Union
 
 from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
 
+from ..builds.workspace import places
+from ..files.tree import temporary_folder
 from ..grader import grade
-from ..hosting.tree import temporary_folder
-from ..hosting.workspace import places
 from ..judge import Grade
 from ..plan import Plan
 from ..report.write import write

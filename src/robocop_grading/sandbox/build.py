@@ -11,7 +11,7 @@ from typing import IO, Mapping, Optional, Sequence
 from aro_robocop_goto_as.errors import GradingError, NoTimeError
 from aro_robocop_goto_as.process import child
 
-from ..hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
+from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from . import memory_group
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard

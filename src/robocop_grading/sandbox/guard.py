@@ -16,7 +16,7 @@ import psutil
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
 
-from ..hosting import tree
+from ..files import tree
 from . import kernel_memory
 
 MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB

@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError
-from robocop_grading import archives
 from robocop_grading.classroom.hand_ins import collect, pack, unpack
+from robocop_grading.files import archives
 
 
 def only(folder):

@@ -9,12 +9,12 @@ import pytest
 from class_records import PLAN, report
 
 from aro_robocop_goto_as.errors import GradingSetupError
+from robocop_grading.builds.workspace import exclusive
 from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.hand_ins import HandIn
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.classroom.worker import Done
-from robocop_grading.hosting.workspace import exclusive
 from robocop_grading.plan import LARGEST_SEED
 
 

@@ -17,6 +17,7 @@ from xml.etree import ElementTree
 from aro_robocop_goto_as.errors import HostingError
 
 MAX_SIZE = 1024**2  # bytes of a manifest, launch file or script
+GENERATED = ("build", "devel", "install", "logs", "__pycache__", "__MACOSX")  # folders that nobody has written
 DEEPEST = 100  # nested folders; packages and their builds have ten or so
 
 

@@ -7,8 +7,8 @@ import sys
 import pytest
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.hosting import tree
-from robocop_grading.hosting.tree import read_bytes
+from robocop_grading.files import tree
+from robocop_grading.files.tree import read_bytes
 from robocop_grading.sandbox.guard import Guard
 
 NESTED = "import os\nfor _ in range(1500):\n    os.mkdir('nested')\n    os.chdir('nested')\nopen('file', 'w').close()\n"

@@ -9,14 +9,13 @@ from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Seq
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import PACKAGE
 
-from . import tree
+from ..files import tree
+from ..files.tree import read_bytes, read_xml
 from .launch_file import LaunchNode, read
-from .scripts import ASIDE, LEFT_OUT, PARTS, Choice, best_place, choose, files_below
-from .tree import read_bytes, read_xml
+from .scripts import ASIDE, PARTS, Choice, best_place, choose, files_below
 from .workspace import Environment, Run
 
 LAUNCH_FILE = "robocop_goto_as.launch"
-GENERATED = {*LEFT_OUT}  # folders
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
 MOST_NAMED = 10  # scripts in a message
 SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", "aro_sim"}  # packages that nothing depends on
@@ -122,7 +121,7 @@ def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mappi
 
 def _manifests(top: Path) -> Iterator[Path]:
     """Every package.xml in a folder or below it, except inside another package."""
-    for folder, folders, files in tree.walk(top, LEFT_OUT):
+    for folder, folders, files in tree.walk(top, tree.GENERATED):
         if "package.xml" in files:
             yield folder / "package.xml"
             folders.clear()

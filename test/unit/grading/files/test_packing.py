@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from aro_robocop_goto_as.errors import GradingError, SubmissionError
-from robocop_grading import archives, packing
 from robocop_grading.cli import unpacked_path
+from robocop_grading.files import archives, packing
 
 SERVER = "robocop_goto_as.py"
 

@@ -13,9 +13,9 @@ from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tu
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import BRIDGE, SERVER
 
-from . import tree
+from ..files import tree
+from ..files.tree import read_bytes
 from .launch_file import LaunchNode
-from .tree import read_bytes
 
 PARTS = {"robocop_goto_as.py": "server", "robocop_rviz_goto_ac.py": "bridge"}  # the handout's scripts
 NODE_NAMES = {"server": SERVER, "bridge": BRIDGE}
@@ -23,7 +23,6 @@ SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient"
 RAW = {"GoToPositionActionGoal", "GoToPositionActionResult"}  # what a server without actionlib uses
 CLICKS = "move_base_simple"
 HINTS = (b"ActionServer", b"ActionClient", b"GoToPositionAction", CLICKS.encode())
-LEFT_OUT = ("build", "devel", "install", "logs", "__pycache__", "__MACOSX")  # folders
 # In a path: a copy, or something that is not meant to be started.
 ASIDE = re.compile(r"(^|[^a-z])(backups?|bak|old|orig|copy|copies|archive|trash|tests?)([^a-z]|$)", re.I)
 # After #!: env takes the rest of the line as one word, except after -S.
@@ -90,7 +89,7 @@ def _names_in(code: str) -> Set[str]:
 def files_below(top: Path) -> List[Path]:
     """Files and links below a folder, except hidden ones and those in folders of a build or of an operating system."""
     found = []
-    for folder, folders, files in tree.walk(top, LEFT_OUT):
+    for folder, folders, files in tree.walk(top, tree.GENERATED):
         folders[:] = [name for name in folders if not name.startswith(".")]
         found += [folder / name for name in files if not name.startswith(".")]
     return found

@@ -6,7 +6,7 @@ from typing import Dict
 import pytest
 from support import ROOT
 
-from robocop_grading.hosting.workspace import error_of
+from robocop_grading.builds.workspace import error_of
 
 WARNING = """-- catkin 0.8.10
 CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):

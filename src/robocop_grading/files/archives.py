@@ -17,8 +17,7 @@ from typing import IO, Any, Callable, Dict, NamedTuple
 
 from aro_robocop_goto_as.errors import SubmissionError
 
-from .hosting import tree
-from .hosting.package import GENERATED as BUILD_PRODUCTS
+from . import tree
 
 MAX_BYTES = 64 * 1024**2  # of a hand-in
 MAX_ENTRIES = 5_000  # files, folders and links of a hand-in
@@ -26,7 +25,7 @@ MAX_TAR_BYTES = 256 * 1024**2  # of a tar archive with what is left out
 MAX_DIRECTORY = 4 * 1024**2  # bytes of a zip's list of its entries, which zipfile reads at once
 TOO_MANY = f"expected at most {MAX_ENTRIES} files and folders"
 TOO_LARGE = f"larger than {MAX_BYTES // 1024**2} MB"
-LEFT_OUT = {*BUILD_PRODUCTS, ".git", ".robocop", "__MACOSX", ".ipynb_checkpoints", ".DS_Store"}
+LEFT_OUT = {*tree.GENERATED, ".git", ".robocop", ".ipynb_checkpoints", ".DS_Store"}
 APPLE_DOUBLE = "._"  # beginning of the files in which macOS keeps attributes of others
 SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 # By a file's first bytes.

@@ -10,7 +10,7 @@ import yaml
 
 from aro_robocop_goto_as.errors import HostingError
 
-from .tree import read_bytes
+from ..files.tree import read_bytes
 from .workspace import Environment, Run, output_of
 
 READER = Path(__file__).resolve().with_name("roslaunch_reader.py")

@@ -13,7 +13,7 @@ from processes import busy_processes, processes_mentioning
 
 HOLD = """
 import sys, tempfile
-from robocop_grading.hosting.scratch import scratch_folder
+from robocop_grading.files.scratch import scratch_folder
 with scratch_folder():
     print(tempfile.mkdtemp(), flush=True)
     sys.stdin.read()
@@ -52,7 +52,7 @@ def test_folder_of_a_killed_process_is_removed_by_the_next_one_but_not_that_of_a
 
 SCRATCH_PROGRAM = """
 import subprocess, sys, time
-from robocop_grading.hosting.scratch import scratch_folder
+from robocop_grading.files.scratch import scratch_folder
 from aro_robocop_goto_as.process.signals import interrupt_on_signal
 
 interrupt_on_signal()

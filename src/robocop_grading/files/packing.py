@@ -11,8 +11,8 @@ from typing import Any, Dict, List, NamedTuple
 
 from aro_robocop_goto_as.errors import SubmissionError
 
+from . import tree
 from .archives import FOLDER, LEFT_OUT, Contents, Entry, is_archive, is_left_out, unpack_archive
-from .hosting import tree
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message

@@ -7,9 +7,9 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.hosting.main import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
-from robocop_grading.hosting.package import find_package
-from robocop_grading.hosting.scripts import Choice
+from robocop_grading.builds.package import find_package
+from robocop_grading.builds.scripts import Choice
+from robocop_grading.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
 
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 

@@ -1,0 +1,1 @@
+"""Other people's files: archives and folders that nobody trusts, and folders for what is temporary."""
