@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from reference_beams import cut_of
-from rosgraph_msgs.msg import Clock
 from support import model_named
 
 from aro_robocop_goto_as import compiled
@@ -23,9 +22,6 @@ from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.ros.covariances import imu_covariances
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import (
-    DOUBLES,
-    Field,
-    PackedMessage,
     counter,
     packed_clock,
     packed_imu,
@@ -140,28 +136,11 @@ def messages(random: np.random.Generator) -> None:
     far.close()
 
 
-def beyond(library: str, random: np.random.Generator) -> None:
-    """Read past the end of an array on purpose."""
-    if library == "caster":
-        plane = ScanPlane(cut_of(np.ones((400, 2, 2)), np.zeros((0, 3))))
-        plane.struct.n_segments += 1
-        Fan(*FANS[0]).scan(Scene([plane], [0], np.zeros((1, 3))), [0])
-    elif library == "batch":
-        field = Field(DOUBLES, 4, np.zeros(2**15))  # more than its message has room for
-        Batch([(SimpleNamespace(links=(), impl=None), PackedMessage(Clock(), [field]))]).send(0)
-    else:
-        engine = KinematicEngine(forest(0, random), fleet_of(100, random), 30)
-        engine.fleet.struct.n += 1
-        engine.advance(0, 1)
-
-
 def main() -> None:
-    """Argument: the folder of the libraries; option --beyond=LIBRARY."""
+    """Argument: the folder of the libraries."""
     folder = sys.argv[1]
     compiled.find = lambda name, folders=None: os.path.join(folder, compiled.file_name(name))
     random = np.random.default_rng(0)
-    for option in sys.argv[2:]:
-        beyond(option.replace("--beyond=", ""), random)
     fans = [Fan(*fan) for fan in FANS]
     for _ in range(25):
         for fan in fans:

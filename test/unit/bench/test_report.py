@@ -1,7 +1,5 @@
 """bench.report: figures of repeats -> tables of one or of two checkouts, and JSON."""
 
-import json
-
 from bench import report
 from bench.cases import Case
 from bench.measure import Run
@@ -55,22 +53,6 @@ def test_repeats_of_two_checkouts_are_compared_in_pairs():
     assert rows[2]["lost"] == "-"
 
 
-def test_a_case_that_was_interrupted_before_the_second_checkout_has_no_ratios():
-    text = report.table(
-        [[measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [], "this")]], WHERE
-    )
-    assert [row["factor"] for row in rows_of(text)] == ["100", "-", "-"]
-
-
-def test_failed_case_has_a_row_without_figures_and_a_reason():
-    broken = measured("wheels:50", [(100.0, 0.02)], "other", error="the simulator ended with status 1: no")
-    text = report.table(
-        [[measured("wheels:1", [(100.0, 0.02)])], [broken, Measured(Case("wheels", "50"), "this")]], WHERE
-    )
-    assert [row["factor"] for row in rows_of(text)] == ["100", "-", "-", "-"]
-    assert text.endswith("\n\nwheels:50, other: failed: the simulator ended with status 1: no")
-
-
 def test_busy_client_and_missed_factor_are_noted():
     result = Measured(Case("wheels", "50"))
     result.add(Run(1.2, 0.9, 1, 1.0, 10, 10, 0.51), Run(0.8, 1.1, 1, 1.0, 10, 10, 0.1))
@@ -79,19 +61,3 @@ def test_busy_client_and_missed_factor_are_noted():
         "wheels:50: only 0.80 of the requested factor 1 reached",
     ]
     assert measured("wheels:1", [(9.0, 0.1)]).notes() == []
-
-
-def test_json_has_every_repeat_and_every_ratio():
-    pair = [measured("kinematic:1", [(100.0, 0.02)], "other"), measured("kinematic:1", [(300.0, 0.01)], "this")]
-    document = json.loads(report.as_json([pair, [Measured(Case("wheels"), error="no")]], WHERE))
-    compared, failed = document["cases"]
-    assert (document["conditions"], compared["case"]) == (WHERE, "kinematic:1")
-    assert compared["ratios"] == {"factor": [3.0], "cpu_ms": [0.5], "memory_mb": [1.0], "first_scan_s": [1.0]}
-    assert (compared["other"]["figures"]["factor"], compared["this"]["figures"]["factor"]) == ([100.0], [300.0])
-    assert (failed["this"]["error"], failed["this"]["figures"], failed["ratios"]) == ("no", {}, {})
-
-
-def test_conditions_name_processor_versions_and_settings():
-    machine, client = report.conditions(1.5, 3)
-    assert "cores; Python 3." in machine and "numpy" in machine and "load before: " in machine
-    assert client.endswith("1.5 s per measurement; medians of 3, with lowest and highest in brackets.")

@@ -8,14 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from reference_fleet import MARGIN, after_arc, free_part, others
 from support import ORIGIN, model_named, world_named
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, wrap_angle
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast import grid_index
-from aro_robocop_goto_as.raycast.cross_section import CrossSection
-from aro_robocop_goto_as.raycast.obstacle_distance import body_heights
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
@@ -23,7 +20,6 @@ from aro_robocop_goto_as.world.scripted_motion import Motion
 
 RADIUS = 0.105
 AT_ONCE = Limits(math.inf, math.inf, math.inf, math.inf, 0.0)
-SLACK = 1e-9  # [m] of radius: a disc that just grazes something may be stopped by it or not
 
 numbers = st.floats(-1.0, 1.0)
 velocities = st.tuples(st.floats(-3.0, 3.0), st.floats(-4.0, 4.0))
@@ -58,60 +54,6 @@ def _kinematics(world: World, *spawns: Pose2D, rate: int = 30) -> KinematicEngin
 def _drive(engine: KinematicEngine, steps: int, *velocities: Tuple[float, float]) -> None:
     engine.fleet.commands[: len(velocities)] = velocities
     engine.advance(0, steps)
-
-
-@given(st.floats(-0.3, 0.3), st.floats(-3.0, 3.0), st.integers(1, 100))
-def test_robot_without_obstacles_follows_the_exact_arc(v: float, w: float, steps: int) -> None:
-    engine = _kinematics(world_named("empty"), ORIGIN)
-    _drive(engine, steps, (v, w))
-    expected = after_arc(ORIGIN, v * steps / 30.0, w * steps / 30.0)
-    x, y, yaw = engine.fleet.pose(0)
-    assert (x, y) == pytest.approx((expected.x, expected.y), abs=1e-8)
-    assert wrap_angle(yaw - expected.yaw) == pytest.approx(0.0, abs=1e-9)
-    assert engine.fleet.twists[0] == pytest.approx((v, w), abs=1e-12)
-    assert engine.fleet.wheel_angles[0] @ [0.5, 0.5] * 0.033 == pytest.approx(v * steps / 30.0, abs=1e-9)
-
-
-@given(
-    st.lists(obstacles, max_size=4),
-    st.lists(st.tuples(numbers, numbers, st.floats(-4.0, 4.0)), min_size=1, max_size=4),
-    st.lists(st.lists(velocities, min_size=4, max_size=4), min_size=1, max_size=3),
-)
-def test_blocked_motion_is_that_of_the_definition(
-    shapes: List[Obstacle], jitters: List[Tuple[float, float, float]], commands: List[List[Tuple[float, float]]]
-) -> None:
-    world = _world(*shapes)
-    engine = _kinematics(
-        world, *(Pose2D(i % 2 + 0.3 * x, i // 2 + 0.3 * y, yaw) for i, (x, y, yaw) in enumerate(jitters))
-    )
-    poses, twists, radii = engine.fleet.poses, engine.fleet.twists, engine.fleet.radii
-    for robot in range(len(jitters)):
-        if engine.touching(robot):  # as it starts: rounding decides what blocks it
-            engine.place(robot, Pose2D(10.0 + robot, 10.0))
-    sections = [CrossSection(world, height) for height in body_heights(model_named("burger"))]
-    segments = np.unique(np.concatenate([cut.segments for cut in sections]), axis=0)
-    circles = np.unique(np.concatenate([cut.circles for cut in sections]), axis=0)
-    for sent in commands:
-        for _ in range(3):
-            before = poses.copy()
-            _drive(engine, 1, *sent[: len(jitters)])
-            for robot, (v, w) in enumerate(sent[: len(jitters)]):
-                free = after_arc(Pose2D(*before[robot].tolist()), v / 30.0, w / 30.0)
-                start, move = before[robot, :2], np.subtract(free[:2], before[robot, :2])
-                if move.any():
-                    around = others(before, radii, robot) + [0.0, 0.0, MARGIN]
-                    least, most = (
-                        min(
-                            free_part(start, move, RADIUS, segments, circles, slack),
-                            free_part(start, move, RADIUS, segments[:0], around, slack),
-                        )
-                        for slack in (SLACK, -SLACK)
-                    )
-                    assert least * abs(v) - 1e-8 <= math.copysign(1.0, v) * twists[robot, 0] <= most * abs(v) + 1e-8
-                    start = start + twists[robot, 0] / v * move
-                np.testing.assert_allclose(poses[robot, :2], start, atol=1e-9)
-                assert wrap_angle(poses[robot, 2] - free.yaw) == pytest.approx(0.0, abs=1e-9)
-                before[robot] = poses[robot]  # where the next robot meets it
 
 
 @pytest.fixture(name="forests", scope="module")

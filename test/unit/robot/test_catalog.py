@@ -9,7 +9,6 @@ from support import model_named, world_named
 
 from aro_robocop_goto_as.errors import RobocopError, RobotModelError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
-from aro_robocop_goto_as.raycast.scanners import circles_at
 from aro_robocop_goto_as.robot.catalog import load_figures
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
@@ -36,14 +35,6 @@ def test_robots_of_different_models_see_each_other_at_their_scanners_heights(par
     # A TurtleBot 2's, at 0.160 m, is below the Burger's scanner (0.166 m) and above its box (0.153 m).
     assert _sees(sim, 2) == np.inf
     sim.close()
-
-
-def test_box_is_seen_as_a_circle_of_equal_area_and_cylinder_exactly() -> None:
-    burger, turtlebot2 = model_named("burger"), model_named("turtlebot2")
-    assert circles_at(burger, 0.1)[0] == pytest.approx((-0.032, 0.0, BURGER_BOX))
-    assert circles_at(burger, 0.182).tolist() == [pytest.approx([-0.032, 0.0, 0.055])]
-    assert circles_at(turtlebot2, 0.1).tolist() == [pytest.approx([0.0, 0.0, 0.178])]
-    assert len(circles_at(burger, 0.5)) == 0
 
 
 def test_kinematic_robots_of_different_models_stop_when_their_footprints_touch() -> None:

@@ -6,9 +6,7 @@ import pytest
 from support import ROOT, model_named
 
 from aro_robocop_goto_as.errors import RobotModelError
-from aro_robocop_goto_as.geometry import Pose3D, Vector3
-from aro_robocop_goto_as.physics.bullet_shapes import load_urdf
-from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
+from aro_robocop_goto_as.geometry import Vector3
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.robot.urdf import load_robot
 
@@ -51,19 +49,6 @@ def test_broken_description_is_refused_with_file_and_problem(
     with pytest.raises(RobotModelError) as refusal:
         load_robot(str(path), burger.figures)
     assert str(path) in str(refusal.value) and expected in str(refusal.value)
-
-
-def test_the_centre_of_mass_is_where_the_base_link_says(burger: RobotModel, tmp_path: Path) -> None:
-    assert burger.base_from_inertial == Pose3D()
-    path = tmp_path / "robot.urdf"
-    path.write_text(URDF.replace("<inertial>", '<inertial><origin xyz="0.05 0 0.01" rpy="0 0 0.3"/>', 1))
-    model = load_robot(str(path), burger.figures)
-    assert model.base_from_inertial == Pose3D.from_xyz_rpy((0.05, 0.0, 0.01), (0.0, 0.0, 0.3))
-    client = pybullet.connect(pybullet.DIRECT)
-    bullets = pybullet.getDynamicsInfo(load_urdf(model, client), -1, physicsClientId=client)
-    pybullet.disconnect(client)
-    assert bullets[3] == pytest.approx(model.base_from_inertial.position)
-    assert bullets[4] == pytest.approx(model.base_from_inertial.orientation)
 
 
 @pytest.mark.parametrize(

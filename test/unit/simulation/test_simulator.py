@@ -12,7 +12,6 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
-LIDAR_RADIUS = 0.055  # [m] of the LDS, all that another Burger's scan sees of a Burger
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
 DRIVES: List[Dict[str, object]] = [{"drive": "wheels"}, KINEMATIC]
 
@@ -142,16 +141,6 @@ def test_true_localization_follows_odometrys_errors(simulator: Make) -> None:
 # Places and resets
 
 
-def test_placing_the_robot_changes_map_from_odom_instead_of_odometry(simulator: Make) -> None:
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0))
-    _drive_and_stop(sim, Twist2D(0.2, 0.0), 1.0)
-    for _ in range(8):
-        sim.step({})
-    sim.place(Pose2D(1.0, -1.0, 1.0))
-    assert sim.map_from_odom().yaw == pytest.approx(1.0, abs=0.01)
-    assert sim.map_from_odom().x == pytest.approx(1.0 - 0.2 * math.cos(1.0), abs=0.01)
-
-
 @pytest.mark.parametrize(
     "params, accuracy", [({}, 1e-9), ({"encoder_tick": 0.0015}, 1e-3), ({"odom_slip": 0.05}, 0.012)]
 )
@@ -165,15 +154,6 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
 
 
 # Several robots
-
-
-@pytest.mark.parametrize("params", DRIVES)
-def test_robots_see_each_others_scanners_but_not_their_own(simulator: Make, params: Dict[str, object]) -> None:
-    sim = simulator("empty", ORIGIN, Pose2D(1.0, 0.0, math.pi), **params)
-    for robot in (0, 1):
-        distances = sim.exact_distances(robot)
-        assert distances.min() == pytest.approx(1.0 + 2 * 0.032 - LIDAR_RADIUS, abs=1e-6)
-        assert np.isfinite(distances).sum() < 10
 
 
 @pytest.mark.parametrize("params", DRIVES)

@@ -38,10 +38,3 @@ def test_an_older_transform_replaces_a_newer_one_as_after_a_restart_of_the_simul
     tree.update("map", "odom", lifted(Pose2D(1.0, 0.0)))
     found = tree.lookup("map", "odom")
     assert found is not None and found.position[0] == 1.0
-
-
-def test_a_loop_of_frames_ends_the_search() -> None:
-    tree = FrameTree()
-    tree.update("a", "b", Pose3D())
-    tree.update("b", "a", Pose3D())
-    assert tree.lookup("map", "a") is None

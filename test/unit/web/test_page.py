@@ -89,20 +89,6 @@ def test_a_browser_that_reports_the_first_view_later_is_turned_again() -> None:
     assert client.camera.position is chosen
 
 
-def test_what_is_very_far_away_does_not_make_the_robot_invisible() -> None:
-    near, far = server_of((1300, 800)), server_of((1300, 800))
-    near.cameras.show([(10.0, 0.0, 0.0)])
-    far.cameras.show([(500.0, 0.0, 0.0)])
-    assert near.initial_camera.position == pytest.approx(far.initial_camera.position)
-
-
-def test_the_first_camera_looks_at_the_floor_ahead_of_it() -> None:
-    first = server_of().initial_camera
-    assert first.look_at[2] == pytest.approx(0.0)
-    away = first.look_at - first.position
-    assert away / np.linalg.norm(away) == pytest.approx(AHEAD)
-
-
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0.1, 20), st.floats(-9, 9), st.floats(-9, 9))
 def test_a_click_hits_the_floor_where_the_ray_through_it_does(x, y, height, to_x, to_y) -> None:
     found = floor_point((x, y, height), (to_x - x, to_y - y, -height))

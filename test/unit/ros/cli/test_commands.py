@@ -19,13 +19,6 @@ def test_help_lists_every_command():
     assert described == {*COMMANDS} - {"--version"}
 
 
-def test_help_describes_the_commands_that_are_asked_for():
-    done = robocop("help", "run", "clean")
-    assert done.returncode == 0 and done.stdout == robocop("run", "-h").stdout + robocop("clean", "-h").stdout
-    unknown = robocop("help", "got")
-    assert unknown.returncode == 2 and "unknown command 'got'" in unknown.stderr
-
-
 def test_clean_with_an_argument_removes_nothing():
     done = robocop("clean", "web", ROBOCOP_DRY_RUN="1")
     assert (done.returncode, done.stdout) == (1, "")
@@ -38,13 +31,6 @@ def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
     assert done.returncode == 0 and done.stdout.startswith(f"  {words[0]} "), done.stderr
     assert done.stdout.strip("\n") in robocop("help").stdout
     assert len(re.findall(r"(?m)^  [a-z]", done.stdout)) == (2 if words[0] == "sim" else 1)
-
-
-def test_no_command_prints_the_beginning_of_the_help_which_names_every_command():
-    overview = robocop().stdout
-    assert robocop("help").stdout.startswith(overview) and len(overview.splitlines()) <= 16
-    lists = re.findall(r"(?m)^    the? ?\w*:  +(.*)$|^    this checkout:  +(.*)$", overview)
-    assert set(" ".join(map("".join, lists)).split()) == {*COMMANDS} - {"--version", "help"}
 
 
 def test_unknown_command_is_refused_with_the_one_that_may_be_meant():
@@ -116,31 +102,10 @@ def test_explicit_rviz_argument_overrides_the_display_check(argument):
     assert command.endswith(f"{LAUNCH} robocop_goto_as.launch {argument}")
 
 
-@pytest.mark.parametrize("command, file", [("run", "robocop_goto_as.launch"), ("sim", "robocop_sim.launch")])
-def test_run_and_sim_start_the_launcher_that_reports_the_simulators_exit_status(command, file):
-    unused_uri = f"http://localhost:{free_port()}"
-    assert f"{LAUNCH} {file}" in dry_run(command, "world:=empty", ROS_MASTER_URI=unused_uri)[0]
-
-
 @pytest.mark.parametrize("command", ["run", "sim"])
 def test_verbose_shows_the_messages_of_all_nodes(command):
     started = dry_run(command, "--verbose", "world:=empty", ROS_MASTER_URI=f"http://localhost:{free_port()}")[0]
     assert LAUNCH.replace("--quiet ", "") in started and started.endswith(" world:=empty")
-
-
-@pytest.mark.parametrize("command", ["run", "sim"])
-def test_paths_of_files_are_made_absolute_as_the_nodes_run_in_another_folder(command, tmp_path, monkeypatch):
-    (tmp_path / "my.sdf").write_text("<sdf/>")
-    monkeypatch.chdir(tmp_path)
-    assert f" world:={tmp_path}/my.sdf" in dry_run(command, "world:=my.sdf")[0]
-    assert " world:=stage_1.5" in dry_run(command, "world:=stage_1.5")[0]
-
-
-@pytest.mark.parametrize("word", ["world=stage_1", "stage_1"])
-def test_a_word_that_is_no_launch_argument_is_refused_with_an_example(word):
-    done = robocop("run", word, ROBOCOP_DRY_RUN="1")
-    assert done.returncode == 1
-    assert f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'" in done.stderr
 
 
 @pytest.mark.parametrize("command", ["run", "sim"])

@@ -16,11 +16,6 @@ def shown(*nodes, arguments=""):
     return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
 
 
-def test_the_logs_and_how_to_stop_are_always_shown():
-    assert shown()["all messages"].startswith("/logs ")
-    assert "Ctrl-C" in shown()["stop"]
-
-
 @pytest.mark.parametrize(
     "arguments, address",
     [
@@ -44,14 +39,6 @@ def test_goals_are_offered_only_with_a_server():
     assert "send a goal" not in shown("robocop_sim")
 
 
-def test_each_way_to_send_a_goal_is_shown():
-    nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in ("rviz", "robocop_web", SERVER)]
-    lines = overview(SimpleNamespace(nodes=nodes), None, Path("/logs")).splitlines()
-    first = next(number for number, line in enumerate(lines) if line.startswith("send a goal   in RViz: "))
-    assert lines[first + 1] == "              in the browser: click on the floor"
-    assert lines[first + 2].startswith("              in a second terminal: ")
-
-
 def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
     server = SimpleNamespace(name=SERVER, namespace="/", args="")
     texts = [
@@ -59,11 +46,3 @@ def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
     ]
     assert "goto 0.3 0\n" in texts[0]
     assert "goto X Y " in texts[1]
-
-
-def test_world_and_robot_are_shown_only_of_a_simulator():
-    nothing = SimpleNamespace(nodes=[])
-    assert overview(nothing, {"world": "maze_1"}, Path("/logs")).startswith(
-        "world         maze_1\nrobot         burger\n"
-    )
-    assert "world" not in overview(nothing, None, Path("/logs"))

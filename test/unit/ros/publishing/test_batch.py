@@ -1,6 +1,5 @@
 """A batch: every message reaches every subscriber that reads, whole and in order; one that stands still is kept."""
 
-import contextlib
 import socket
 import struct
 import threading
@@ -121,20 +120,6 @@ def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Ca
     assert second.received(sum(sizes)) == b"".join(data)
 
 
-def test_messages_are_counted_as_rospy_does(subscriber: Callable[..., Subscriber]) -> None:
-    reader, message = subscriber(), scan(3)
-    topic = topic_of(reader)
-    batch = Batch([(topic, message)])
-    for _ in range(3):
-        batch.send(0)
-        batch.send(0)
-        batch.count()
-    reader.socket.setblocking(False)
-    assert reader.socket.recv(10 * message.size) == 6 * bytes(message.data)
-    assert (topic.impl.seq, topic.impl.message_data_sent) == (6, 6 * message.size)
-    assert (reader.connection.stat_num_msg, reader.connection.stat_bytes) == (6, 6 * message.size)
-
-
 def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callable[..., Subscriber]) -> None:
     reader, message = subscriber(), scan(1_000_000)
     received: List[bytes] = []
@@ -179,16 +164,6 @@ def send_until_it_stands_still(batch: Batch, reader: Subscriber) -> int:
     raise AssertionError("still waited for")
 
 
-def drain(reader: Subscriber) -> bytes:
-    """All that its socket holds."""
-    data = b""
-    reader.socket.setblocking(False)
-    with contextlib.suppress(BlockingIOError):
-        while True:
-            data += reader.socket.recv(1_000_000)
-    return data
-
-
 @pytest.mark.parametrize("beams", [3, 100, 1_000_000])
 def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_when_it_reads_again(
     subscriber: Callable[..., Subscriber], beams: int, monkeypatch: pytest.MonkeyPatch
@@ -225,33 +200,6 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
     assert len(received) == whole * message.size
     assert numbers == sorted(numbers) and len(set(numbers)) == whole
     assert [text.split(";")[0] for text in said] == ["%s has stopped reading", "%s reads again"]
-
-
-def test_newest_message_arrives_with_the_step_after_a_subscriber_has_read_what_there_was(
-    subscriber: Callable[..., Subscriber],
-) -> None:
-    frozen, message = subscriber(SHORT), counted(100)
-    batch = Batch([(topic_of(frozen), message)])
-    send_until_it_stands_still(batch, frozen)
-    while len(drain(frozen)):
-        frozen.link.push_rest()
-    batch.send(0)
-    assert frozen.received(message.size) == message.data.tobytes()
-    assert not frozen.link.stands_still
-
-
-def test_subscriber_for_which_there_is_room_for_one_message_does_not_count_as_reading(
-    subscriber: Callable[..., Subscriber],
-) -> None:
-    frozen, message = subscriber(SHORT), scan(100)
-    batch = Batch([(topic_of(frozen), message)])
-    send_until_it_stands_still(batch, frozen)
-    frozen.received(message.size)
-    batch.send(0)
-    assert frozen.link.stands_still
-    drain(frozen)
-    batch.send(0)
-    assert not frozen.link.stands_still
 
 
 def test_nobody_waits_for_a_subscriber_that_stands_still(
@@ -345,7 +293,3 @@ def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
     reading.join(READ_TIMEOUT)
     assert stalled.link.stands_still and not slow.link.stands_still
     assert b"".join(received) == bytes(message.data)
-
-
-def test_empty_batch_sends_nothing() -> None:
-    Batch([]).send(0)

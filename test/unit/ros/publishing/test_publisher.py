@@ -1,8 +1,6 @@
 """Publishers and batches with rospy's own connections, without a ROS master."""
 
 import itertools
-import os
-import resource
 import socket
 import struct
 import subprocess
@@ -14,7 +12,6 @@ from typing import Callable, Iterator, List
 
 import pytest
 import rospy
-from rospy.impl.tcpros_base import TCPROSTransport
 from sensor_msgs.msg import LaserScan
 from subscriber_links import Link
 
@@ -131,33 +128,6 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
         assert _received(link, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
     finally:
         latched.unregister()
-
-
-def test_subscriber_for_which_no_descriptor_is_left_is_disconnected(
-    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
-) -> None:
-    scans, limits = topic(), resource.getrlimit(resource.RLIMIT_NOFILE)
-    kept = connect(scans)
-    add = scans.impl.add_connection
-
-    def add_without_descriptors(connection: TCPROSTransport) -> None:
-        unused = [os.dup(0)]
-        while unused[-1] < connection.fileno():
-            unused.append(os.dup(0))
-        resource.setrlimit(resource.RLIMIT_NOFILE, (connection.fileno() + 1, limits[1]))
-        try:
-            add(connection)
-        finally:
-            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
-            for number in unused:
-                os.close(number)
-
-    scans.impl.add_connection = add_without_descriptors
-    lost = connect(scans)
-    lost.socket.settimeout(60.0)
-    assert lost.socket.recv(1) == b""
-    scans.impl.check()
-    assert scans.impl.connections == [kept.connection]
 
 
 def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:

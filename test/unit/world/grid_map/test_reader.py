@@ -15,7 +15,6 @@ from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.world.load import load_world
-from aro_robocop_goto_as.world.model import Walls
 
 HEIGHT = 0.182  # [m] of the lidar
 LAB = Fan(0.0, 6.28319 / 359, 360)
@@ -73,54 +72,3 @@ def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
 
 
 # Big maps
-
-
-def office(cells=4000, cells_a_room=100):
-    """Rooms of 5 x 5 m with doors and some boxes, at 0.05 m a cell."""
-    random = np.random.default_rng(1)
-    pixels = np.full((cells, cells), 254, dtype=np.uint8)
-    for k in range(0, cells, cells_a_room):
-        pixels[k : k + 3] = pixels[:, k : k + 3] = 0
-    for i in range(0, cells, cells_a_room):
-        for j in range(0, cells, cells_a_room):
-            door, other_door = random.integers(15, 60, 2)
-            pixels[i + door : i + door + 18, j : j + 3] = pixels[i : i + 3, j + other_door : j + other_door + 18] = 254
-            for _ in range(4):
-                (a, b), (h, w) = random.integers(8, cells_a_room - 14, 2), random.integers(1, 9, 2)
-                pixels[i + a : i + a + h, j + b : j + b + w] = 0
-    pixels[[0, -1]] = pixels[:, [0, -1]] = 0
-    return pixels
-
-
-@pytest.fixture(scope="module")
-def big(tmp_path_factory):
-    directory = tmp_path_factory.mktemp("big")
-    return load_world(write_map(directory, office(), origin="[-100, -100, 0]"))
-
-
-def free_poses(world, count, seed=2):
-    random, poses = np.random.default_rng(seed), []
-    origin, cells = world.occupancy.origin, world.occupancy.cells
-    while len(poses) < count:
-        row, column = random.integers(4, 3996, 2)
-        if (cells[row - 3 : row + 4, column - 3 : column + 4] == 0).all():
-            poses.append([origin.x + column * 0.05, origin.y + row * 0.05, random.uniform(-3, 3)])
-    return np.array(poses)
-
-
-def test_map_of_4000_by_4000_cells_has_less_than_80000_wall_segments(big):
-    (walls,) = [o.geometry for o in big.obstacles if isinstance(o.geometry, Walls)]
-    assert big.occupancy.cells.shape == (4000, 4000)
-    assert (big.occupancy.cells == 100).sum() > 900_000
-    assert 20_000 < len(walls.segments) < 80_000
-
-
-def test_scan_in_a_big_map_equals_a_scan_of_all_its_walls(big):
-    cut = CrossSection(big, HEIGHT)
-    poses = free_poses(big, 5)
-    seen = LAB.cast(poses, cut, reach=10.0)
-    endless = LAB.cast(poses[:1], cut)
-    cut.tiles = None
-    every = LAB.cast(poses, cut)
-    np.testing.assert_array_equal(seen, np.where(every <= 10.0, every, np.inf))
-    np.testing.assert_array_equal(endless, every[:1])
