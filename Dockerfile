@@ -1,13 +1,13 @@
 # The lab in a container: simulator, go-to server, bridge, grader and web page. How it is used: docs/container.md.
 
-# What is installed in addition to what `./robocop run` needs: names of lists in deb-packages/.
+# What is installed in addition to what `./robocop run` needs: names of lists in install/deb-packages/.
 ARG PARTS="hosting grade web"
 
 # The Debian packages. .devcontainer/ uses this stage, with a checkout of its own.
 FROM debian:12-slim AS packages
 ARG PARTS
 ENV LANG=C.UTF-8
-COPY deb-packages /tmp/deb-packages
+COPY install/deb-packages /tmp/deb-packages
 # PyPI has no wheels of pybullet for Linux on ARM, so there it is built. tini passes signals on and reaps orphans, which
 # the first process of a container has to do. Removed at the end, 0.3 GB: what other packages bring along and nobody here
 # uses, that is static libraries, tests, and what fontTools, which matplotlib needs, has for rare functions.

@@ -31,7 +31,7 @@ from .builds.workspace import Environment, compat_environment, places, workspace
 from .files.tree import read_text
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
-from .skeleton import make
+from .new import SKELETON, make
 
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
@@ -145,10 +145,10 @@ def lab_environment(share: Path, state: Path) -> Environment:
 
     def build_lab() -> Environment:
         with tempfile.TemporaryDirectory() as source:
-            make(share, Path(source, LAB))
+            make(Path(source, LAB))
             return workspace.build({LAB: Path(source, LAB)}, folder, underlay)
 
-    return workspace.build_once(folder, workspace.checksums(share / "skeleton", share / "compat"), underlay, build_lab)
+    return workspace.build_once(folder, workspace.checksums(SKELETON, share / "compat"), underlay, build_lab)
 
 
 def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:

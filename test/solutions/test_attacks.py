@@ -9,7 +9,7 @@ import pytest
 from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
-from robocop_grading import skeleton
+from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan import load
 from robocop_grading.runner import Runner
@@ -121,7 +121,7 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places(tm
 @pytest.fixture
 def package(tmp_path):
     """The package that `robocop new` creates."""
-    skeleton.make(SHARE, tmp_path / "lab")
+    new.make(tmp_path / "lab")
     return tmp_path / "lab"
 
 

@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from aro_robocop_goto_as.errors import GradingError, GradingSetupError
-from robocop_grading import skeleton
+from robocop_grading import new
 from robocop_grading.checks import Failed
 from robocop_grading.judge import CheckResult, Grade, Outcome
 from robocop_grading.plan import load
@@ -43,7 +43,7 @@ def test_image_starts_the_lab_with_a_page():
 @pytest.fixture
 def package(tmp_path):
     """A new package for GitHub Classroom."""
-    skeleton.make(ROOT, tmp_path / "lab", IMAGE)
+    new.make(tmp_path / "lab", IMAGE)
     return tmp_path / "lab"
 
 
@@ -54,7 +54,7 @@ def steps(package):
 
 
 def test_package_is_for_github_only_if_an_image_is_given(package, tmp_path):
-    skeleton.make(ROOT, tmp_path / "plain")
+    new.make(tmp_path / "plain")
     plain = {path.relative_to(tmp_path / "plain") for path in (tmp_path / "plain").rglob("*")}
     added = {path.relative_to(package) for path in package.rglob("*")} - plain
     assert {str(path) for path in added if path.suffix} - {".github", ".devcontainer"} == {
@@ -67,7 +67,7 @@ def test_package_is_for_github_only_if_an_image_is_given(package, tmp_path):
 @pytest.mark.parametrize("image", ["", "a b", 'x"; rm -rf ~', "-v", "$(id)"])
 def test_image_name_that_could_be_something_else_is_refused(image, tmp_path):
     with pytest.raises(GradingSetupError, match="is not the name of a container image"):
-        skeleton.make(ROOT, tmp_path / "lab", image)
+        new.make(tmp_path / "lab", image)
     assert not (tmp_path / "lab").exists()
 
 

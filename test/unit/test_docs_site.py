@@ -76,7 +76,7 @@ def test_nothing_is_loaded_from_other_servers(site):
 
 
 def test_links_that_lead_nowhere_are_errors_that_name_them(tmp_path):
-    for name in ("docs", "src", "config", "mkdocs.yml", "CONTRIBUTING.md", "CHANGELOG.rst"):
+    for name in ("docs", "src", "config", "CONTRIBUTING.md", "CHANGELOG.rst"):
         copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
         copy(ROOT / name, tmp_path / name)
     broken = ["nowhere.md", "worlds.md#nowhere", "../config/nowhere.yaml"]
@@ -86,7 +86,7 @@ def test_links_that_lead_nowhere_are_errors_that_name_them(tmp_path):
     command = subprocess.run(
         [ROOT / "robocop", "docs"], env=dry_run, stdout=subprocess.PIPE, text=True, check=True
     ).stdout
-    words = shlex.split(command.splitlines()[-1].replace(str(ROOT / "mkdocs.yml"), str(tmp_path / "mkdocs.yml")))
+    words = shlex.split(command.splitlines()[-1].replace(str(ROOT / "docs" / "site"), str(tmp_path / "docs" / "site")))
     words[words.index("--site-dir") + 1] = str(tmp_path / "site")
     done = subprocess.run(words, capture_output=True, text=True, timeout=240)
     assert done.returncode == 1

@@ -19,9 +19,9 @@ PYTHON = ("src", "scripts", "launch", "test", "docs", "setup.py")
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,poin,sise,wrold"
 PROSE = (
     *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
-    *("mkdocs.yml", "robocop"),
+    *("docs/site/mkdocs.yml", "robocop"),
 )
-PROSE_FOLDERS = ("action", "cfg", "compat", "config", "msg", "skeleton", "srv", "worlds")
+PROSE_FOLDERS = ("action", "cfg", "compat", "config", "msg", "src/robocop_grading/skeleton", "srv", "worlds")
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
 READER = f"{GRADER}.builds.roslaunch_reader"
@@ -77,7 +77,7 @@ ROSDEP_KEYS = {
     name: f"python3-{name}" for name in ("jinja2", "lxml", "matplotlib", "numpy", "psutil", "rospkg", "yaml")
 }
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip", trimesh="python3-trimesh-pip")
-# Imported on request only: in compat/, in deb-packages/class.txt or grade.txt, in requirements-web.txt.
+# Imported on request only: in compat/, in install/deb-packages/class.txt or grade.txt, in install/requirements-web.txt.
 OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets", "wx"}
 # Where the insides of other libraries are used, in how many lines at most, and why. What is not here may use none.
 INSIDES = {

@@ -40,7 +40,7 @@ def test_other_python_installations_are_ignored(tmp_path):
 
 @pytest.mark.slow
 def test_without_a_display_the_lab_starts_even_if_the_web_page_can_not_be_installed(checkout, index):
-    (checkout / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
+    (checkout / "install" / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
     shutil.copytree(ROOT / "launch", checkout / "launch")
     (checkout / "launch" / "robocop_launch.py").write_text("import sys; print(sys.argv[1:])\n")
     uri = f"http://localhost:{free_port()}"
@@ -59,13 +59,13 @@ def checkout(tmp_path):
     """A copy of the checkout at a path with a space, that needs nothing from PyPI but pybullet's source release."""
     root = tmp_path / "check out"
     root.mkdir()
-    for name in ("robocop", "deb-packages", *BUILD_INPUTS):
+    for name in ("robocop", "install", *BUILD_INPUTS):
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
         elif (ROOT / name).exists():
             shutil.copy2(ROOT / name, root / name)
-    (root / "requirements.txt").write_text("pybullet==3.2.7\n")
-    (root / "deb-packages" / "pybullet.txt").write_text("bash\n")
+    (root / "install" / "requirements.txt").write_text("pybullet==3.2.7\n")
+    (root / "install" / "deb-packages" / "pybullet.txt").write_text("bash\n")
     (root / "scripts" / "robocop_goto.py").write_text("#!/usr/bin/env python3\nprint('started')\n")
     return root
 
@@ -162,7 +162,7 @@ def test_doctor_shows_the_system_the_versions_and_that_nothing_is_missing():
 
 
 def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(checkout):
-    (checkout / "deb-packages" / "run.txt").write_text("bash\nno-such-package\n")
+    (checkout / "install" / "deb-packages" / "run.txt").write_text("bash\nno-such-package\n")
     with socket.create_server(("127.0.0.1", 0)) as silent:
         uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
         done = in_copy(checkout, "doctor", ROS_MASTER_URI=uri)
@@ -274,7 +274,7 @@ installed 60 %
 
 def test_installation_of_debian_packages_tells_sizes_progress_and_its_log(checkout):
     root = checkout.rename(checkout.parent / "plain")
-    (root / "deb-packages" / "run.txt").write_text("no-such-package\n")
+    (root / "install" / "deb-packages" / "run.txt").write_text("no-such-package\n")
     programs = root / ".robocop" / "venv" / "bin"
     programs.mkdir(parents=True)
     for name, script in {"apt-get": APT.format(programs), "sudo": '#!/bin/sh\nexec "$@"\n'}.items():

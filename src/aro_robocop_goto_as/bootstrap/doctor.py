@@ -17,7 +17,7 @@ PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
 STAMPS = ("venv/made-as", "venv/requirements", "ws/built-from")  # what a complete set-up leaves
 SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
-OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in deb-packages/
+OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in install/deb-packages/
 # What neither ROS in /opt/ros, which is not installed by ./robocop, nor the system may lack.
 MODULES = (
     "rospy actionlib tf2_ros tf2_geometry_msgs nav_msgs sensor_msgs diagnostic_msgs visualization_msgs std_srvs"
@@ -94,7 +94,7 @@ def examine(
     """The rows of the report, and what is missing with what to do about it.
 
     ros: its folder in /opt/ros, or empty; unsupported: why this system is not supported, or empty; missing: the
-    packages (Python modules for `modules`) that are not installed, for each list in deb-packages/.
+    packages (Python modules for `modules`) that are not installed, for each list in install/deb-packages/.
     """
     python = str(Path(state, "venv", "bin", "python"))
     complete = all(Path(state, stamp).exists() for stamp in STAMPS)

@@ -205,7 +205,7 @@ def docs(arguments: List[str]) -> None:
         refuse(f"docs: expected --serve or nothing, got {' '.join(arguments)}")
     program.need("docs")
     site, log = str(program.state() / "docs"), program.state() / "log" / "docs.log"
-    build = program.module("mkdocs", "build", "--strict", "--config-file", f"{ROOT}/mkdocs.yml", "--site-dir", site)
+    build = program.module("mkdocs", "build", "--strict", "--config-file", f"{ROOT}/docs/site/mkdocs.yml", "--site-dir", site)
     if program.is_dry_run():
         program.start(*build)
     with open(log, "wb") as output:
@@ -233,7 +233,7 @@ def shell(arguments: List[str]) -> None:
 
 def setup(parts: List[str]) -> None:
     """Only install and build."""
-    known = sorted(path.stem for path in (ROOT / "deb-packages").glob("*.txt"))
+    known = sorted(path.stem for path in (ROOT / "install" / "deb-packages").glob("*.txt"))
     for part in parts:
         if part not in known:
             refuse(f"setup: there is no part '{part}'; there are: {' '.join(known)}{did_you_mean(part, known)}")

@@ -50,7 +50,7 @@ _robocop() {
   elif [ "$command" = shell ]; then
     mapfile -t COMPREPLY < <(compgen -c -- "$word")
   elif [ "$command" = setup ]; then
-    _robocop_names deb-packages .txt "$word"
+    _robocop_names install/deb-packages .txt "$word"
   elif [ "$command" = help ]; then
     mapfile -t COMPREPLY < <(compgen -W "${!_robocop_options[*]}" -- "$word")
   elif [ "${COMP_WORDS[COMP_CWORD - 1]}" = --world ]; then

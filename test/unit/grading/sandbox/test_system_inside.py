@@ -57,7 +57,7 @@ def output(command):
 
 def debian_modules():
     """The Python modules of the lists of Debian's packages, as far as they are installed."""
-    lists = [path.read_text() for path in (SHARE / "deb-packages").glob("*.txt")]
+    lists = [path.read_text() for path in (SHARE / "install" / "deb-packages").glob("*.txt")]
     packages = sorted(set(re.findall(r"^python3-[\w.+-]+", "\n".join(lists), re.MULTILINE)))
     files = subprocess.run(["dpkg", "-L", *packages], capture_output=True, text=True).stdout
     return sorted(set(MODULE.findall(files)) - {"__pycache__"})

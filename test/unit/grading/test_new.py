@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from robocop_grading.skeleton import make_autograder
+from robocop_grading.new import make_autograder
 
 RESULT = '{"score": 5.0}'
 # Writes its arguments, and does what the test says.

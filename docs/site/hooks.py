@@ -13,7 +13,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "aro_robocop_goto_as"
 OTHERS = {"CONTRIBUTING.md": "contributing.md", "CHANGELOG.rst": "changelog.md", "README.md": "index.md"}
 # The parts of the core that do not need ROS, in the order in which they build on one another.

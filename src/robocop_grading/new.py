@@ -13,27 +13,24 @@ from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 
 from .builds.workspace import places
 
+SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image
 GRADESCOPE = ".gradescope"  # the folder of what is for Gradescope
 # What an installation of this package needs, besides README, docs and tests.
-INSTALLED = "action cfg compat config deb-packages launch msg rviz scripts skeleton src srv urdf worlds".split()
-INSTALLED += "CMakeLists.txt LICENSE package.xml pyproject.toml requirements.txt robocop setup.py test/ros".split()
+INSTALLED = "action cfg compat config install launch msg rviz scripts src srv urdf worlds".split()
+INSTALLED += "CMakeLists.txt LICENSE package.xml pyproject.toml robocop setup.py test/ros".split()
 IMAGE_NAME = r"[a-z0-9][A-Za-z0-9._/:@-]*"
 
 
-def make(share: Path, folder: Path, image: Optional[str] = None) -> None:
-    """Copy the skeleton to `folder`, which must not exist yet, with GitHub's files if a container image is given.
-
-    `share` is the folder of this package.
-    """
+def make(folder: Path, image: Optional[str] = None) -> None:
+    """Copy the skeleton to `folder`, which must not exist yet, with GitHub's files if a container image is given."""
     if folder.exists():
         raise GradingSetupError(f"{folder} exists already; choose a new name")
     if image is not None and not re.fullmatch(IMAGE_NAME, image):
         raise GradingSetupError(f"{image!r} is not the name of a container image: expected NAME or SERVER/NAME:TAG")
-    source = share / "skeleton"
-    for path in sorted(source.rglob(f"*{SUFFIX}")):
-        relative = path.relative_to(source).with_suffix("")
+    for path in sorted(SKELETON.rglob(f"*{SUFFIX}")):
+        relative = path.relative_to(SKELETON).with_suffix("")
         target = folder / relative
         if relative.parts[0] == GRADESCOPE or (relative.parts[0].startswith(".") and image is None):
             continue
@@ -49,7 +46,7 @@ def make(share: Path, folder: Path, image: Optional[str] = None) -> None:
 def make_autograder(share: Path, path: Path) -> None:
     """Write Gradescope's zip: setup.sh and run_autograder, and this package for machines that do not have it."""
     with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
-        for script in sorted((share / "skeleton" / GRADESCOPE).glob(f"*{SUFFIX}")):
+        for script in sorted((SKELETON / GRADESCOPE).glob(f"*{SUFFIX}")):
             archive.write(script, script.with_suffix("").name)
         for name in INSTALLED:
             for file in sorted([share / name, *(share / name).rglob("*")]):
@@ -74,7 +71,7 @@ def main() -> None:
             make_autograder(places()[1], folder)
             print(f"Created {folder}. Upload it to Gradescope as the autograder; docs/grading.md says how.")
             return
-        make(places()[1], folder, args.classroom)
+        make(folder, args.classroom)
     except RobocopError as error:
         sys.exit(f"robocop new: {error}")
     except OSError as error:
