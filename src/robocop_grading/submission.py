@@ -29,9 +29,9 @@ from .builds.scripts import (
 )
 from .builds.workspace import Environment, compat_environment, places, workspace_name
 from .files.tree import read_text
+from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
-from .new import SKELETON, make
 
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"

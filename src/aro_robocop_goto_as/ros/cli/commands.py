@@ -205,7 +205,9 @@ def docs(arguments: List[str]) -> None:
         refuse(f"docs: expected --serve or nothing, got {' '.join(arguments)}")
     program.need("docs")
     site, log = str(program.state() / "docs"), program.state() / "log" / "docs.log"
-    build = program.module("mkdocs", "build", "--strict", "--config-file", f"{ROOT}/docs/site/mkdocs.yml", "--site-dir", site)
+    build = program.module(
+        "mkdocs", "build", "--strict", "--config-file", f"{ROOT}/docs/site/mkdocs.yml", "--site-dir", site
+    )
     if program.is_dry_run():
         program.start(*build)
     with open(log, "wb") as output:
