@@ -57,7 +57,7 @@ def module(name: str, *arguments: str) -> List[str]:
 
 
 def set_up(*parts: str) -> bool:
-    """Install and build what is missing, also for these parts of install/deb-packages/; return whether that succeeded."""
+    """Install and build what is missing, also for these parts of install/deb-packages/; return whether it succeeded."""
     ros = "" if is_dry_run() else doctor.ros_in_opt()
     missing = doctor.missing_modules() if ros else ""
     if missing:
