@@ -68,6 +68,7 @@ class System:
         master = self.start("master", "rosmaster", "--core", "-p", self.port)
         self.wait(self.master.is_online, "the master", master)
         self.master.setParam("/use_sim_time", True)
+        self.master.setParam("/run_id", "test")  # as roscore does; two launches at once would each choose one
         return master
 
     def wait(self, condition, what, *processes):

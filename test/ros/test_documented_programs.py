@@ -155,7 +155,7 @@ def test_printed_command_runs(command, system):
     printed = re.sub(r"^((?:\w+=\S+ )*)", r"\1./robocop ", command)
     if "my_lab" in command and name != "new":
         system.run("./robocop new my_lab")
-    if "--robot" in command or name in ("web", "record", "replay"):
+    if "--robot" in command or "rosnode" in command or name in ("web", "record", "replay"):
         lab = system.start("./robocop run robots:=3 web:=false", SERVING["run"])
     if name == "replay":
         recording = system.start("./robocop record run.bag", SERVING["record"])
