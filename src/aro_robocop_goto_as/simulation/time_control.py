@@ -119,6 +119,11 @@ class TimeControl:
         """Whether simulated time stands still: it is paused, and no span runs."""
         return self.paused and not self._span_end
 
+    @property
+    def unbounded(self) -> bool:
+        """Return whether steps follow each other as fast as possible: neither wall clock nor pause nor span holds them."""
+        return not (self.pacer.factor or self.paused or self._span_end)
+
     def hold(self, step: int) -> float:
         """How long to hold simulated time at a step [s, wall] before asking again; 0: it may go on."""
         if self.standing:

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-#define ARO_BATCH_VERSION 6
+#define ARO_BATCH_VERSION 7
 #define NANOSECONDS 1000000000
 
 /* What a field of a message is made of */
@@ -98,9 +98,11 @@ static int is_behind_another(const struct batch *batch, int64_t i)
 }
 
 /* Fill and send the messages of a step at simulated time stamp_ns [ns], as far as the sockets take them without waiting.
- * Returns how many parcels are not sent whole. Those of subscribers that stand still delay no others. */
-int64_t aro_send(struct batch *batch, int64_t stamp_ns)
+ * more: the next step follows at once, so the kernel may join its messages with these; one wake-up of the subscriber for
+ * several steps. Returns how many parcels are not sent whole. Those of subscribers that stand still delay no others. */
+int64_t aro_send(struct batch *batch, int64_t stamp_ns, int64_t more)
 {
+    const int flags = MSG_DONTWAIT | MSG_NOSIGNAL | (more ? MSG_MORE : 0);
     uint32_t stamp[2] = {(uint32_t)(stamp_ns / NANOSECONDS), (uint32_t)(stamp_ns % NANOSECONDS)};
     int64_t i, incomplete = 0, standing = 0;
     for (i = 0; i < batch->n_fields; i++)
@@ -115,7 +117,7 @@ int64_t aro_send(struct batch *batch, int64_t stamp_ns)
         if (!incomplete || (i < batch->n_first && !is_behind_another(batch, i))) {
             ssize_t sent;
             do
-                sent = send((int)parcel->socket, parcel->data, (size_t)parcel->size, MSG_DONTWAIT | MSG_NOSIGNAL);
+                sent = send((int)parcel->socket, parcel->data, (size_t)parcel->size, flags);
             while (sent < 0 && errno == EINTR);
             parcel->taken = sent < 0 ? -(int64_t)errno : (int64_t)sent;
         }

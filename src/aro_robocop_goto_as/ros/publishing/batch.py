@@ -15,7 +15,7 @@ from .packed import PackedMessage
 from .publisher import DirectPublisher
 from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
 
-VERSION = 6  # of batch.c
+VERSION = 7  # of batch.c
 
 Posted = Tuple[DirectPublisher, PackedMessage]
 
@@ -46,7 +46,7 @@ class _BatchStruct(ctypes.Structure):
 def _library() -> ctypes.PyDLL:
     library = compiled.load("batch", VERSION)
     library.aro_send.restype = ctypes.c_int64
-    library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64]
+    library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64]
     return library
 
 
@@ -84,15 +84,17 @@ class Batch:
         self._lock: Any = locks[0] if locks else threading.Lock()
         self._times = 0  # sent since the statistics were updated
 
-    def send(self, stamp_ns: int) -> None:
+    def send(self, stamp_ns: int, more: bool = False) -> None:
         """Send everything at a simulated time [ns].
+
+        `more`: the next messages follow at once, and the kernel may join them with these (MSG_MORE; 0.2 s at most).
 
         A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. While one is
         waited for, that time passes for the others, too: a stopped node can have many topics.
         """
         self._times += 1
         with self._lock:
-            if self._fill_and_send(self._pointer, stamp_ns):
+            if self._fill_and_send(self._pointer, stamp_ns, more):
                 self._finish()
 
     def _finish(self) -> None:

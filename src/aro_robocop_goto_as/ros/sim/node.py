@@ -72,7 +72,7 @@ class SimNode:
                     self._world.publish_moving()
                 if observed.due.clock and self._gazebo is not None:
                     self._gazebo.publish()
-                self._topics.publish(observed)
+                self._topics.publish(observed, more=time.unbounded and not observed.due.control)
                 if observed.due.control and controllers.in_lockstep:
                     self._await_controllers()
             if time.end_span(simulator.steps) or (observed is not None and observed.due.clock):

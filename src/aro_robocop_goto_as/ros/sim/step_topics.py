@@ -62,8 +62,11 @@ class StepTopics:
             self._subscriptions = subscriptions
         return self._subscriptions
 
-    def publish(self, observed: Observations) -> None:
-        """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks."""
+    def publish(self, observed: Observations, more: bool = False) -> None:
+        """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
+
+        `more`: those of the next step follow at once.
+        """
         due = observed.due
         key = due, observed.scans.shape[1]
         if key not in self._batches:
@@ -71,7 +74,7 @@ class StepTopics:
         unpacked, batch = self._batches[key]
         for publish in unpacked:
             publish()
-        batch.send(observed.stamp_ns)
+        batch.send(observed.stamp_ns, more)
 
     def publish_static(self) -> Sequence[TransformStamped]:
         """world -> map, and each robot's map -> odom where that is static; returns what was sent."""

@@ -120,6 +120,16 @@ def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Ca
     assert second.received(sum(sizes)) == b"".join(data)
 
 
+def test_messages_of_steps_that_follow_at_once_arrive_whole_and_in_order(subscriber: Callable[..., Subscriber]) -> None:
+    reader, message = subscriber(), counted(10)
+    batch = Batch([(topic_of(reader), message)])
+    sent = []
+    for more in (True, True, False, True):
+        batch.send(0, more)
+        sent.append(message.data.tobytes())
+    assert reader.received(4 * message.size) == b"".join(sent)
+
+
 def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callable[..., Subscriber]) -> None:
     reader, message = subscriber(), scan(1_000_000)
     received: List[bytes] = []
