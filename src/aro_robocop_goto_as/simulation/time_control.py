@@ -121,7 +121,7 @@ class TimeControl:
 
     @property
     def unbounded(self) -> bool:
-        """Return whether steps follow each other as fast as possible: neither wall clock nor pause nor span holds them."""
+        """Return whether steps follow each other as fast as possible: nothing but a controller holds them."""
         return not (self.pacer.factor or self.paused or self._span_end)
 
     def hold(self, step: int) -> float:
