@@ -117,7 +117,7 @@ class Pose3D:
         return Pose3D(xyz, quaternion_from_rpy(*rpy))
 
     def is_upright(self) -> bool:
-        """Whether the z axis is vertical: the pose has neither roll nor pitch."""
+        """Return whether the z axis is vertical: the pose has neither roll nor pitch."""
         return abs(self.orientation[0]) + abs(self.orientation[1]) <= UPRIGHT
 
     def on_plane(self) -> Pose2D:

@@ -139,7 +139,7 @@ def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params:
 
 
 def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
-    """Whether the robot got away from the goal as no driving explains, with odometry late by data_timeout: a reset."""
+    """Return whether the errors grew more than driving for data_timeout explains: the odometry was reset."""
     driven = params.position_tolerance + params.max_linear_velocity * params.data_timeout
     turned = params.angle_tolerance + params.max_angular_velocity * params.data_timeout
     return errors.position > before.position + driven or abs(errors.angle) > abs(before.angle) + turned

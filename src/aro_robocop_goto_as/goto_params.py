@@ -6,14 +6,14 @@ from typing import Any, List, Mapping
 
 from .param_loading import from_dict, parameter, positive
 
-FASTEST = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
-FASTEST_TURN = 100.0  # [rad/s], [rad/s^2] likewise
-LARGEST_GAIN = 100.0  # [1/s] with which all but the last millimetres are covered at maximum velocity
+MAX_LINEAR = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
+MAX_ANGULAR = 100.0  # [rad/s], [rad/s^2] likewise
+MAX_GAIN = 100.0  # [1/s] with which all but the last millimetres are covered at maximum velocity
 MIN_TOLERANCE = 1e-3  # [m], [rad] what odometry resolves
 MIN_GAIN = 0.01  # [1/s] slower than anybody waits
 MIN_SPEED = 1e-3  # [m/s], [rad/s] likewise
 MIN_ACCELERATION = 0.01  # [m/s^2], [rad/s^2] likewise
-FARTHEST_OBSTACLE = 1e3  # [m] beyond every scanner's range
+MAX_OBSTACLE_DISTANCE = 1e3  # [m] beyond every scanner's range
 
 
 @dataclass(frozen=True)
@@ -23,17 +23,17 @@ class GotoParams:
     control_rate: float = positive(10.0, high=1000.0)
     position_tolerance: float = parameter(0.1, low=MIN_TOLERANCE, high=1e3)
     angle_tolerance: float = parameter(0.1, low=MIN_TOLERANCE, high=math.pi)
-    obstacle_distance: float = parameter(0.3, low=0.0, high=FARTHEST_OBSTACLE)
+    obstacle_distance: float = parameter(0.3, low=0.0, high=MAX_OBSTACLE_DISTANCE)
     obstacle_half_angle: float = parameter(math.pi / 6.0, low=0.0, high=math.pi)
 
-    linear_gain: float = parameter(0.5, low=MIN_GAIN, high=LARGEST_GAIN)
-    angular_gain: float = parameter(5.0, low=MIN_GAIN, high=LARGEST_GAIN)
-    max_linear_velocity: float = parameter(0.2, low=MIN_SPEED, high=FASTEST)
-    min_linear_velocity: float = parameter(0.03, low=MIN_SPEED, high=FASTEST)
-    max_angular_velocity: float = parameter(1.0, low=MIN_SPEED, high=FASTEST_TURN)
-    min_angular_velocity: float = parameter(0.3, low=MIN_SPEED, high=FASTEST_TURN)
-    linear_acceleration: float = parameter(0.5, low=MIN_ACCELERATION, high=FASTEST)
-    angular_acceleration: float = parameter(3.0, low=MIN_ACCELERATION, high=FASTEST_TURN)
+    linear_gain: float = parameter(0.5, low=MIN_GAIN, high=MAX_GAIN)
+    angular_gain: float = parameter(5.0, low=MIN_GAIN, high=MAX_GAIN)
+    max_linear_velocity: float = parameter(0.2, low=MIN_SPEED, high=MAX_LINEAR)
+    min_linear_velocity: float = parameter(0.03, low=MIN_SPEED, high=MAX_LINEAR)
+    max_angular_velocity: float = parameter(1.0, low=MIN_SPEED, high=MAX_ANGULAR)
+    min_angular_velocity: float = parameter(0.3, low=MIN_SPEED, high=MAX_ANGULAR)
+    linear_acceleration: float = parameter(0.5, low=MIN_ACCELERATION, high=MAX_LINEAR)
+    angular_acceleration: float = parameter(3.0, low=MIN_ACCELERATION, high=MAX_ANGULAR)
 
     data_timeout: float = positive(1.0)
     stuck_timeout: float = positive(5.0)

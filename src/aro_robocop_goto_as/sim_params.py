@@ -68,7 +68,7 @@ class TopicParams:
 
     @property
     def has_initialpose(self) -> bool:
-        """Whether initialpose is subscribed to: where amcl localizes, it alone receives that topic."""
+        """Return whether initialpose is subscribed to: where amcl localizes, it alone receives that topic."""
         return self.initialpose and self.localization != "none"
 
 

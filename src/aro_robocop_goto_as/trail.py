@@ -6,10 +6,10 @@ from typing import Optional, Tuple
 from .geometry import Vector3
 
 SPACING = 0.05  # [m] between two points
-LONGEST = 600  # points, 30 m
+MAX_POINTS = 600  # points, 30 m
 HEIGHT = 0.012  # [m] above the floor
 # A robot that moves farther between two poses was placed there, as by a reset.
-FASTEST, SLACK = 2.0, 0.05  # [m/s] above the speed of a TurtleBot; [m] for noise
+MAX_SPEED, SLACK = 2.0, 0.05  # [m/s] above the speed of a TurtleBot; [m] for noise
 
 
 class Trail:
@@ -29,10 +29,10 @@ class Trail:
         point, is_placed = (x, y, HEIGHT), False
         if self._newest is not None:
             before, position = self._newest
-            is_placed = time < before or math.dist(position, point) > SLACK + FASTEST * (time - before)
+            is_placed = time < before or math.dist(position, point) > SLACK + MAX_SPEED * (time - before)
             if is_placed:
                 self.points = ()
         self._newest = (time, point)
         if not self.points or math.dist(self.points[-1], point) >= SPACING:
-            self.points = (*self.points[1 - LONGEST :], point)
+            self.points = (*self.points[1 - MAX_POINTS :], point)
         return is_placed

@@ -29,7 +29,7 @@ INTERRUPTED = 130  # the shells' exit status for Ctrl-C
 TEXTS_HELP = "texts in another language: a translated copy of config/grading_texts.yaml"
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 PAGE_ADVICE = "open {url} in a browser to watch; server and bridge each wait a minute for it"
-MOST_SHOWN = 1_000  # characters of an error
+MAX_SHOWN = 1_000  # characters of an error
 LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
@@ -157,7 +157,7 @@ def main() -> None:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission: report it in one line
-        print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MOST_SHOWN]}", file=sys.stderr)
+        print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
         sys.exit(1)
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr, flush=True)

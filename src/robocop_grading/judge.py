@@ -103,7 +103,7 @@ class Grade:
 
     @property
     def all_right(self) -> bool:
-        """Whether every check that is not extra passed."""
+        """Return whether every check that is not extra passed."""
         return all(check.outcome is Outcome.PASSED for check in self.checks if not check.extra)
 
     @property

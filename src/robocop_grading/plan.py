@@ -133,7 +133,7 @@ class Plan:
         return self.texts.told(CHECKS[check].contract)
 
     def examines(self, part: str, scenario: str = "") -> bool:
-        """Whether some check examines this part, or this scenario of it."""
+        """Return whether some check examines this part, or this scenario of it."""
         return any(check.part == part and scenario in ("", *check.scenarios) for check in self.checks)
 
     def scenarios_of(self, part: str) -> List[str]:

@@ -139,7 +139,7 @@ class Death:
 
     @property
     def is_unexplained(self) -> bool:
-        """Whether it was killed, and not by the grader: by itself, or by the kernel as the machine's memory ran out."""
+        """Return whether it was killed by itself, or by the kernel as memory ran out; not by the grader."""
         return self.status in KILLED and not self.reason
 
 

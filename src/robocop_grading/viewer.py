@@ -32,7 +32,7 @@ class Viewer:
 
     @property
     def is_page(self) -> bool:
-        """Whether the run is shown by the web page."""
+        """Return whether the run is shown by the web page."""
         return self.page_socket >= 0
 
     @property

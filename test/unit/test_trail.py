@@ -16,8 +16,8 @@ def driven(*places):
 
 
 def test_a_trail_has_a_point_for_each_distance_and_a_limited_length():
-    points = driven(*((step / 64.0, step / 64.0, 0.0) for step in range(8 * trail.LONGEST)))
-    assert len(points) == trail.LONGEST and points[-1][0] >= 8 * trail.LONGEST / 64.0 - 0.0625
+    points = driven(*((step / 64.0, step / 64.0, 0.0) for step in range(8 * trail.MAX_POINTS)))
+    assert len(points) == trail.MAX_POINTS and points[-1][0] >= 8 * trail.MAX_POINTS / 64.0 - 0.0625
     assert {(after[0] - before[0], *after[1:]) for before, after in zip(points, points[1:])} == {
         (0.0625, 0.0, trail.HEIGHT)
     }

@@ -65,7 +65,7 @@ def master_uri() -> str:
 
 
 def master_answers(uri: str) -> bool:
-    """Whether there is a ROS master; MasterError if something that does not answer as a master has its port."""
+    """Return whether there is a ROS master; MasterError if something that does not answer as a master has its port."""
     try:
         return ask_master(uri, "getPid") is not None
     except OSError:

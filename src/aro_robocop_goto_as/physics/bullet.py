@@ -36,7 +36,7 @@ class _Body:
 
     @property
     def stands(self) -> bool:
-        """Whether the wheel motors' target speeds are zero."""
+        """Return whether the wheel motors' target speeds are zero."""
         return self.targets == [0.0, 0.0]
 
 
@@ -254,7 +254,7 @@ class BulletEngine:
             pybullet.changeDynamics(robot.body, -1, activationState=state, physicsClientId=self.client)
 
     def touching(self, robot: int) -> bool:
-        """Whether the robot touches anything but the floor."""
+        """Return whether the robot touches anything but the floor."""
         points = pybullet.getContactPoints(bodyA=self._robots[robot].body, physicsClientId=self.client)
         return any(point[2] not in self._floors for point in points)
 

@@ -41,7 +41,7 @@ class Engine(Protocol):
         """The robot's base_link in space, after the last step."""
 
     def touching(self, robot: int) -> bool:
-        """Whether the robot touches anything but the floor."""
+        """Return whether the robot touches anything but the floor."""
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere, at rest; its wheels keep their angles."""

@@ -135,7 +135,7 @@ class KinematicEngine:
         return BodyState(pose, (v * math.cos(yaw), v * math.sin(yaw), 0.0), (0.0, 0.0, w))
 
     def touching(self, robot: int) -> bool:
-        """Whether the robot was blocked or pushed in the last step, or overlaps a wall or another robot."""
+        """Return whether the robot was blocked or pushed in the last step, or overlaps a wall or another robot."""
         return bool(self._library.aro_kinematic_touching(self._pointer, robot))
 
     def close(self) -> None:

@@ -10,8 +10,8 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Set
 
 import psutil
 
-GRACE = 10.0  # [s, wall] for a process to end after a signal
-STOP_PATIENCE = 0.5  # [s, wall] for SIGSTOP to take effect; the parent of a vfork cannot stop until its child execs
+END_TIMEOUT = 10.0  # [s, wall] for a process to end after a signal
+STOP_TIMEOUT = 0.5  # [s, wall] for SIGSTOP to take effect; the parent of a vfork cannot stop until its child execs
 
 Child = subprocess.Popen  # what start() returns; an alias, so that callers need not import subprocess
 
@@ -38,7 +38,7 @@ def start(
         return subprocess.Popen(list(command), env=environment, cwd=folder, **{**defaults, **options})
 
 
-def end(child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: float = GRACE) -> int:
+def end(child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: float = END_TIMEOUT) -> int:
     """End a child and its descendants; returns the child's exit status.
 
     Sends signal `number` (None: no signal), waits up to `grace` [s, wall] for the child to end, then kills what is
@@ -88,7 +88,7 @@ def _kill(group: int, family: Set["psutil.Process"]) -> None:
 
 def _suspended(members: Set["psutil.Process"]) -> Set["psutil.Process"]:
     """These processes and their descendants, all stopped: a running process could start another one meanwhile."""
-    deadline = time.monotonic() + STOP_PATIENCE
+    deadline = time.monotonic() + STOP_TIMEOUT
     while True:
         for process in members:
             with contextlib.suppress(psutil.Error):

@@ -66,7 +66,7 @@ class Deferred:
 
     @property
     def interrupted(self) -> bool:
-        """Whether a signal has arrived."""
+        """Return whether a signal has arrived."""
         return self._number is not None
 
     def __enter__(self) -> "Deferred":

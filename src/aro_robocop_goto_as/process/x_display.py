@@ -26,7 +26,7 @@ def screen_size() -> Optional[Tuple[int, int]]:
 
 
 def answers() -> bool:
-    """Whether windows can be opened."""
+    """Return whether windows can be opened."""
     return screen_size() is not None
 
 

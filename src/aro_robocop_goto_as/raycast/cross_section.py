@@ -14,7 +14,7 @@ from .movers import Movers
 CYLINDER_SIDES = 64  # of the prism that approximates a tilted cylinder; upright cylinders are exact
 FAR = 1e4  # [m] half the length of the segment that represents a vertical plane
 LEVEL = 1e-9  # horizontal part of a unit normal below which a plane counts as level
-FEW = 1000  # segments; above this number an index is worth its cost (measured)
+MIN_INDEXED = 1000  # segments; above this number an index is worth its cost (measured)
 
 NO_SEGMENTS, NO_CIRCLES = np.zeros((0, 2, 2)), np.zeros((0, 3))
 
@@ -32,7 +32,7 @@ class CrossSection:
         self.circles = np.concatenate([NO_CIRCLES, *(of_one for _, of_one in outlines)])  # (k, [x, y, radius]) [m]
         self.circles_at_start = self.circles.copy()
         self.motions: Sequence[Optional[Motion]] = motions  # of each circle
-        self.tiles = Tiles(self.segments) if len(self.segments) > FEW else None
+        self.tiles = Tiles(self.segments) if len(self.segments) > MIN_INDEXED else None
         moving = [(row, motion) for row, motion in enumerate(motions) if motion is not None]
         self.move = Movers(self.circles, moving).move  # to be called with a time [s]
 

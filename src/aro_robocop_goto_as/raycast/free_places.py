@@ -17,7 +17,7 @@ from .obstacle_distance import ObstacleDistance, body_heights
 HEIGHT = 0.1  # [m] of the cross-section
 SPACING = 0.5  # [m] of the grid
 CLEARANCE = 0.3  # [m] from a pose to the nearest obstacle
-LEAST_MARGIN = 0.02  # [m] from a robot's footprint to the nearest obstacle, where no place has CLEARANCE
+MIN_MARGIN = 0.02  # [m] from a robot's footprint to the nearest obstacle, where no place has CLEARANCE
 SEARCHES = ((0.1, 3.0), (0.5, 30.0))  # spacing and reach [m] of the grids on which a place for one robot is sought
 
 Cell = Tuple[int, int]  # of the grid; (0, 0) is the pose in the centre
@@ -30,7 +30,7 @@ class _Room:
     """
 
     def __init__(self, world: World, model: RobotModel) -> None:
-        self.least = model.figures.footprint_radius + LEAST_MARGIN
+        self.min_distance = model.figures.footprint_radius + MIN_MARGIN
         self.world = world
         self._distance = ObstacleDistance(world, body_heights(model))
 
@@ -58,7 +58,7 @@ def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
 
 def _place(room: _Room, around: Pose2D) -> Pose2D:
     world = room.world
-    if room.at(around.x, around.y) >= room.least:
+    if room.at(around.x, around.y) >= room.min_distance:
         return around
     centre = (around.x, around.y) if world.occupancy is None else world.occupancy.nearest_free(around.x, around.y)
     narrow: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
@@ -67,7 +67,7 @@ def _place(room: _Room, around: Pose2D) -> Pose2D:
             distance = room.at(x, y)
             if distance >= CLEARANCE:
                 return Pose2D(x, y, around.yaw)
-            if narrow is None and distance >= room.least:
+            if narrow is None and distance >= room.min_distance:
                 narrow = Pose2D(x, y, around.yaw)
     if narrow is not None:
         return narrow
@@ -94,7 +94,7 @@ def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> 
     section, room = CrossSection(world, HEIGHT), _Room(world, model)
     centre = _place(room, around)
     places: List[Pose2D] = []
-    for clearance in (CLEARANCE, room.least):
+    for clearance in (CLEARANCE, room.min_distance):
         places = _connected_places(section, room, centre, count, clearance)
         if len(places) >= count:
             return places
@@ -127,7 +127,7 @@ def _pose(centre: Pose2D, cell: Cell) -> Pose2D:
 
 
 def _is_visible(pose: Pose2D, other: Pose2D, section: CrossSection) -> bool:
-    """Whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
+    """Return whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
     dx, dy = other.x - pose.x, other.y - pose.y
     away = math.hypot(dx, dy)
     ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), section, reach=away)[0, 0]

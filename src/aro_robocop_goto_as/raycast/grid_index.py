@@ -7,9 +7,9 @@ import numpy as np
 from ..compiled import address
 from .caster_library import GridStruct
 
-TILE = 1.0  # [m] side length, larger in worlds of more than MOST_TILES
-MOST_TILES = 1 << 20
-MOST_TILES_OF_ONE = 4096  # that one segment is listed in; a longer one counts as near everywhere
+TILE = 1.0  # [m] side length, larger in worlds of more than MAX_TILES
+MAX_TILES = 1 << 20
+MAX_TILES_OF_SEGMENT = 4096  # that one segment is listed in; a longer one counts as near everywhere
 PAD = 1e-3  # [m] around each segment: rounding errors never make a beam hit it outside its tiles
 
 
@@ -18,12 +18,12 @@ class Tiles:
 
     def __init__(self, segments: np.ndarray) -> None:
         low, high = segments.min(axis=1) - PAD, segments.max(axis=1) + PAD
-        listed = ((high - low) / TILE + 1.0).prod(axis=1) <= MOST_TILES_OF_ONE
+        listed = ((high - low) / TILE + 1.0).prod(axis=1) <= MAX_TILES_OF_SEGMENT
         self._everywhere = np.flatnonzero(~listed).astype(np.int32)
         numbers, low, high = np.flatnonzero(listed), low[listed], high[listed]
         self._origin = low.min(axis=0, initial=np.inf) if len(low) else np.zeros(2)  # [m] lower left corner
         extent = (high - self._origin).max(axis=0, initial=0.0)
-        self._side = max(TILE, math.sqrt(float((extent + TILE).prod()) / MOST_TILES))
+        self._side = max(TILE, math.sqrt(float((extent + TILE).prod()) / MAX_TILES))
         self._columns, self._rows = (int(length / self._side) + 1 for length in extent)
         first = ((low - self._origin) / self._side).astype(np.int64)
         spans = ((high - self._origin) / self._side).astype(np.int64) - first + 1

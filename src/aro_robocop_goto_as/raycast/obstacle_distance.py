@@ -10,16 +10,16 @@ from ..robot.model import RobotModel
 from ..world.model import Mesh, Plane, World
 from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
-LOWEST = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
-LARGEST_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
+MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
+MAX_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
 NEAR = 0.5  # [m] an obstacle that is nearer is found among the segments within it along y: few, in a map with many
 
 
 def body_heights(model: RobotModel) -> Tuple[float, ...]:
     """The heights [m] of the cross-sections that a robot's body is compared with; three for a Burger."""
     top = model.scan_height
-    count = 1 + max(1, math.ceil((top - LOWEST) / LARGEST_SPACING))
-    return tuple(np.linspace(LOWEST, top, count).tolist())
+    count = 1 + max(1, math.ceil((top - MIN_HEIGHT) / MAX_SPACING))
+    return tuple(np.linspace(MIN_HEIGHT, top, count).tolist())
 
 
 class Nearest(NamedTuple):

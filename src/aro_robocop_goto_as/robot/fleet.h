@@ -24,7 +24,8 @@ struct fleet {
     double *wheel_speeds;  /* (n, 2) [rad/s] */
 };
 
-/* Base controllers of all robots, one step of dt [s] on from `now` [s]; whether any wheel speed target has changed. */
+/* Advance the base controllers of all robots by one step of dt [s] from `now` [s].
+   Return whether any wheel speed target has changed. */
 int aro_control(const struct fleet *fleet, double now, double dt);
 
 /* Displacement dx, dy [m] along an arc of a length [m] from a heading [rad] to heading + turn. */

@@ -26,7 +26,7 @@ class LockstepParams:
 
     @property
     def enabled(self) -> bool:
-        """Whether simulated time waits for the controllers."""
+        """Return whether simulated time waits for the controllers."""
         return self.sync == "lockstep"
 
 

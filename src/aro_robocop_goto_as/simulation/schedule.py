@@ -11,7 +11,7 @@ def stamp_ns(step: int, physics_rate: int) -> int:
 
 
 def due(step: int, rate: int, physics_rate: int) -> bool:
-    """Whether something at `rate` [Hz] is due on this step: the first step at or after each multiple of its period.
+    """Return whether something at `rate` [Hz] is due on this step, the first one at or after a multiple of its period.
 
     If the rate divides physics_rate the period is exact; otherwise the mean rate is exact, and each is less than
     one step late.

@@ -148,7 +148,7 @@ class Simulator:
         return self.fleet.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
-        """Whether the robot touches anything but the floor."""
+        """Return whether the robot touches anything but the floor."""
         return self.engine.touching(robot)
 
     def newly_placed_in_contact(self) -> Sequence[int]:

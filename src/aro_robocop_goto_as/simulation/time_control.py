@@ -8,9 +8,9 @@ from ..param_loading import parameter
 from .jobs import Clock
 
 PAUSED_PERIOD = 0.1  # [s, wall] between repetitions of /clock while paused, for nodes that start meanwhile
-LONGEST_HOLD = 0.5  # [s, wall] between two checks for other due work while the wall clock is waited for
+MAX_HOLD = 0.5  # [s, wall] between two checks for other due work while the wall clock is waited for
 REPORT_PERIOD = 1.0  # [s, wall]
-MOST_BEHIND = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
+MAX_LAG = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
 REST_PERIOD, REST = 0.01, 1e-4  # [s, wall] a simulation that never waits rests this often, for this long
 TOLERANCE = 0.95  # share of the requested factor, below which the simulation counts as behind
 
@@ -35,7 +35,7 @@ class FactorReport:
 
     @property
     def behind(self) -> bool:
-        """Whether the machine is too slow for the requested factor; a lag that will be made up for does not count."""
+        """Return whether the machine is too slow for the requested factor; a lag that is made up for does not count."""
         return self.dropped > 0.0 and self.reached < TOLERANCE * self.asked
 
 
@@ -76,7 +76,7 @@ class Pacer:
             return 0.0
         due = self._anchor_wall + (step - self._anchor_step) / self._rate / self.factor
         self._lag = max(0.0, wall - due)
-        if wall - due > MOST_BEHIND:
+        if wall - due > MAX_LAG:
             self._anchor_wall, self._anchor_step = wall, step
             self._dropped += self._lag
         return max(0.0, due - wall)
@@ -116,7 +116,7 @@ class TimeControl:
 
     @property
     def standing(self) -> bool:
-        """Whether simulated time stands still: it is paused, and no span runs."""
+        """Return whether simulated time stands still: it is paused, and no span runs."""
         return self.paused and not self._span_end
 
     @property
@@ -128,10 +128,10 @@ class TimeControl:
         """How long to hold simulated time at a step [s, wall] before asking again; 0: it may go on."""
         if self.standing:
             return PAUSED_PERIOD
-        return min(LONGEST_HOLD, self.pacer.ahead(step))
+        return min(MAX_HOLD, self.pacer.ahead(step))
 
     def repetition_due(self) -> bool:
-        """While simulated time stands still: whether /clock has to be repeated now."""
+        """Return whether /clock has to be repeated now, because simulated time stands still."""
         now = self._clock.now()
         if not self.standing or now < self._next_repetition:
             return False
@@ -168,7 +168,7 @@ class TimeControl:
         return self._span_end - step if self._span_end else 10**9
 
     def end_span(self, step: int) -> bool:
-        """End the span if it ends at this step; whether it does."""
+        """End the span if it ends at this step; return whether it does."""
         if not self._span_end or step < self._span_end:
             return False
         self._span_end, self.paused = 0, self._pause_after_span

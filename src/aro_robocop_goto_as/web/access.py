@@ -60,7 +60,7 @@ def url(host: str, port: Union[int, str]) -> str:
 
 
 def is_loopback(address: str) -> bool:
-    """Whether a server bound to this address can be reached from this machine only."""
+    """Return whether a server bound to this address can be reached from this machine only."""
     if address.lower() in LOOPBACK_NAMES:
         return True
     try:

@@ -6,7 +6,7 @@ from typing import Optional
 from ..geometry import STANDSTILL, Twist2D
 
 RATE = 10.0  # [Hz] at which a page renews its request
-PATIENCE = 3.5 / RATE  # [s, wall] without a renewed request until the robot is stopped
+TIMEOUT = 3.5 / RATE  # [s, wall] without a renewed request until the robot is stopped
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Drive:
 class DeadMan:
     """Who drives which robot; the newest request wins. All times in seconds of one monotonic clock."""
 
-    def __init__(self, patience: float = PATIENCE) -> None:
+    def __init__(self, patience: float = TIMEOUT) -> None:
         self._patience = patience
         self._hold: Optional[_Hold] = None
         self._moving = ""
@@ -51,7 +51,7 @@ class DeadMan:
 
     @property
     def active(self) -> bool:
-        """Whether `command` has something to send, now or once the current request has run out."""
+        """Return whether `command` has something to send, now or once the current request has run out."""
         return self._hold is not None or self._is_moving
 
     def command(self, now: float) -> Optional[Drive]:

@@ -8,7 +8,7 @@ from typing import Dict, List, Optional, Tuple
 
 from ..geometry import Pose3D, compose3, inverse3
 
-LONGEST_CHAIN = 100  # frames from a root to a leaf; longer ones are loops
+MAX_CHAIN = 100  # frames from a root to a leaf; longer ones are loops
 
 
 class FrameTree:
@@ -27,7 +27,7 @@ class FrameTree:
         return sorted(names, key=lambda name: (len(self._chain(name)), name))
 
     def knows(self, frame: str) -> bool:
-        """Whether a transform to or from the frame has been received."""
+        """Return whether a transform to or from the frame has been received."""
         return frame in self._parents or any(parent == frame for parent, _ in self._parents.values())
 
     def lookup(self, target: str, source: str) -> Optional[Pose3D]:
@@ -43,7 +43,7 @@ class FrameTree:
     def _chain(self, frame: str) -> List[Tuple[str, Pose3D]]:
         """The frame and its ancestors, each with ancestor_from_frame."""
         chain = [(frame, Pose3D())]
-        while len(chain) < LONGEST_CHAIN and frame in self._parents:
+        while len(chain) < MAX_CHAIN and frame in self._parents:
             frame, pose = self._parents[frame]
             chain.append((frame, compose3(pose, chain[-1][1])))
         return chain

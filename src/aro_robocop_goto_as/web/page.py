@@ -12,7 +12,7 @@ AHEAD = np.array((0.0, 0.69, -0.73)) / math.hypot(0.69, 0.73)  # where the camer
 RIGHT = np.array((1.0, 0.0, 0.0))
 UP = np.cross(RIGHT, AHEAD)
 ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at least
-FARTHEST_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
+MAX_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
 DESK = (1300, 800)  # [pixel] of the window that "reset view" is made for
 PHONE = 576  # [pixel] of width, below which viser shows the panel at the bottom
 PANEL, PHONE_PANEL = 345, 0.46  # what the panel covers: [pixel] of a window's width, share of a phone's height
@@ -32,7 +32,7 @@ FLOOR: Dict[bool, Dict[str, Tuple[int, int, int]]] = {  # its colours by whether
     False: {"plane_color": (246, 247, 249), "cell_color": (222, 226, 230), "section_color": (190, 197, 205)},
     True: {"plane_color": (34, 38, 46), "cell_color": (62, 68, 80), "section_color": (95, 103, 118)},
 }
-FARTHEST_CLICK = 1000.0  # [m] from the scene's origin; a ray that almost misses the floor meets it somewhere beyond
+MAX_CLICK = 1000.0  # [m] from the scene's origin; a ray that almost misses the floor meets it somewhere beyond
 SUN = (-3.0, -5.0, 9.0)  # [m] where the light comes from: the left of the first view
 
 
@@ -91,7 +91,7 @@ class Cameras:
 
 def corners_of(places: Iterable[Vector3]) -> np.ndarray:
     """Corners (8, 3) [m] of a box around the origin and these places, as large as ROOM at least."""
-    points = np.clip([(0.0, 0.0, 0.0), *places], -FARTHEST_SHOWN, FARTHEST_SHOWN)[:, :2]
+    points = np.clip([(0.0, 0.0, 0.0), *places], -MAX_SHOWN, MAX_SHOWN)[:, :2]
     low, high = points.min(axis=0), points.max(axis=0)
     half = np.maximum((high - low) / 2.0, ROOM / 2.0)
     x, y = (low + high) / 2.0
@@ -137,4 +137,4 @@ def floor_point(origin: Vector3, direction: Vector3) -> Optional[Tuple[float, fl
         return None
     distance = -origin[2] / direction[2]
     x, y = origin[0] + distance * direction[0], origin[1] + distance * direction[1]
-    return (x, y) if math.hypot(x, y) <= FARTHEST_CLICK else None
+    return (x, y) if math.hypot(x, y) <= MAX_CLICK else None

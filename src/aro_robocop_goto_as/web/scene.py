@@ -10,7 +10,7 @@ from ..geometry import Pose3D, Vector3
 Color = Tuple[int, int, int]  # red, green, blue from 0 to 255
 BOX, CYLINDER, SPHERE, MESH, LINE, TEXT = "box", "cylinder", "icosphere", "mesh_simple", "line_segments", "label"
 POINTS, IMAGE, FRAME, BODY = "point_cloud", "image", "frame", "body"
-STILL = 1e-4  # [m] and quaternion units: smaller changes of a pose are not sent
+MIN_CHANGE = 1e-4  # [m] and quaternion units: smaller changes of a pose are not sent
 LOOK = ("color", "opacity")
 CHANGEABLE = {  # what may differ between two shapes of a kind without drawing anew
     **dict.fromkeys((BOX, CYLINDER, SPHERE, MESH), LOOK),
@@ -96,7 +96,7 @@ class _Drawn:
 
     def move(self, pose: Pose3D) -> None:
         new, old = (*pose.position, *pose.orientation), (*self._pose.position, *self._pose.orientation)
-        if any(abs(a - b) > STILL for a, b in zip(new, old)):
+        if any(abs(a - b) > MIN_CHANGE for a, b in zip(new, old)):
             self.handle.position, self.handle.wxyz = pose.position, _wxyz(pose)
             self._pose = pose
 
@@ -136,7 +136,7 @@ class PageScene:
             drawn[key] = _Drawn(self._draw(f"/{group}/{self._count}", shape, pose), shape, pose)
 
     def draws(self, group: str) -> bool:
-        """Whether anything of the group is shown."""
+        """Return whether anything of the group is shown."""
         return bool(self._groups.get(group))
 
     def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:

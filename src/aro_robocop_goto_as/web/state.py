@@ -35,7 +35,7 @@ class PageState:
 
     @property
     def accepts_requests(self) -> bool:
-        """Whether requests of visitors are sent on."""
+        """Return whether requests of visitors are sent on."""
         return self.live and self.registered and not self.master_problem
 
 

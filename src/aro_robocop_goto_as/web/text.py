@@ -4,7 +4,7 @@ import html
 import re
 from typing import Iterable, Mapping, Tuple
 
-LONGEST = 300  # characters of any one name or message
+MAX_LENGTH = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
 GOAL = r"goal x \S+ y \S+(?: in \S+)?"
 OFF = re.compile(rf"([\d.]+) m from the {GOAL} after ([\d.]+ s)")
@@ -17,7 +17,7 @@ ALERT = "margin:0 0.8em 0.6em;padding:0.5em 0.7em;border-radius:4px;background:#
 def plain(text: str) -> str:
     """Text of any origin for the page: escaped, on one line, of limited length."""
     text = " ".join(text.split())
-    return html.escape(text if len(text) <= LONGEST else text[: LONGEST - 1] + "…")
+    return html.escape(text if len(text) <= MAX_LENGTH else text[: MAX_LENGTH - 1] + "…")
 
 
 def position(x: float, y: float) -> str:

@@ -31,7 +31,7 @@ class _Slab(NamedTuple):
     width: float
 
     def covers(self, x: float, y: float) -> bool:
-        """Whether it is below a point [m]."""
+        """Return whether it is below a point [m]."""
         point = compose(inverse(self.world_from_slab), Pose2D(x, y))
         return abs(point.x) <= self.length / 2.0 and abs(point.y) <= self.width / 2.0
 
@@ -56,7 +56,7 @@ def top(obstacle: Obstacle) -> float:
 
 
 def is_in_ground(obstacle: Obstacle) -> bool:
-    """Whether an obstacle of a levelled world is ground or below it, so that robots never touch its sides."""
+    """Return whether an obstacle of a levelled world is ground or below it, so that robots never touch its sides."""
     return top(obstacle) <= LEVEL
 
 

@@ -76,7 +76,7 @@ class Occupancy:
     origin: Pose2D
 
     def is_known(self, x: float, y: float) -> bool:
-        """Whether a point [m] in the map is in a cell that is not unknown."""
+        """Return whether a point [m] in the map is in a cell that is not unknown."""
         column, row = (math.floor(place) for place in self._in_cells(x, y))
         rows, columns = self.cells.shape
         return 0 <= column < columns and 0 <= row < rows and bool(self.cells[row, column] >= 0)

@@ -66,7 +66,7 @@ def _other_position(click: Click, goal: Goal) -> str:
 
 
 def _has_client(record: Record) -> bool:
-    """Whether its action client connected to the server."""
+    """Return whether its action client connected to the server."""
     return bool(record.marks.get("clients", 1.0))
 
 

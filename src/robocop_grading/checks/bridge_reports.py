@@ -69,7 +69,7 @@ class Report(NamedTuple):
 
     @property
     def is_true(self) -> bool:
-        """Whether it names the true state. Of a goal that has succeeded, only what contradicts that is untrue.
+        """Return whether it names the true state. Of a goal that has succeeded, only what contradicts that is untrue.
 
         Numbers may then be those of another enumeration than actionlib's.
         """
@@ -94,7 +94,7 @@ def _stated(record: Record) -> List[Report]:
 
 
 def _is_client_state(reports: List[Report]) -> bool:
-    """Whether the numbers are those of actionlib's CommState."""
+    """Return whether the numbers are those of actionlib's CommState."""
     ended = [report.states for report in reports if report.true == SUCCEEDED and report.by_number]
     active = [report.states for report in reports if report.true == ACTIVE and report.by_number]
     return bool(ended) and all(DONE in it for it in ended) and all(CLIENT_ACTIVE in it for it in active)

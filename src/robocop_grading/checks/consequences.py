@@ -19,13 +19,13 @@ TOO_EARLY = "too early"  # an abort too far away from the obstacle
 
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
 ENOUGH = 4  # fewer commands show nothing
-MOST_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
+MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Whether both failures are of the same kind."""
+    """Return whether both failures are of the same kind."""
     return bool(failure.kind) and failure.kind == earlier.kind
 
 
@@ -43,12 +43,12 @@ def end_of(record: Record, failure: Failed) -> float:
 
 
 def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether the node died before the goal ended."""
+    """Return whether the node died before the goal ended."""
     return any(death.time <= end_of(record, failure) for death in record.deaths)
 
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether an exception was logged before a goal ended otherwise than it should."""
+    """Return whether an exception was logged before a goal ended otherwise than it should."""
     return bool(failure.kind) and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
 
 
@@ -59,34 +59,34 @@ def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
 
 
 def silent(record: Record, goal: Goal) -> bool:
-    """Whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
+    """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
     told = {message.id for message in record.feedback} | {result.id for result in record.results}
     return goal.id not in told and not any(command.time >= goal.time for command in record.commands)
 
 
 def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Whether nothing at all came from the server after it got the goal, and the earlier failure says so, too."""
+    """Return whether nothing came from the server after it got the goal, and the earlier failure says so, too."""
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
 
 
 def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether the node died before anything came from it after it got the goal."""
+    """Return whether the node died before anything came from it after it got the goal."""
     return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
 def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether the server was working on the goal."""
+    """Return whether the server was working on the goal."""
     return failure.goal is not None and not silent(record, failure.goal)
 
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether an end far from the goal fits the position_error that the server reported itself."""
+    """Return whether an end far from the goal fits the position_error that the server reported itself."""
     own = [message.position_error for message in record.feedback if failure.goal and message.id == failure.goal.id]
     return bool(own) and own[-1] <= BELIEVED
 
 
 def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether no position_error that the server reported told it that it had reached the goal."""
+    """Return whether no position_error that the server reported told it that it had reached the goal."""
     goal = failure.goal
     own = [message for message in record.feedback if goal and message.id == goal.id]
     end = end_of(record, failure)
@@ -94,7 +94,7 @@ def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Whether the robot was commanded as the handout wants for the angle_error that the server reported itself.
+    """Return whether the robot was commanded as the handout wants for the angle_error that the server reported itself.
 
     If that angle is wrong, the motion is wrong because of it.
     """
@@ -111,7 +111,7 @@ def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
             number += 1
         if own[number].time <= command.time + 1e-6:
             fits.append(_fits(own[number], command.v, command.w))
-    return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MOST_OTHERS) * len(fits)
+    return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MAX_OTHERS) * len(fits)
 
 
 def _fits(own: Feedback, v: float, w: float) -> bool:

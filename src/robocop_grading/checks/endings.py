@@ -97,7 +97,7 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
 
 
 def _asked_to_end(record: Record, goal: Goal, end: float) -> bool:
-    """Whether a cancel request or a newer goal came before a time [s]."""
+    """Return whether a cancel request or a newer goal came before a time [s]."""
     cancelled = any(cancel.time <= end and cancel.id in ("", goal.id) for cancel in record.cancels)
     return cancelled or any(goal.time < newer.time <= end for newer in record.goals)
 
@@ -120,7 +120,7 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
 
 
 def _at_once(record: Record, goal: Goal) -> bool:
-    """Whether a goal has ended too soon to be driven to."""
+    """Return whether a goal has ended too soon to be driven to."""
     return any(result.time - goal.time < AT_ONCE for result in results_of(record, goal)[:1])
 
 

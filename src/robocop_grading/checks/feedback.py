@@ -28,13 +28,13 @@ from .verdict import After, Failed, NotReached, Verdict, check
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 INEXACT = 0.02  # [m] of the position in /odom, which turns the direction of a goal that is near
-MOST_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
-LONGEST_WRONG = 0.25  # [s] messages that are wrong one after the other for so long are no transition
+MAX_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
+MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so long are no transition
 AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
 OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
 MOVING = 10  # fewer messages say nothing about their age
 CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
-MOST_DIFFERENT = 0.2  # [m], [rad] that counts of a difference
+MAX_DIFFERENCE = 0.2  # [m], [rad] that counts of a difference
 STEADY = 0.005  # [m], [rad] smaller changes of an error are none
 SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
 SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
@@ -97,7 +97,7 @@ def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: flo
             longest = max(longest, pair.feedback.time - row)
         else:
             row = math.inf
-    return wrong if len(wrong) > MOST_WRONG * len(pairs) or longest >= LONGEST_WRONG else []
+    return wrong if len(wrong) > MAX_WRONG * len(pairs) or longest >= MAX_WRONG_TIME else []
 
 
 def _deviation(index: int, pair: Pair) -> float:
@@ -172,7 +172,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
 
 
 def _is_shifted(record: Record, index: int) -> bool:
-    """Whether an error is also wrong while it does not change: then it is not an old one."""
+    """Return whether an error is also wrong while it does not change: then it is not an old one."""
     differences = []
     for pair in _compared(index, record):
         truths = [errors_at(sample, pair.goal)[index] for sample in pair.samples]
@@ -198,7 +198,7 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
     if index == ANGLE:
         differences = np.remainder(differences + np.pi, 2.0 * np.pi) - np.pi
     moving = np.abs(then[:, 0] - then[:, -1]) > CHANGED
-    return np.minimum(np.abs(differences), MOST_DIFFERENT)[moving & np.isfinite(values)]
+    return np.minimum(np.abs(differences), MAX_DIFFERENCE)[moving & np.isfinite(values)]
 
 
 def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:

@@ -13,10 +13,10 @@ from ..record import ERRORS, Feedback, Goal, Sample, errors_at, wrapped
 from ..texts import Text, text
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
-MOST_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
-LONGEST_WRONG = 0.45  # [s] no more values in a row may not fit
-MOST_UNEXPLAINED = 0.3  # share of all wrong values
-MOST_PAIRS = 100  # of a scenario that are compared
+MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
+MAX_WRONG_TIME = 0.45  # [s] no more values in a row may not fit
+MAX_UNEXPLAINED = 0.3  # share of all wrong values
+MAX_PAIRS = 100  # of a scenario that are compared
 LARGE = 7.0  # [m], [rad] values beyond it are squares or degrees, of which tolerances are ten times as large
 FAR = 1.0  # [m], [rad] that a miss counts at most
 SCALED = 0.2  # [m], [rad] true errors that are larger tell by which factor others differ from them
@@ -24,7 +24,7 @@ MAX_SPREAD = 0.1  # of such a factor
 OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
-LARGEST_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
+MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
 class Pair(NamedTuple):
@@ -153,8 +153,8 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
     values = [pair.feedback.errors[index] for pairs in scenarios for pair in pairs]
     if not all(map(math.isfinite, values)):
         return text("Some values of {} are not finite", ERRORS[index])
-    thinned = [pairs[:: 1 + len(pairs) // MOST_PAIRS] for pairs in scenarios if pairs]
-    wrong = wrong[:: 1 + len(wrong) // MOST_PAIRS]
+    thinned = [pairs[:: 1 + len(pairs) // MAX_PAIRS] for pairs in scenarios if pairs]
+    wrong = wrong[:: 1 + len(wrong) // MAX_PAIRS]
     scale = 1.0 if max(abs(value) for value in values) < LARGE else 0.1
     if len(set(values)) == 1 and len(values) > 5:
         return text(NEVER_FILLED[index]) if not any(values) else text("always_the_same", ERRORS[index], values[0])
@@ -172,12 +172,14 @@ def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pai
     for cause, predict in CAUSES[index]:
         if cause == FROM_ORIGIN and knows_position:
             continue
-        if not _fits(_misses(index, wrong, predict, scale), index, MOST_UNEXPLAINED):
+        if not _fits(_misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
             continue
         misses = [_misses(index, pairs, predict, scale) for pairs in scenarios]
-        if all(_fits(it, index) and _longest(it, pairs, index) < LONGEST_WRONG for it, pairs in zip(misses, scenarios)):
+        if all(
+            _fits(it, index) and _longest(it, pairs, index) < MAX_WRONG_TIME for it, pairs in zip(misses, scenarios)
+        ):
             found.append((_mean(misses), cause))
-    return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < LARGEST_MEAN))
+    return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
 
 
 def any_of(causes: Sequence[str]) -> str:
@@ -205,13 +207,13 @@ def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     both = [it for pairs in scenarios for it in pairs if abs(it.truth[index]) > SCALED]
     factors = [it.feedback.errors[index] / it.truth[index] for it in both] or [1.0]
     factor = median(factors)
-    steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MOST_WRONG * len(factors)
+    steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MAX_WRONG * len(factors)
     if steady and abs(factor - 1.0) > 2.0 * MAX_SPREAD:
         return text("{} is always {:.3g} times the true one: is its unit that of the handout?", ERRORS[index], factor)
     return text(OTHERWISE[index])
 
 
-def _fits(misses: Sequence[float], index: int, most: float = MOST_WRONG) -> bool:
+def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:
     return sum(miss > TOLERANCES[index] for miss in misses) <= most * len(misses)
 
 

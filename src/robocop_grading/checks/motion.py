@@ -36,7 +36,7 @@ from .verdict import After, Failed, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
-MOST_WRONG = 0.1  # share of wrong commands that is allowed for transitions
+MAX_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
@@ -128,7 +128,7 @@ def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
 
 def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float) -> Optional[Failed]:
     driving = [it for it in situations if abs(it.command.v) > limits.driving]
-    if len(driving) > MOST_WRONG * len(situations):
+    if len(driving) > MAX_WRONG * len(situations):
         command, angle = driving[0]
         cause = text("drives_while_turning")
         if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):

@@ -32,7 +32,7 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 
 
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
-    """Whether a line of the node's output matches that it printed until then [s]."""
+    """Return whether a line of the node's output matches that it printed until then [s]."""
     return any(pattern.search(line.text) for line in record.lines if line.time <= until + DELAY)
 
 

@@ -51,7 +51,7 @@ class After:
     kind: str = ""
 
     def explains(self, record: Record, failure: Failed, earlier: Failed) -> bool:
-        """Whether the failure follows from the earlier one, of this check."""
+        """Return whether the failure follows from the earlier one, of this check."""
         return self.kind in ("", failure.kind) and self.when(record, failure, earlier)
 
 

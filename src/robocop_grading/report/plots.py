@@ -39,10 +39,10 @@ STYLE = {
     "legend.borderaxespad": 0.2,
 }
 JUMP = 0.2  # [m] per tick: faster than any robot drives, so it was moved by hand
-MOST_POINTS = 600  # of a curve
+MAX_POINTS = 600  # of a curve
 GAP = 0.5  # [s] without a value interrupts a curve
-FARTHEST = 50.0  # [m] goals farther from odom's origin are not drawn
-MOST_GOALS = 6  # in a timeline
+MAX_DISTANCE = 50.0  # [m] goals farther from odom's origin are not drawn
+MAX_GOALS = 6  # in a timeline
 NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclass="[^"]*"', re.DOTALL)
 
 Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
@@ -84,7 +84,7 @@ def over_time(
     axes.set_title(title)
     for name, colour, points in curves:
         curve = np.array([point for point in points if all(map(math.isfinite, point))]).reshape(-1, 2)
-        curve = curve[:: max(1, len(curve) // MOST_POINTS)].clip((-math.inf, -bound), (math.inf, bound))
+        curve = curve[:: max(1, len(curve) // MAX_POINTS)].clip((-math.inf, -bound), (math.inf, bound))
         times, values = curve.T
         if not stepped:  # a NaN in each longer interval without a value interrupts the curve
             ends = np.flatnonzero(np.diff(times) > GAP)
@@ -120,8 +120,8 @@ def _legs(samples: Sequence[Sample]) -> List[List[Sample]]:
 
 
 def _near(x: float, y: float) -> bool:
-    """Whether a goal is close enough to be drawn."""
-    return math.hypot(x, y) < FARTHEST
+    """Return whether a goal is close enough to be drawn."""
+    return math.hypot(x, y) < MAX_DISTANCE
 
 
 def _name(goal: Goal) -> str:
@@ -210,7 +210,7 @@ def _speeds(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
 
 def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """Each goal's states over time."""
-    axes, goals = all_axes[0], record.goals[:MOST_GOALS]
+    axes, goals = all_axes[0], record.goals[:MAX_GOALS]
     axes.set_title("states of the goals")
     end = record.samples[-1].time if record.samples else 1.0
     axes.set_xlim(record.samples[0].time if record.samples else 0.0, end)

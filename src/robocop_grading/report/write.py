@@ -23,7 +23,7 @@ from .plots import svg
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
 MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖"}  # of outcomes in the summary
 LEAD = 1.0  # [s] before a failure, from where on a replay shows it
-MOST_LINES = 60  # of a node's output in the report
+MAX_LINES = 60  # of a node's output in the report
 
 
 def make_report_folder(folder: Path) -> Path:
@@ -175,7 +175,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
                 "about": about.get(record.name, ""),
                 "panels": list(_panels(record, checks)),
                 "plots": list(filter(None, rest)),
-                "lines": record.lines[:MOST_LINES],
+                "lines": record.lines[:MAX_LINES],
                 "failed": any(check.outcome is Outcome.FAILED for check in checks),
             }
 

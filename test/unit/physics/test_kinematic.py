@@ -62,7 +62,7 @@ def _forests() -> List[KinematicEngine]:
     grid = [(0.5 * i + 0.25, 0.5 * j + 0.25) for i in range(-11, 11) for j in range(-11, 11)]
     world = _world(*(_box(x, y, 3.0 * x, 0.1, 0.02) for x, y in grid))
     indexed = _kinematics(world, ORIGIN)
-    with mock.patch.object(grid_index, "MOST_TILES_OF_ONE", 0):
+    with mock.patch.object(grid_index, "MAX_TILES_OF_SEGMENT", 0):
         engines = [indexed, _kinematics(world, ORIGIN)]
     assert [engine._structs[0].grid.contents.n_everywhere > 0 for engine in engines] == [False, True]
     return engines

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.web import page
-from aro_robocop_goto_as.web.page import AHEAD, FARTHEST_CLICK, FIELD, HEIGHT, RIGHT, UP, Cameras, floor_point
+from aro_robocop_goto_as.web.page import AHEAD, FIELD, HEIGHT, MAX_CLICK, RIGHT, UP, Cameras, floor_point
 
 PHONES, DESKS = [(390, 844), (360, 640), (430, 932)], [(1300, 800), (900, 620), (1920, 1000)]  # [pixel]
 
@@ -112,4 +112,4 @@ def test_a_click_into_the_sky_or_beyond_the_horizon_hits_nothing(origin, directi
 
 @pytest.mark.parametrize("share, hits", [(0.99, True), (1.01, False)])
 def test_a_click_hits_the_floor_up_to_a_limited_distance(share, hits) -> None:
-    assert (floor_point((0.0, 0.0, 1.0), (share * FARTHEST_CLICK, 0.0, -1.0)) is not None) == hits
+    assert (floor_point((0.0, 0.0, 1.0), (share * MAX_CLICK, 0.0, -1.0)) is not None) == hits

@@ -40,4 +40,4 @@ def test_a_message_of_the_server_is_shown_in_fewer_words(message: str, shown: st
 
 
 def test_an_endless_message_is_cut() -> None:
-    assert len(text.plain("x" * 10_000)) == text.LONGEST
+    assert len(text.plain("x" * 10_000)) == text.MAX_LENGTH

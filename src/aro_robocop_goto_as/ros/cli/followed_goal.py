@@ -21,10 +21,10 @@ from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
 from ..waiting import wait_until
-from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_PATIENCE, complain
+from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
-PAUSE_PATIENCE = 1.0  # [s, wall] without a change of simulated time
+PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
 PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
 
 
@@ -62,7 +62,7 @@ class _PauseNotice:
         now = rospy.get_rostime()
         if now != self.time:
             self.time, self.since = now, time.monotonic()
-        elif time.monotonic() - self.since > PAUSE_PATIENCE:
+        elif time.monotonic() - self.since > PAUSE_TIMEOUT:
             self.since = math.inf
             complain(PAUSED)
 
@@ -91,7 +91,7 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
         absolute_if_named(args.robot, "odom"), Odometry, lambda message: latest.__setitem__(0, message), queue_size=1
     )
     odom = _frame(args.robot, "odom")
-    transformer = GoalTransformer(odom, odom, SERVER_PATIENCE, lambda: latest[0])
+    transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: latest[0])
     action = absolute_if_named(args.robot, ACTION)
     client = actionlib.SimpleActionClient(action, GoToPositionAction)
     missing = _wait_or_explain(client, action, patience, ended)
@@ -160,7 +160,7 @@ def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
         if not is_sent:
             raise
         client.cancel_goal()
-        done.wait(SERVER_PATIENCE)
+        done.wait(SERVER_TIMEOUT)
     progress.close()
     print(answer)
     return REACHED if is_reached else NOT_REACHED

@@ -21,9 +21,9 @@ from ...names import COMMAND_VARIABLE, PACKAGE
 from ...process import child, orphans, signals
 from ...process.ports import free_port
 from ..share import share
-from .goto_arguments import NOT_REACHED, SERVER_PATIENCE, START_PATIENCE, WRONG_ARGUMENTS, complain, parse
+from .goto_arguments import NOT_REACHED, SERVER_TIMEOUT, START_TIMEOUT, WRONG_ARGUMENTS, complain, parse
 
-END_PATIENCE = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
+END_TIMEOUT = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
 POLL = 0.05  # [s, wall]
 
 
@@ -47,7 +47,7 @@ def _run(args: argparse.Namespace) -> int:
     if system_runs:
         if args.world:
             complain("--world is ignored: a ROS system is already running")
-        return _import_go_to()(args, SERVER_PATIENCE)
+        return _import_go_to()(args, SERVER_TIMEOUT)
     if args.robot:
         complain(
             f"--robot {args.robot}: no ROS master answers, and a simulator started for one goal has one robot only"
@@ -71,7 +71,7 @@ def _run(args: argparse.Namespace) -> int:
         go_to = _import_go_to()  # while the system starts, on another processor
         started = _wait_for_master(system)
         if started:
-            status = go_to(args, START_PATIENCE, ended=lambda: system.poll() is not None)
+            status = go_to(args, START_TIMEOUT, ended=lambda: system.poll() is not None)
     errors = [line for line in _lines(log) if "[FATAL]" in line]
     if started and not errors:
         command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
@@ -109,13 +109,13 @@ def _own_system(arguments: List[str], log: Path) -> "Iterator[child.Child[Any]]"
     finally:
         signals.begin_cleanup()  # a second Ctrl-C must not leave half of the system behind
         if system is not None:
-            child.end(system, grace=END_PATIENCE)
+            child.end(system, grace=END_TIMEOUT)
             orphans.kill_descendants()
 
 
 def _wait_for_master(system: "child.Child[Any]") -> bool:
-    """Whether the system's master answers, before the system ends or its time is over."""
-    deadline = time.monotonic() + START_PATIENCE
+    """Return whether the system's master answers, before the system ends or its time is over."""
+    deadline = time.monotonic() + START_TIMEOUT
     while time.monotonic() < deadline and system.poll() is None:
         with contextlib.suppress(MasterError):  # on a loaded machine it may open its port long before it answers
             if master.master_answers(master.master_uri()):

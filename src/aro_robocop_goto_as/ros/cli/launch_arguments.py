@@ -62,7 +62,7 @@ class LaunchArguments:
         return next((word.partition(":=")[2] for word in reversed(self.words) if word.startswith(f"{name}:=")), "")
 
     def is_true(self, name: str) -> bool:
-        """Whether an argument was given as true."""
+        """Return whether an argument was given as true."""
         return self.value(name) in TRUE
 
 

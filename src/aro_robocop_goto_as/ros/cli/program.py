@@ -31,7 +31,7 @@ def refuse(text: str) -> NoReturn:
 
 
 def is_dry_run() -> bool:
-    """Whether nothing may be installed, built or started."""
+    """Return whether nothing may be installed, built or started."""
     return bool(os.environ.get("ROBOCOP_DRY_RUN"))
 
 

@@ -19,8 +19,8 @@ LOWERED = 0.07  # of the depth: the camera sees more of what is far away than of
 HEIGHT = 0.5  # [m] of the walls; what is higher may reach out of the view
 ROOM = 2.5  # [m] shown on each side of the origin where there are no obstacles
 AROUND_ROBOT = 1.0  # [m] its text is about two metres wide
-LARGEST_SIDE = 12.0  # [m] of the part that is shown; in a larger one a robot would be a few pixels
-LARGEST_WINDOW = (1920, 1000)  # [pixel] so that it does not span two monitors
+MAX_SIDE = 12.0  # [m] of the part that is shown; in a larger one a robot would be a few pixels
+MAX_WINDOW = (1920, 1000)  # [pixel] so that it does not span two monitors
 BARS = 80  # [pixel] of the screen's height for panels and the window's title
 DOCK_WIDTH, BARS_HEIGHT = 380, 92  # [pixel] of the window that the view does not have, in RViz 1.14
 # Added where there is a camera: RViz shows this display's panel even if it is not ticked.
@@ -71,7 +71,7 @@ def adapted(seen: Observed) -> str:
     reference = odom if in_world or seen.odom_tf else seen.frame
     displays["Frame odom"].update({"Name": f"Frame {reference}", "Reference Frame": reference})
 
-    width, height = min(seen.screen[0], LARGEST_WINDOW[0]), min(seen.screen[1] - BARS, LARGEST_WINDOW[1])
+    width, height = min(seen.screen[0], MAX_WINDOW[0]), min(seen.screen[1] - BARS, MAX_WINDOW[1])
     config["Window Geometry"].update({"Width": width, "Height": height})
 
     box, target = (np.full(2, -ROOM), np.full(2, ROOM)), "<Fixed Frame>"
@@ -100,7 +100,7 @@ def world_box(obstacles: np.ndarray, start: Tuple[float, float]) -> Box:
     margin = AROUND_ROBOT if len(obstacles) else ROOM
     points = np.vstack([obstacles, robot - margin, robot + margin])
     low, high = points.min(axis=0), points.max(axis=0)
-    half = np.minimum(high - low, LARGEST_SIDE) / 2.0
+    half = np.minimum(high - low, MAX_SIDE) / 2.0
     middle = np.clip(robot, low + half, high - half)
     return middle - half, middle + half
 

@@ -24,9 +24,9 @@ from ..waiting import wait_until
 
 LINEAR, ANGULAR = 0.15, 1.0  # [m/s], [rad/s] below the limits of all models
 PERIOD = 0.1  # [s, wall] between two commands, well below the simulator's command timeout
-CONNECT_PATIENCE = 5.0  # [s, wall]
+CONNECT_TIMEOUT = 5.0  # [s, wall]
 RELEASE_TIMEOUT = 0.5  # [s] without a repetition of the key: terminals report presses, but no releases
-MOST_READ = 4096  # [byte] so that a read never ends within a key's escape sequence
+MAX_READ = 4096  # [byte] so that a read never ends within a key's escape sequence
 # Factors of the linear and angular speed.
 KEYS = {
     "w": (1.0, 0.0),
@@ -75,7 +75,7 @@ class KeyboardTeleop:
         self._publisher = publisher(topic, Twist)
         self._speeds = linear, angular
         self._moving = False
-        if not wait_until(lambda: self._publisher.get_num_connections() > 0, CONNECT_PATIENCE):
+        if not wait_until(lambda: self._publisher.get_num_connections() > 0, CONNECT_TIMEOUT):
             advice = "is the simulator running? With several robots, --robot NAME says which one"
             raise TeleopError(f"nobody subscribes to {self._publisher.resolved_name}: {advice}")
 
@@ -87,7 +87,7 @@ class KeyboardTeleop:
             if ready:
                 read = b""
                 with contextlib.suppress(OSError):  # the terminal is gone
-                    read = os.read(terminal, MOST_READ)
+                    read = os.read(terminal, MAX_READ)
                 if not read:
                     return
                 key, released = keys_of(read.decode(errors="replace"))[-1], time.monotonic() + RELEASE_TIMEOUT

@@ -26,7 +26,7 @@ from . import discovery
 from .goal_frame import GoalTransformer
 from .goal_states import STATES, UNFINISHED, ending
 
-ADVICE_AFTER = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
+SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
 
 
@@ -137,7 +137,7 @@ class Bridge:
         log = rospy.loginfo
         if not discovery.is_up(self.client):
             text = discovery.absence(ACTION)
-            if time.monotonic() - self.last_seen > ADVICE_AFTER:
+            if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
                 text, log = f"{text}; {discovery.advice()}", rospy.logwarn
             return self.publish_status(text, log)
         self.last_seen = time.monotonic()

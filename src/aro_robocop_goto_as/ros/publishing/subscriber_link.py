@@ -13,7 +13,7 @@ import rospy
 
 from .rospy_internals import count_sent
 
-LATER = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
+WOULD_BLOCK = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
 
 
 class SubscriberLink:
@@ -52,7 +52,7 @@ class SubscriberLink:
 
         OSError if the connection is lost. Without patience, a subscriber that takes nothing at once is not waited for.
         """
-        if taken < 0 and taken not in LATER:
+        if taken < 0 and taken not in WOULD_BLOCK:
             raise OSError(-taken, "send")
         left = message[max(0, taken) :]
         if self.push_rest():

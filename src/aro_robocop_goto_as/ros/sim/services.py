@@ -20,7 +20,7 @@ from ...world.edit import requested_model, with_model, with_model_at, without_mo
 from ...world.model import World
 from .. import convert
 
-LONGEST_STEP = 1e6  # [s]
+MAX_SPAN = 1e6  # [s]
 REFUSALS = FrameError, PlaceError, WorldError
 
 
@@ -73,8 +73,8 @@ class Services:
     def _on_step(self, request: Any) -> Dict[str, Any]:
         """Blocks this service's thread until the span is over; the owner's loop goes on meanwhile."""
         time, rate = self._simulation.time_control, self._simulator.rate
-        if not (math.isfinite(request.duration) and 0.0 <= request.duration <= LONGEST_STEP):
-            return self._step_refused(f"duration {request.duration}: expected 0 to {LONGEST_STEP:g} s")
+        if not (math.isfinite(request.duration) and 0.0 <= request.duration <= MAX_SPAN):
+            return self._step_refused(f"duration {request.duration}: expected 0 to {MAX_SPAN:g} s")
         ended = self._call(lambda: time.begin_span(request.duration, self._simulator.steps))
         if ended is None:
             return self._step_refused("another step request is in progress")

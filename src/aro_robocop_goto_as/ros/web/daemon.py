@@ -7,7 +7,7 @@ from typing import Callable
 
 import rospy
 
-PAUSE = 0.1  # [s, wall] after a failure
+RETRY_PERIOD = 0.1  # [s, wall] after a failure
 
 
 def start_daemon(name: str, step: Callable[[], None]) -> None:
@@ -23,6 +23,6 @@ def start_daemon(name: str, step: Callable[[], None]) -> None:
                 if failure != logged and not rospy.is_shutdown():
                     rospy.logerr("%s failed and continues:\n%s", name, failure)
                 logged = failure
-                time.sleep(PAUSE)
+                time.sleep(RETRY_PERIOD)
 
     threading.Thread(target=run, daemon=True, name=name).start()

@@ -58,7 +58,7 @@ def look(state: SharedState) -> str:
 
 
 def _knows_this_node(services: List[Any]) -> bool:
-    """Whether the master has what rospy registered when this node started: the services of its loggers.
+    """Return whether the master has what rospy registered when this node started: the services of its loggers.
 
     The node's name and address are no proof: each topic that is subscribed to later also registers these, and only
     these, with a master that was started in the meantime.

@@ -18,7 +18,7 @@ Sample = Tuple[float, float, float]  # time [s] and two figures
 Figures = Callable[[Any], Tuple[float, float]]  # those of a message
 
 SPAN = 30.0  # [s, wall] that a plot of a running system shows
-MOST = 900  # samples: 30 Hz
+MAX_SAMPLES = 900  # samples: 30 Hz
 HEIGHT = 110  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
@@ -77,7 +77,7 @@ class Plot(Part):
         self._handle = add_plot(
             context.server.gui, (*plotted.texts, "time [s], 0 is now"), columns((), 0.0), (-SPAN, 0.0)
         )
-        self._samples: Deque[Sample] = deque(maxlen=MOST)
+        self._samples: Deque[Sample] = deque(maxlen=MAX_SAMPLES)
         self._changed = False  # the robot
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""

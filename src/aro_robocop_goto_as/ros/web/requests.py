@@ -11,8 +11,8 @@ from ...web.state import SharedState
 from ..waiting import wait_until
 from .daemon import start_daemon
 
-SERVICE_PATIENCE, CONNECT_PATIENCE = 2.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect
-MOST_WAITING = 8  # requests
+SERVICE_TIMEOUT, CONNECT_TIMEOUT = 2.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect
+MAX_WAITING = 8  # requests
 
 
 class Requests:
@@ -23,7 +23,7 @@ class Requests:
 
     def __init__(self, state: SharedState) -> None:
         self._state = state
-        self._jobs: queue.Queue[Tuple[str, Callable[[], str]]] = queue.Queue(MOST_WAITING)
+        self._jobs: queue.Queue[Tuple[str, Callable[[], str]]] = queue.Queue(MAX_WAITING)
         self._waiting = ""
         self._publishers: Dict[str, rospy.Publisher] = {}
         start_daemon("requests", self._step)
@@ -36,7 +36,7 @@ class Requests:
             if topic not in self._publishers:
                 self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
             publisher = self._publishers[topic]
-            connected = wait_until(lambda: publisher.get_num_connections() > 0, CONNECT_PATIENCE)
+            connected = wait_until(lambda: publisher.get_num_connections() > 0, CONNECT_TIMEOUT)
             publisher.publish(message)
             return "" if connected else f"nobody subscribes to {topic}{otherwise}"
 
@@ -47,7 +47,7 @@ class Requests:
 
         def call() -> str:
             name = absolute(SIMULATOR, service)
-            rospy.wait_for_service(name, SERVICE_PATIENCE)
+            rospy.wait_for_service(name, SERVICE_TIMEOUT)
             answer = rospy.ServiceProxy(name, kind)(*arguments)
             return "" if getattr(answer, "success", True) else answer.message
 

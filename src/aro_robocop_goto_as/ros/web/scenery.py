@@ -20,7 +20,7 @@ DRAWN_BY_MODEL = ("robots", "noses")  # markers of the simulator that stand for 
 DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
 SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
-LARGEST_MAP = 2000  # cells along a side; larger maps are thinned out
+MAX_MAP_CELLS = 2000  # cells along a side; larger maps are thinned out
 UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 255)  # red, green, blue, opacity
 
 
@@ -99,7 +99,7 @@ def map_image(data: Any, columns: int, rows: int) -> np.ndarray:
     The first row has the lowest y in both: viser's images have x to the right and y down, as cameras do.
     """
     cells = np.array(data, dtype=np.int16).reshape(rows, columns)
-    stride = -(-max(rows, columns) // LARGEST_MAP)
+    stride = -(-max(rows, columns) // MAX_MAP_CELLS)
     cells = cells[::stride, ::stride]
     share = np.clip(cells, 0, 100)[..., np.newaxis] / 100.0
     image = np.array(FREE) * (1.0 - share) + np.array(OCCUPIED) * share

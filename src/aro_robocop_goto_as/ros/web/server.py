@@ -12,7 +12,7 @@ from ...web import access
 from ...web_params import WebParams
 
 LAB = Path(__file__).resolve().parents[4] / "docs" / "lab.md"
-LARGEST_REQUEST = 1 << 20  # [byte] that a page may send at once
+MAX_REQUEST = 1 << 20  # [byte] that a page may send at once
 HEADERS = {
     "Content-Security-Policy": access.CONTENT_POLICY,
     "X-Content-Type-Options": "nosniff",
@@ -64,7 +64,7 @@ def _checked_requests(p: WebParams, listening: Optional[socket.socket]) -> Itera
                 response.headers.update(HEADERS)
             return response
 
-        options = {**options, "process_request": process, "max_size": LARGEST_REQUEST}
+        options = {**options, "process_request": process, "max_size": MAX_REQUEST}
         return serve(handler, host, port, **options) if listening is None else serve(handler, sock=listening, **options)
 
     setattr(websockets_server, "serve", checking_serve)  # noqa: B010  mypy refuses to assign to a module's function

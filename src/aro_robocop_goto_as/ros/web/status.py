@@ -15,7 +15,7 @@ from ...web.state import PageState
 from .part import Context, Inbox, Part
 
 GROUPS = ("robots", "world", "server", "scan", "map")  # of the scene; while all are empty a notice takes their place
-SILENCE = 4.0  # [s, wall] without a report of the simulator, which sends one per second, until it counts as gone
+SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
 
 
 class Status(Part):
@@ -61,7 +61,7 @@ class Status(Part):
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        self._alert.content = text.alert(gone if silence > SILENCE else "")
+        self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else "")
         self._show_notice()
         known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
         self._overview.content = text.table(self._rows(state)) if known else ""

@@ -16,9 +16,9 @@ from .daemon import start_daemon
 from .goals import cancel
 from .part import Context, Part
 
-END_PATIENCE = 0.5  # [s, wall]
+END_TIMEOUT = 0.5  # [s, wall]
 PERIOD = 0.1  # [s, wall]
-LINGER = 3.0  # [s, wall] without driving until cmd_vel is given up
+IDLE_TIMEOUT = 3.0  # [s, wall] without driving until cmd_vel is given up
 PAD = (  # in the order of CROSS
     # label, hot key, share of the full speed
     ("Forward (I)", "I", Twist2D(1.0, 0.0)),
@@ -105,11 +105,11 @@ class Teleop(Part):
     def end(self) -> None:
         """Before topics are closed: stop the robot that is being driven, and wait until that has been sent."""
         self.stop()
-        wait_until(lambda: not self._dead_man.active, END_PATIENCE)
+        wait_until(lambda: not self._dead_man.active, END_TIMEOUT)
 
     def _step(self) -> None:
         with self._wake:
-            self._wake.wait(PERIOD if self._dead_man.active else LINGER if self._publishers else None)
+            self._wake.wait(PERIOD if self._dead_man.active else IDLE_TIMEOUT if self._publishers else None)
             command = self._dead_man.command(time.monotonic())
         if command is not None:
             self._used = time.monotonic()
@@ -120,6 +120,6 @@ class Teleop(Part):
                 self._publishers[command.robot].publish(convert.to_twist_msg(command.twist))
             except rospy.ROSException as error:  # the node is shutting down
                 rospy.logdebug("cmd_vel: %s", error)
-        elif time.monotonic() - self._used >= LINGER:
+        elif time.monotonic() - self._used >= IDLE_TIMEOUT:
             while self._publishers:
                 self._publishers.popitem()[1].unregister()

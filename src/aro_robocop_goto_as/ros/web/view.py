@@ -21,7 +21,7 @@ CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
 TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 CROWDED = 0.6  # [m] between two frames; the names of nearer ones are below each other beside one of them
-STILL = 0.005  # [m] that the robot may move before the cameras follow
+MIN_MOVE = 0.005  # [m] that the robot may move before the cameras follow
 
 
 class View(Part):
@@ -91,7 +91,7 @@ class View(Part):
         if self._followed is None:
             self._followed = robot.position
         moved = np.subtract(robot.position, self._followed)
-        if float(np.abs(moved).max()) >= STILL:
+        if float(np.abs(moved).max()) >= MIN_MOVE:
             self._followed = robot.position
             for client in self.context.server.get_clients().values():
                 if client.camera.update_timestamp:

@@ -14,7 +14,7 @@ CLOSED = 1e-9  # [m] from the start, within which the last waypoint has to be
 
 
 def is_motion(element: Element) -> bool:
-    """Whether an element is a <plugin> of this package."""
+    """Return whether an element is a <plugin> of this package."""
     return bool(element.tag == "plugin" and element.get("filename") == PLUGIN)
 
 

@@ -10,7 +10,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.ros.web.scenery import FREE, LARGEST_MAP, OCCUPIED, UNKNOWN, Scenery, map_image, scan_points
+from aro_robocop_goto_as.ros.web.scenery import FREE, MAX_MAP_CELLS, OCCUPIED, UNKNOWN, Scenery, map_image, scan_points
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.scene import PageScene
 from aro_robocop_goto_as.web.state import PageState, SharedState
@@ -30,7 +30,7 @@ def test_a_map_has_its_own_colours_and_its_lowest_row_first():
 
 
 def test_a_map_that_is_too_large_is_thinned_out():
-    assert map_image(np.zeros(LARGEST_MAP + 1), LARGEST_MAP + 1, 1).shape == (1, LARGEST_MAP // 2 + 1, 4)
+    assert map_image(np.zeros(MAX_MAP_CELLS + 1), MAX_MAP_CELLS + 1, 1).shape == (1, MAX_MAP_CELLS // 2 + 1, 4)
 
 
 def test_the_cameras_turn_to_a_world_once():
