@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import MISSING, Field, field, fields
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Type, TypeVar, cast, get_args, get_type_hints
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, TypeVar, cast, get_args, get_type_hints
 
 from .errors import ParameterError
 from .suggestions import did_you_mean
@@ -20,13 +20,20 @@ def parameter(
     high: Optional[float] = None,
     choices: Sequence[str] = (),
     otherwise: str = "",
+    key: str = "",
 ) -> Any:
     """A dataclass field with its inclusive bounds or its choices; without a default the key is required.
 
-    `otherwise` says, for a default of None, what is used when the key is omitted.
+    `otherwise` says, for a default of None, what is used when the key is omitted. `key` is a key that Python does not
+    take as the field's name.
     """
-    metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise}
+    metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise, "key": key}
     return field(default=default, metadata=metadata)
+
+
+def several(count: int = 0, low: Optional[float] = None, high: Optional[float] = None, default: Any = ()) -> Any:
+    """A field for a tuple of `count` values, or of any number of them above 0, with their bounds; given as a list."""
+    return field(default=default, metadata={"low": low, "high": high, "count": count})
 
 
 def positive(default: Any = MISSING, high: float = 1e6, otherwise: str = "") -> Any:
@@ -44,7 +51,7 @@ def declared(cls: Type[Any]) -> Dict[str, "Field[Any]"]:
     specs: Dict[str, Field[Any]] = {}
     for spec in fields(cast(Any, cls)):
         inner = spec.metadata.get("group")
-        specs.update(declared(inner) if inner else {spec.name: spec})
+        specs.update(declared(inner) if inner else {_key(spec): spec})
     return specs
 
 
@@ -66,12 +73,9 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
             hint = did_you_mean(key, specs, "'{}'") or "; known are: {}".format(", ".join(sorted(specs)))
             problems.append(f"{key}: unknown parameter{hint}")
             continue
-        if types[key] is float and type(value) is int:
-            value = _to_float(value)
-        problem = _problem(specs[key], types[key], value)
+        values[key], problem = _checked(specs[key], types[key], value)
         if problem:
             problems.append(f"{key}: {problem}")
-        values[key] = value
     if not problems:
         params = _made(cls, values)
         problems = list(getattr(params, "conflicts", lambda: [])())
@@ -86,7 +90,7 @@ def _types(cls: Type[Any]) -> Dict[str, Type[Any]]:
     hints = get_type_hints(cls)
     for spec in fields(cast(Any, cls)):
         inner = spec.metadata.get("group")
-        types.update(_types(inner) if inner else {spec.name: _without_none(hints[spec.name])})
+        types.update(_types(inner) if inner else {_key(spec): _type_of_value(hints[spec.name])})
     return types
 
 
@@ -97,13 +101,17 @@ def _made(cls: Type[T], values: Mapping[str, Any]) -> T:
         inner = spec.metadata.get("group")
         if inner:
             given[spec.name] = _made(inner, values)
-        elif spec.name in values:
-            given[spec.name] = values[spec.name]
+        elif _key(spec) in values:
+            given[spec.name] = values[_key(spec)]
     return cls(**given)
 
 
-def _without_none(hint: Any) -> Type[Any]:
-    """The type of a value: X of Optional[X], else the hint itself."""
+def _key(spec: "Field[Any]") -> str:
+    return spec.metadata.get("key") or spec.name
+
+
+def _type_of_value(hint: Any) -> Type[Any]:
+    """The type of a value: X of Optional[X] and of Tuple[X, ...], else the hint itself."""
     given: Type[Any] = next((arg for arg in get_args(hint) if arg is not type(None)), hint)
     return given
 
@@ -113,6 +121,19 @@ def _to_float(value: int) -> float:
         return float(value)
     except OverflowError:
         return math.inf if value > 0 else -math.inf
+
+
+def _checked(spec: "Field[Any]", kind: Type[Any], value: Any) -> Tuple[Any, Optional[str]]:
+    """A value as the field takes it, and what is wrong with it, in words, or None."""
+    count = spec.metadata.get("count")
+    if count is None:
+        value = _to_float(value) if kind is float and type(value) is int else value
+        return value, _problem(spec, kind, value)
+    if not isinstance(value, list) or len(value) not in ([count] if count else range(1, len(value) + 1)):
+        words = f"{count or ''} {'numbers' if kind is float else 'names'}".strip()
+        return value, f"expected a list of {words}, got {value!r}"
+    values = tuple(_to_float(it) if kind is float and type(it) is int else it for it in value)
+    return values, next(filter(None, (_problem(spec, kind, it) for it in values)), None)
 
 
 def _problem(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:

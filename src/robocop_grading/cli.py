@@ -21,12 +21,10 @@ from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, Sandbox, expect_private, open_sandbox
 from .submission import prepare_submission
-from .texts import load as load_texts
 from .viewer import choose_viewer
 
 NO_GRADE = 3  # exit status: the machine had no time, or something was killed from outside
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C
-TEXTS_HELP = "texts in another language: a translated copy of config/grading_texts.yaml"
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 PAGE_ADVICE = "open {url} in a browser to watch; server and bridge each wait a minute for it"
 MAX_SHOWN = 1_000  # characters of an error
@@ -118,15 +116,13 @@ def main() -> None:
     parser.add_argument(
         "--watch", action="store_true", help="show the run in real time, in RViz or, without a display, in a browser"
     )
-    parser.add_argument("--texts", metavar="YAML", help=TEXTS_HELP)
     parser.add_argument("--only", nargs="+", default=(), metavar="CHECK", help="run only what these checks need")
     args = parser.parse_args()
     interrupt_on_signal()
     try:
         state, share = places()
-        texts = load_texts(Path(args.texts) if args.texts else None)
         plan_file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
-        plan = load(plan_file, args.seed, texts).restricted(args.only)
+        plan = load(plan_file, args.seed).restricted(args.only)
         given = make_report_folder(Path(args.report)) if args.report else None
         cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from aro_robocop_goto_as.param_loading import parameter
+
 ACTION = "/robocop_goto_as"
 ACTION_TYPE = "aro_robocop_goto_as/GoToPositionAction"
 CLICKS = "/move_base_simple/goal"  # where RViz publishes a 2D Nav Goal
@@ -16,24 +18,24 @@ AHEAD = math.radians(30.0)  # [rad] beams within +- this angle count as ahead
 class Limits:
     """Tolerances that the checks compare with; config/grading.yaml explains each one."""
 
-    feedback_low: float = 7.0
-    feedback_high: float = 35.0
-    position_tolerance: float = 0.06
-    angle_tolerance: float = 0.12
-    turn_beyond: float = 0.16
-    straight_within: float = 0.07
-    driving: float = 0.02
-    straight_turn: float = 0.35
-    reached: float = 0.12
-    abort_nearest: float = 0.2
-    abort_farthest: float = 0.36
-    preempt_within: float = 1.5
-    stop_within: float = 1.0
-    standing_v: float = 0.01
-    standing_w: float = 0.05
-    status_reports: int = 2
-    status_span: float = 20.0
-    stall: float = 8.0
-    stall_distance: float = 0.01
-    stall_angle: float = 0.05
-    goal_time: float = 400.0
+    feedback_low: float = parameter(7.0, low=0)
+    feedback_high: float = parameter(35.0, low=0)
+    position_tolerance: float = parameter(0.06, low=0)
+    angle_tolerance: float = parameter(0.12, low=0)
+    turn_beyond: float = parameter(0.16, low=0)
+    straight_within: float = parameter(0.07, low=0)
+    driving: float = parameter(0.02, low=0)
+    straight_turn: float = parameter(0.35, low=0)
+    reached: float = parameter(0.12, low=0)
+    abort_nearest: float = parameter(0.2, low=0)
+    abort_farthest: float = parameter(0.36, low=0)
+    preempt_within: float = parameter(1.5, low=0)
+    stop_within: float = parameter(1.0, low=0)
+    standing_v: float = parameter(0.01, low=0)
+    standing_w: float = parameter(0.05, low=0)
+    status_reports: int = parameter(2, low=0)
+    status_span: float = parameter(20.0, low=0)
+    stall: float = parameter(8.0, low=0)
+    stall_distance: float = parameter(0.01, low=0)
+    stall_angle: float = parameter(0.05, low=0)
+    goal_time: float = parameter(400.0, low=0)

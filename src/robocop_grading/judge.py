@@ -5,12 +5,12 @@ import re
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from .checks import CHECKS, Failed, NotReached, Verdict
+from .checks import CHECKS, Failed, NotReached, Passed, Verdict
 from .checks.bridge import about_pending
 from .checks.topic_types import wrong_type
 from .plan import CheckPlan, Plan
 from .record import Record
-from .texts import Texts, sentences, text
+from .texts import sentences, text
 
 INCOMPLETE = "an incomplete one"
 FIRST = "action_server"  # the check without which no other one of a server is reached
@@ -42,7 +42,15 @@ class CheckResult:
     failure: Optional[Failed] = None
     why: str = ""  # reason for NOT_REACHED
     follows: str = ""  # name of the check whose failure is the reason for this one, failed or not reached
-    words: str = ""  # the outcome with its reason
+
+    @property
+    def words(self) -> str:
+        """The outcome with its reason."""
+        failure = self.failure
+        if failure is None:
+            return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
+        place = f"at {failure.time:.1f} s of scenario {self.scenario}"
+        return f"failed: {sentences(failure.cause)} Expected {failure.expected}, got {failure.seen}, {place}"
 
 
 @dataclass(frozen=True)
@@ -163,31 +171,14 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
     checks: List[CheckResult] = []
     for part, by_name in records.items():
         own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
-        checks += [_told(check, plan.texts) for check in _with_reasons(own, by_name)]
+        checks += _with_reasons(own, by_name)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     for part, by_name in records.items():
         said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits)]
         if any(check.outcome is not Outcome.PASSED for check in checks):
             said += [*_unpublished(by_name), *_wrong_types(by_name, checks)]
-        found += [f"{part}: {plan.texts.told(it)}" for it in dict.fromkeys(said)]
+        found += [f"{part}: {it}" for it in dict.fromkeys(said)]
     return Grade(name, tuple(checks), tuple(found))
-
-
-def _told(check: CheckResult, texts: Texts) -> CheckResult:
-    """The result with its texts in the plan's language."""
-    failure, told = check.failure, texts.told
-    words = text("{}: {}", check.outcome.value, check.why) if check.why else check.outcome.value
-    if failure is not None:
-        words = text(
-            "failed: {} Expected {}, got {}, at {:.1f} s of scenario {}",
-            sentences(failure.cause),
-            failure.expected,
-            failure.seen,
-            failure.time,
-            check.scenario,
-        )
-        failure = replace(failure, cause=told(failure.cause), expected=told(failure.expected), seen=told(failure.seen))
-    return replace(check, sentence=told(check.sentence), failure=failure, why=told(check.why), words=told(words))
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
@@ -234,7 +225,7 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> 
         if result.failure is not None:
             reason = first[causes[reasons[result.name]]]
             if reason != result.name:
-                cause = text('This follows from another failed check: "{}"', CHECKS[reason].contract)
+                cause = f'This follows from another failed check: "{CHECKS[reason].contract}"'
                 if result.failure.seen == INCOMPLETE:
                     cause = result.failure.cause
                 result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)
@@ -275,7 +266,7 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
             if judged.explain and name in records:
                 verdict = judged.explain(records, [it for it in check.scenarios if it in records], verdict)
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
-        if verdict is None:
+        if isinstance(verdict, Passed):
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")
         elif result.outcome is Outcome.NOT_REACHED:
             result = replace(result, why=result.why or verdict.why)

@@ -1,28 +1,35 @@
 """Packages that a plan names because the lab has them: Debian's are looked for, PyPI's installed once."""
 
 import os
+import re
 import subprocess
 import sys
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import List, Optional, Tuple
 
 from aro_robocop_goto_as.errors import UngradableError
+from aro_robocop_goto_as.param_loading import several
 
 from .builds.workspace import exclusive
 from .files.tree import remove
 
 # With a version, as pip takes it, and not an option of pip or dpkg.
-NAME = r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?"
+NAME = re.compile(r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
 class Packages:
     """Names of packages."""
 
-    debian: Tuple[str, ...] = ()
-    pypi: Tuple[str, ...] = ()  # without their dependencies, which could replace Debian's, such as NumPy
+    debian: Tuple[str, ...] = several()
+    pypi: Tuple[str, ...] = several()  # without their dependencies, which could replace Debian's, such as NumPy
+
+    def conflicts(self) -> List[str]:
+        """What is not the name of a package, in words."""
+        names = (*self.debian, *self.pypi)
+        return [f"expected the name of a package, got {it!r}" for it in names if not NAME.fullmatch(it)]
 
 
 def provide(packages: Packages, state: Path) -> Optional[Path]:

@@ -1,22 +1,23 @@
 """Reads the grading plan (config/grading.yaml): limits, scenarios, and the checks with their points."""
 
-import dataclasses
 import math
 import random
 import re
-from dataclasses import dataclass, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from pathlib import Path
-from typing import AbstractSet, Any, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, List, Mapping, Optional, Sequence, Tuple, Type, TypeVar
 
-from aro_robocop_goto_as.errors import PlanError
+import yaml
+
+from aro_robocop_goto_as.errors import HostingError, PlanError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose, compose3, lifted
-from aro_robocop_goto_as.param_loading import from_dict
+from aro_robocop_goto_as.param_loading import declared, from_dict, parameter, several
 from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
 
 from .checks import CHECKS
+from .files.tree import read_bytes
 from .handout import Limits
-from .packages import NAME, Packages
-from .texts import ENGLISH, Texts, read_yaml
+from .packages import Packages
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m
@@ -25,26 +26,35 @@ PARTS = ("server", "bridge")
 FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
-SECTIONS = {"limits": dict, "scenarios": list, "checks": dict}
-STEP_KEYS = {"goal", "of", "ends", "for", "cancel", "place"}
 MIDDLE = 0  # the seed with which every range stands for its middle
 LARGEST_SEED = 999_999
-DRAWN = "number or a range LOW..HIGH"
 DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
+
+T = TypeVar("T")
+
+
+def _numbers(count: int) -> Any:
+    """A field for coordinates and sizes."""
+    return several(count, -FARTHEST, FARTHEST)
 
 
 @dataclass(frozen=True)
 class Step:
     """One line of a server scenario's script."""
 
-    goal: Tuple[float, ...] = ()  # x, y [m] in the frame `of`
-    of: str = "odom"  # odom, or robot (x ahead, y left)
-    ends: str = ""  # the terminal state to wait for
-    run: float = 0.0  # [s] time to let pass instead of waiting for a terminal state
+    goal: Tuple[float, ...] = _numbers(2)  # x, y [m] in the frame `of`
+    of: str = parameter("odom", choices=("odom", "robot"))  # robot: x ahead, y left
+    ends: str = parameter("", choices=("SUCCEEDED", "ABORTED", "PREEMPTED"))  # the terminal state to wait for
+    run: float = parameter(0.0, 0.0, 1e6, key="for")  # [s] time to let pass instead of waiting for a terminal state
     cancel: bool = False
-    place: Tuple[float, ...] = ()  # x, y [m], yaw [rad] in the odom frame of the scenario's start
+    place: Tuple[float, ...] = _numbers(3)  # x, y [m], yaw [rad] in the odom frame of the scenario's start
+
+    def conflicts(self) -> List[str]:
+        """Whether there is not exactly one thing to do, in words."""
+        things = sum(map(bool, (self.goal, self.cancel, self.place)))
+        return [] if things == 1 else ["expected one of goal, cancel and place in a step"]
 
 
 @dataclass(frozen=True)
@@ -99,10 +109,15 @@ class CheckPlan:
     """The points of a check and the scenarios that it examines."""
 
     name: str
-    part: str
-    points: float
-    extra: bool
-    scenarios: Tuple[str, ...]
+    part: str = parameter(choices=PARTS)
+    points: float = parameter(low=0.0, high=1e6)
+    scenarios: Tuple[str, ...] = several(default=MISSING)
+    extra: bool = False
+
+    @property
+    def contract(self) -> str:
+        """What it tests."""
+        return CHECKS[self.name].contract
 
 
 @dataclass(frozen=True)
@@ -114,7 +129,6 @@ class Plan:
     scenarios: Tuple[Scenario, ...]
     checks: Tuple[CheckPlan, ...]
     seed: int = MIDDLE  # with which the scenarios' numbers were drawn
-    texts: Texts = ENGLISH
     is_whole: bool = True  # not only some of the file's checks
     packages: Packages = Packages()  # that the lab has in addition
 
@@ -127,10 +141,6 @@ class Plan:
     def extra(self) -> float:
         """The points of all checks that are extra."""
         return round(sum(check.points for check in self.checks if check.extra), 6)
-
-    def contract(self, check: str) -> str:
-        """What a check tests, in the language of the texts."""
-        return self.texts.told(CHECKS[check].contract)
 
     def examines(self, part: str, scenario: str = "") -> bool:
         """Return whether some check examines this part, or this scenario of it."""
@@ -153,41 +163,76 @@ class Plan:
         return replace(self, checks=chosen, is_whole=False) if names else self
 
 
-def load(path: Path, seed: int = MIDDLE, texts: Texts = ENGLISH) -> Plan:
-    """Read the plan and draw its scenarios; PlanError or ParameterError (limits) names the file and the mistake in it.
+@dataclass(frozen=True)
+class _File:
+    """The sections of the plan's file; those in which all is commented out may be left empty."""
+
+    scenarios: list = parameter()
+    checks: dict = parameter()
+    limits: Optional[dict] = None
+    packages: Optional[dict] = None
+
+
+@dataclass(frozen=True)
+class _ScenarioEntry:
+    """A scenario in the file."""
+
+    name: str = parameter()
+    about: str = parameter()
+    script: list = parameter()
+    obstacles: Optional[list] = None
+    pushes: Optional[list] = None
+    odd_scan: bool = False
+
+
+@dataclass(frozen=True)
+class _Obstacles:
+    """Obstacles in the file."""
+
+    box: Tuple[float, ...] = _numbers(5)
+    cylinder: Tuple[float, ...] = _numbers(3)
+
+    @property
+    def blocks(self) -> List[Block]:
+        """The same as blocks."""
+        boxes = [Block("box", Pose2D(*self.box[:3]), self.box[3:])] if self.box else []
+        return boxes + ([Block("cylinder", Pose2D(*self.cylinder[:2]), self.cylinder[2:])] if self.cylinder else [])
+
+    def conflicts(self) -> List[str]:
+        """What has no size, in words."""
+        return [f"{it.kind}: expected sizes above 0, got {it.sizes}" for it in self.blocks if min(it.sizes) <= 0.0]
+
+
+def load(path: Path, seed: int = MIDDLE) -> Plan:
+    """Read the plan and draw its scenarios; PlanError or ParameterError names the file and the mistake in it.
 
     Seed 0 takes the middle of each range.
     """
     if not MIDDLE <= seed <= LARGEST_SEED:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {LARGEST_SEED}")
-    raw = read_yaml(path)
-    _expect(raw, {*SECTIONS, "packages"}, str(path), set(SECTIONS))
-    raw = {**raw, "limits": {} if raw["limits"] is None else raw["limits"]}  # null: all are commented out
-    for name, kind in SECTIONS.items():
-        if not isinstance(raw[name], kind):
-            words = "a list" if kind is list else "a mapping"
-            raise PlanError(f"{path}: {name}: expected {words}, got {raw[name]!r}")
-    limits = from_dict(Limits, raw["limits"], f"{path}: limits")
-    for name, value in dataclasses.asdict(limits).items():
-        if not 0.0 <= value < math.inf:
-            raise PlanError(f"{path}: limits: {name}: expected a finite number of 0 or more, got {value!r}")
-    scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in raw["scenarios"])
+    try:
+        raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
+    except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
+        raise PlanError(f"{path}: {error}") from error
+    file = _loaded(_File, raw, f"{path}")
+    scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios)
     names = [scenario.name for scenario in scenarios]
     for name in names:
         if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS):
             raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
     known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
-    checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in raw["checks"].items())
-    packages = _packages(raw.get("packages"), f"{path}: packages")
-    return Plan(path, limits, scenarios, checks, seed, texts, packages=packages)
+    checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in file.checks.items())
+    limits = _loaded(Limits, file.limits or {}, f"{path}: limits")
+    packages = _loaded(Packages, file.packages or {}, f"{path}: packages")
+    return Plan(path, limits, scenarios, checks, seed, packages=packages)
 
 
-def _expect(raw: Any, known: AbstractSet[str], where: str, needed: AbstractSet[str] = frozenset()) -> None:
-    if not isinstance(raw, Mapping):
-        raise PlanError(f"{where}: expected keys {', '.join(sorted(known))}, got {raw!r}")
-    for wrong, word in ((set(raw) - set(known), "unknown"), (set(needed) - set(raw), "missing")):
-        if wrong:
-            raise PlanError(f"{where}: {word}: {', '.join(sorted(map(str, wrong)))}; known: {', '.join(sorted(known))}")
+def _loaded(cls: Type[T], raw: Any, where: str) -> T:
+    """A dataclass from a part of the file; a known key without a value counts as absent."""
+    if not isinstance(raw, dict):
+        raise PlanError(f"{where}: expected keys with values, got {raw!r}")
+    known = declared(cls)
+    return from_dict(cls, {str(it): value for it, value in raw.items() if value is not None or it not in known}, where)
 
 
 def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
@@ -208,98 +253,40 @@ def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
     return round((low + high) / 2.0 if numbers is None else numbers.uniform(low, high), DIGITS)
 
 
-def _number(value: Any, where: str, least: float = 0.0, most: float = 1e6, kind: str = "number") -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not least <= value <= most:
-        raise PlanError(f"{where}: expected a {kind} from {least:g} to {most:g}, got {value!r}")
-    return float(value)
-
-
-def _numbers(value: Any, count: int, where: str) -> Tuple[float, ...]:
-    if not isinstance(value, list) or len(value) != count:
-        raise PlanError(f"{where}: expected {count} numbers, got {value!r}")
-    return tuple(_number(number, where, -FARTHEST, FARTHEST, DRAWN) for number in value)
-
-
-def _list(value: Any, where: str, of: str) -> List[Any]:
-    if not isinstance(value, list) or not value:
-        raise PlanError(f"{where}: expected a list of {of}, got {value!r}")
-    return value
-
-
-def _one_of(words: Sequence[str], value: Any, where: str) -> str:
-    if value not in words:
-        raise PlanError(f"{where}: expected {', '.join(words[:-1])} or {words[-1]}, got {value!r}")
-    return str(value)
-
-
 def _scenario(raw: Any, where: str, seed: int) -> Scenario:
-    _expect(raw, {"name", "about", "script", "obstacles", "odd_scan", "pushes"}, where, {"name", "about", "script"})
-    if not isinstance(raw["name"], str) or not re.fullmatch(r"\w+", raw["name"]):
-        raise PlanError(f"{where}: name: expected letters, digits and _, got {raw['name']!r}")
-    where, numbers = f"{where}: {raw['name']}", None if seed == MIDDLE else random.Random(f"{seed}/{raw['name']}")
-    raw = {**raw, **{key: drawn(raw[key], numbers, where) for key in ("obstacles", "script", "pushes") if key in raw}}
-    obstacles = []
-    for entry in _list(raw["obstacles"], f"{where}: obstacles", "boxes and cylinders") if "obstacles" in raw else []:
-        _expect(entry, {"box", "cylinder"}, where)
-        for kind, value in entry.items():
-            sizes = _numbers(value, {"box": 5, "cylinder": 3}[kind], f"{where}: {kind}")
-            place = sizes[: {"box": 3, "cylinder": 2}[kind]]
-            obstacles.append(Block(kind, Pose2D(*place), sizes[len(place) :]))
-            if min(obstacles[-1].sizes) <= 0.0:
-                raise PlanError(f"{where}: {kind}: expected sizes above 0, got {value!r}")
-    steps = tuple(_step(step, where) for step in _list(raw["script"], f"{where}: script", "steps"))
+    entry = _loaded(_ScenarioEntry, raw, where)
+    if not re.fullmatch(r"\w+", entry.name):
+        raise PlanError(f"{where}: name: expected letters, digits and _, got {entry.name!r}")
+    where, numbers = f"{where}: {entry.name}", None if seed == MIDDLE else random.Random(f"{seed}/{entry.name}")
+    # In this order, by which each seed has its numbers.
+    obstacles = drawn(entry.obstacles or [], numbers, where)
+    script = drawn(entry.script, numbers, where)
+    pushes = drawn(entry.pushes or [], numbers, where)
+    blocks = [block for it in obstacles for block in _loaded(_Obstacles, it, f"{where}: obstacles").blocks]
+    steps = tuple(_loaded(Step, step, f"{where}: script") for step in script)
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
             raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
-    pushes = _list(raw["pushes"], f"{where}: pushes", "pushes") if "pushes" in raw else []
-    return Scenario(
-        raw["name"],
-        str(raw["about"]),
-        steps,
-        tuple(obstacles),
-        bool(raw.get("odd_scan", False)),
-        tuple(Push(*_numbers(push, 4, f"{where}: pushes")) for push in pushes),
-    )
+    moved = tuple(_push(push, f"{where}: pushes") for push in pushes)
+    return Scenario(entry.name, entry.about, steps, tuple(blocks), entry.odd_scan, moved)
 
 
-def _step(raw: Any, where: str) -> Step:
-    _expect(raw, STEP_KEYS, where)
-    if len({"goal", "cancel", "place"}.intersection(raw)) != 1:
-        raise PlanError(f"{where}: expected one of goal, cancel and place in a step, got {raw!r}")
-    return Step(
-        goal=_numbers(raw["goal"], 2, f"{where}: goal") if "goal" in raw else (),
-        of=_one_of(("odom", "robot"), raw.get("of", "odom"), f"{where}: of"),
-        ends=_one_of(("SUCCEEDED", "ABORTED", "PREEMPTED"), raw["ends"], f"{where}: ends") if "ends" in raw else "",
-        run=_number(raw.get("for", 0.0), f"{where}: for", kind=DRAWN),
-        cancel=bool(raw.get("cancel", False)),
-        place=_numbers(raw["place"], 3, f"{where}: place") if "place" in raw else (),
-    )
-
-
-def _packages(raw: Any, where: str) -> Packages:
-    if raw is None:  # all are commented out
-        return Packages()
-    _expect(raw, {"debian", "pypi"}, where)
-    lists = {kind: _list(names, f"{where}: {kind}", "names") for kind, names in raw.items()}
-    for name in (it for names in lists.values() for it in names):
-        if not isinstance(name, str) or not re.fullmatch(NAME, name, re.ASCII):
-            raise PlanError(f"{where}: expected the name of a package, got {name!r}")
-    return Packages(**{kind: tuple(names) for kind, names in lists.items()})
+def _push(raw: Any, where: str) -> Push:
+    names = [spec.name for spec in fields(Push)]
+    if not isinstance(raw, list) or len(raw) != len(names):
+        raise PlanError(f"{where}: expected {len(names)} numbers ({', '.join(names)}), got {raw!r}")
+    return from_dict(Push, dict(zip(names, raw)), where)
 
 
 def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:
     if name not in CHECKS:
         raise PlanError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
-    where = f"{where}: {name}"
-    _expect(raw, {"part", "points", "extra", "scenarios"}, where, {"part", "points", "scenarios"})
-    part = _one_of(PARTS, raw["part"], f"{where}: part")
-    scenarios = _list(raw["scenarios"], f"{where}: scenarios", "names")
-    for scenario in scenarios:
-        if scenario not in known[part]:
-            names = ", ".join(known[part])
-            raise PlanError(f"{where}: scenarios: unknown for a {part}: {scenario!r}; known: {names}")
-    points = _number(raw["points"], f"{where}: points")
-    return CheckPlan(name, part, points, bool(raw.get("extra", False)), tuple(scenarios))
+    check = _loaded(CheckPlan, {**raw, "name": name} if isinstance(raw, dict) else raw, f"{where}: {name}")
+    for scenario in check.scenarios:
+        if scenario not in known[check.part]:
+            names = ", ".join(known[check.part])
+            raise PlanError(f"{where}: {name}: scenarios: unknown for a {check.part}: {scenario!r}; known: {names}")
+    return check
 
 
 def site(index: int) -> Pose2D:

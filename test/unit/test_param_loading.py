@@ -2,12 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Tuple
 
 import pytest
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.param_loading import declared, from_dict, group, parameter, positive
+from aro_robocop_goto_as.param_loading import declared, from_dict, group, parameter, positive, several
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,35 @@ def test_wrong_values_are_refused_all_at_once(raw: Dict[str, Any], expected: str
     with pytest.raises(ParameterError) as refusal:
         from_dict(Params, raw, "sim.yaml")
     assert str(refusal.value) == f"sim.yaml: {expected}"
+
+
+@dataclass(frozen=True)
+class Lists:
+    place: Tuple[float, ...] = several(2, -1.0, 1.0)
+    names: Tuple[str, ...] = several()
+    wait: float = parameter(0.0, key="for")
+
+
+def test_lists_become_tuples_and_a_key_may_be_a_word_of_python() -> None:
+    assert from_dict(Lists, {"place": [1, 0.5], "names": ["a"], "for": 2}, "x") == Lists((1.0, 0.5), ("a",), 2.0)
+    assert from_dict(Lists, {}, "x") == Lists() and list(declared(Lists)) == ["place", "names", "for"]
+
+
+@pytest.mark.parametrize(
+    "raw, expected",
+    [
+        ({"place": [1.0]}, "place: expected a list of 2 numbers, got [1.0]"),
+        ({"place": [1.0, 3]}, "place: expected at most 1, got 3.0"),
+        ({"place": ["a", 0.0]}, "place: expected float, got str 'a'"),
+        ({"names": []}, "names: expected a list of names, got []"),
+        ({"names": "a"}, "names: expected a list of names, got 'a'"),
+        ({"wait": 1.0}, "wait: unknown parameter; known are: for, names, place"),
+    ],
+)
+def test_wrong_lists_are_refused(raw: Dict[str, Any], expected: str) -> None:
+    with pytest.raises(ParameterError) as refusal:
+        from_dict(Lists, raw, "plan.yaml")
+    assert str(refusal.value) == f"plan.yaml: {expected}"
 
 
 def test_key_without_a_default_is_required() -> None:

@@ -10,7 +10,7 @@ from .bridge_reports import NO_REPORT, UNTRUE, wrong_reports
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
 from .topic_types import wrong_type
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
@@ -36,16 +36,16 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
         return NotReached("there was no click")
     click = record.clicks[-1]
     goals = _goals_after(record, click)
-    wanted = text("x {:g} y {:g}", click.x, click.y)
+    wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
-        return Failed(text("a goal at {}", wanted), "no goal", click.time, _missing_connection(record), MISSING)
+        return Failed(f"a goal at {wanted}", "no goal", click.time, _missing_connection(record), MISSING)
     goal = goals[-1]
     if not _distance(goal, click.x, click.y) <= POSITION_TOLERANCE:  # this way round NaN fails, too
-        seen = text("x {:.2f} y {:.2f}", goal.x, goal.y)
+        seen = f"x {goal.x:.2f} y {goal.y:.2f}"
         return Failed(wanted, seen, goal.time, _other_position(click, goal), POSITION)
     if len(goals) > 1:
-        return Failed("one goal", text("{} goals", len(goals)), goals[1].time, "The click is sent more than once")
-    return None
+        return Failed("one goal", f"{len(goals)} goals", goals[1].time, "The click is sent more than once")
+    return PASSED
 
 
 def _other_position(click: Click, goal: Goal) -> str:
@@ -61,7 +61,7 @@ def _other_position(click: Click, goal: Goal) -> str:
         ("The signs of x and y are wrong", (-x, -y)),
     ):
         if _distance(goal, *there) <= POSITION_TOLERANCE:
-            return text("{}: set goal.position = msg.pose.position", cause)
+            return f"{cause}: set goal.position = msg.pose.position"
     return text("other_position")
 
 
@@ -101,7 +101,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     problem = wrong_reports(record, limits)
     if problem is not None and problem.kind == NO_REPORT and not _has_client(record):
         return NotReached(_unconnected(record))  # it may wait for the server before it creates its timer
-    return problem
+    return problem or PASSED
 
 
 @check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
@@ -115,7 +115,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     if not old:
         if not goals:
             return NotReached("there was no older goal")
-        wanted = text("a goal at {}", text("x {:g} y {:g}", before.x, before.y))
+        wanted = f"a goal at x {before.x:g} y {before.y:g}"
         return Failed(wanted, "no goal", before.time, "The click was not forwarded", MISSING)
     older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
     cancelled = {change.id for change in record.statuses if change.status == PREEMPTED}
@@ -126,7 +126,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         x, y = newer[-1].x, newer[-1].y
         same = _distance(older, x, y) <= POSITION_TOLERANCE
         cause = text("older_position") if same else _other_position(click, newer[-1])
-        wanted, seen = text("x {:g} y {:g}", click.x, click.y), text("x {:.2f} y {:.2f}", x, y)
+        wanted, seen = f"x {click.x:g} y {click.y:g}", f"x {x:.2f} y {y:.2f}"
         return Failed(wanted, seen, newer[-1].time, cause, POSITION)
     if newer[-1].id in cancelled:
         seen = "one for both" if older.id in cancelled else "one for the newer goal"
@@ -136,7 +136,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         wanted, requests = "a cancel request for the older goal", _requests(record, click)
         seen = "one for another goal" if requests else "none"
         return Failed(wanted, seen, click.time, _not_cancelled(requests, older), NOT_CANCELLED)
-    return None
+    return PASSED
 
 
 def _requests(record: Record, click: Click) -> List[Cancel]:
@@ -165,7 +165,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     if record.name == "no_server":
         return _crash(record, limits) or NotReached("the bridge was not tried with a server")
     if record.clicks and _goals_after(record, record.clicks[-1]):
-        return None
+        return PASSED
     if not _has_client(record):
         return NotReached(_unconnected(record))
     clicked, wanted = record.marks.get("clicked", 0.0), "a goal once the server is running"
@@ -175,7 +175,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
 @check("clicks")
 def bridge_alive(record: Record, limits: Limits) -> Verdict:
     """The bridge runs to the end without an exception."""
-    return _crash(record, limits)
+    return _crash(record, limits) or PASSED
 
 
 def _crash(record: Record, limits: Limits) -> Optional[Failed]:
@@ -197,28 +197,28 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
         until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
         goals = _goals_after(record, click, until)
         if not goals:
-            wanted, cause = text("a goal for the click in {}", click.frame), "The click was not forwarded"
+            wanted, cause = f"a goal for the click in {click.frame}", "The click was not forwarded"
             return Failed(wanted, "no goal", click.time, cause, MISSING)
         goal = goals[-1]
         if not _distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
             cause = "The transform is wrong"
             if _distance(goal, click.x, click.y) < POSITION_TOLERANCE:
                 cause = text("not_transformed", click.frame)
-            wanted = text("x {:.2f} y {:.2f} in odom", click.odom_x, click.odom_y)
-            return Failed(wanted, text("x {:.2f} y {:.2f}", goal.x, goal.y), goal.time, cause, POSITION)
-    return None
+            wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
+            return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, POSITION)
+    return PASSED
 
 
 def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     """What to say of a bridge that works with goals that are accepted at once, and not with PENDING ones."""
     record, found = records.get("pending"), []
-    if record is None or isinstance(_crash(record, limits), Failed):
+    if record is None or _crash(record, limits):
         return []
-    if "click" in records and reports_status(records["click"], limits) is None:
+    if "click" in records and reports_status(records["click"], limits) is PASSED:
         verdict = reports_status(record, limits)
         if isinstance(verdict, Failed) and verdict.kind in (NO_REPORT, UNTRUE):
             found.append(text("reports_stop") if verdict.kind == NO_REPORT else verdict.cause)
-    if "replace" in records and cancels_older(records["replace"], limits) is None:
+    if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind == NOT_CANCELLED:
             found.append(text("no_older_goal_seen"))

@@ -49,7 +49,7 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     count = len(_began([line for line in lines if not _says_nothing(line)]))
     if count >= limits.status_reports:
         return _untrue(record)
-    wanted = text("{} reports within {:g} s", limits.status_reports, limits.status_span)
+    wanted = f"{limits.status_reports} reports within {limits.status_span:g} s"
     if len(_began(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))

@@ -32,7 +32,7 @@ def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
 def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
     if logged(record, EXCEPTION_LOGGED, end):
-        return text("An exception was raised: {}", last_error(record, end))
+        return f"An exception was raised: {last_error(record, end)}"
     return text("no_terminal_state") if logged(record, NO_STATE_LOGGED, end) else ""
 
 

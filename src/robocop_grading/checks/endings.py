@@ -21,7 +21,7 @@ from ..texts import sentences, text
 from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
 from .topic_types import wrong_type
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 TWO_STATES = "The goal got two terminal states"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
@@ -59,7 +59,7 @@ def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Ver
     """The first problem that a goal has."""
     if not record.goals:
         return NotReached("no goal was sent")
-    return next(filter(None, map(problem, record.goals)), None)
+    return next(filter(None, map(problem, record.goals)), PASSED)
 
 
 def narrow_obstacle(record: Record) -> str:
@@ -73,7 +73,7 @@ def narrow_obstacle(record: Record) -> str:
 def _collision(record: Record, goal: Goal, end: float) -> str:
     """A sentence about the first contact with an obstacle, if there was one."""
     contacts = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
-    return text("The robot ran into an obstacle at {:.1f} s", contacts[0].time) if contacts else ""
+    return f"The robot ran into an obstacle at {contacts[0].time:.1f} s" if contacts else ""
 
 
 def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
@@ -115,8 +115,8 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
         cause = text("success_believed", own[-1])
     if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
         kind, cause = NOT_RESET, text("not_reset")
-    seen = text("{} {:.2f} m away", SUCCESS, nearest)
-    return Failed(text("success within {:g} m", GOAL_RADIUS), seen, result.time, cause, kind, goal)
+    seen = f"{SUCCESS} {nearest:.2f} m away"
+    return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
 def _at_once(record: Record, goal: Goal) -> bool:
@@ -151,7 +151,7 @@ def failure_result(record: Record, limits: Limits) -> Verdict:
 def _result(record: Record, status: int, success: bool) -> Verdict:
     results = [result for goal in record.goals[:1] for result in results_of(record, goal)[:1]]
     if not results or results[0].status != status:
-        return NotReached(text("the goal did not end as {}", status_name(status)))
+        return NotReached(f"the goal did not end as {status_name(status)}")
     result = results[0]
     if result.success != success:
         cause = text("contradicting_result" if result.message else "no_result_message")
@@ -159,7 +159,7 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
     if not result.message:
         cause = logged_cause(record, result.time) or text("no_result_message")
         return Failed("a message", EMPTY, result.time, cause, EMPTY)
-    return None
+    return PASSED
 
 
 @check("speeds", after=(EXCEPTION,), needs=("reaches_goal",))
@@ -176,10 +176,10 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
             judged = True
             for sample in after:
                 if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
-                    seen = text("{:.2f} m/s and {:.2f} rad/s", sample.v, sample.w)
+                    seen = f"{sample.v:.2f} m/s and {sample.w:.2f} rad/s"
                     cause = keeps_moving(record, result, sample.time)
                     return Failed("a robot at rest", seen, sample.time, cause, MOVING, goal)
-    return None if judged else NotReached("no goal ended")
+    return PASSED if judged else NotReached("no goal ended")
 
 
 def keeps_moving(record: Record, result: Result, until: float) -> str:
@@ -196,7 +196,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
     for goal in record.goals:
         results = results_of(record, goal)
         if len(results) > 1:
-            return Failed("one result", text("{} results", len(results)), results[1].time, TWO_STATES)
+            return Failed("one result", f"{len(results)} results", results[1].time, TWO_STATES)
         judged = judged or bool(results)
     for line in record.lines:
         if TWO_STATES_LOGGED.search(line.text):
@@ -209,4 +209,4 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
         if len({change.status for change in changes}) > 1:
             states = " then ".join(status_name(change.status) for change in changes)
             return Failed("one terminal state", states, changes[1].time, TWO_STATES)
-    return None if judged else NotReached("no goal ended")
+    return PASSED if judged else NotReached("no goal ended")

@@ -21,9 +21,8 @@ from .feedback_causes import (
     UNITS,
     Pair,
     likely_cause,
-    names_in,
 )
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
@@ -57,10 +56,10 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         if limits.feedback_low <= rate <= limits.feedback_high:
             continue
         cause = "no_feedback" if not count else "too_often" if rate > limits.feedback_high else "not_10_hz"
-        wanted = text("about 10 Hz ({:g} to {:g})", limits.feedback_low, limits.feedback_high)
-        seen = text("{:.1f} Hz, {} messages in {:.1f} s", rate, count, end - goal.time)
+        wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
+        seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
         return Failed(wanted, seen, goal.time, text(cause), goal=goal)
-    return None if judged else NotReached("no goal was active for a second")
+    return PASSED if judged else NotReached("no goal was active for a second")
 
 
 def _arrival(record: Record, goal: Goal) -> float:
@@ -119,8 +118,7 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     scenarios = [_compared(index, records[name]) for name in names]
     tolerance = TOLERANCES[index]
     wrong = [pair for pairs in scenarios for pair in _wrong(pairs, partial(_deviation, index), tolerance)]
-    cause = likely_cause(index, wrong, scenarios)
-    found = names_in(cause)
+    cause, found = likely_cause(index, wrong, scenarios)
     silent = unpublished(records, POSE_TOPIC)
     if found & UNCHANGED and silent:
         cause = text("pose_unpublished", silent)
@@ -133,7 +131,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     pairs = _compared(POSITION, record)
     if not pairs:
         return NotReached("there was no feedback")
-    return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION)
+    return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION) or PASSED
 
 
 @check(
@@ -154,7 +152,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
         wanted, seen = "an angle within +-3.14 rad", f"angle_error {message.angle_error:.2f}"
         return Failed(wanted, seen, message.time, text("not_wrapped", message.angle_error))
     old = None if _old(record, POSITION) else _old(record, ANGLE)  # one mistake is counted once
-    return _untrue(ANGLE, pairs, limits.angle_tolerance) or old
+    return _untrue(ANGLE, pairs, limits.angle_tolerance) or old or PASSED
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:
@@ -167,8 +165,8 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     best = int(means.argmin())
     if AGES[best] < OLD or means[best] > 0.5 * means[0] or _is_shifted(record, index):
         return None
-    name, seen = ERRORS[index], text("one of {:.2f} s ago", AGES[best])
-    return Failed(text("the present {}", name), seen, record.feedback[0].time, text("old_feedback", name))
+    name, seen = ERRORS[index], f"one of {AGES[best]:.2f} s ago"
+    return Failed(f"the present {name}", seen, record.feedback[0].time, text("old_feedback", name))
 
 
 def _is_shifted(record: Record, index: int) -> bool:

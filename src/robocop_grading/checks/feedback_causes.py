@@ -1,6 +1,5 @@
 """Which mistake explains wrong values of the feedback: hypotheses that predict what a server would report with it."""
 
-import functools
 import math
 import re
 from dataclasses import replace
@@ -10,7 +9,7 @@ from typing import Callable, List, NamedTuple, Sequence, Set, Tuple
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
 from ..record import ERRORS, Feedback, Goal, Sample, errors_at, wrapped
-from ..texts import Text, text
+from ..texts import text
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
@@ -145,23 +144,25 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
 OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
-def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> str:
-    """All causes that fit in every scenario, the wrong values as well as the right ones; if none does, what is wrong.
+def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[str]]:
+    """All causes that fit in every scenario, the wrong values as well as the right ones, in words and by their names.
 
-    `scenarios` are the pairs of each scenario, with the wrong ones among them.
+    If none does, what is wrong. `scenarios` are the pairs of each scenario, with the wrong ones among them.
     """
     values = [pair.feedback.errors[index] for pairs in scenarios for pair in pairs]
     if not all(map(math.isfinite, values)):
-        return text("Some values of {} are not finite", ERRORS[index])
+        return f"Some values of {ERRORS[index]} are not finite", set()
     thinned = [pairs[:: 1 + len(pairs) // MAX_PAIRS] for pairs in scenarios if pairs]
     wrong = wrong[:: 1 + len(wrong) // MAX_PAIRS]
     scale = 1.0 if max(abs(value) for value in values) < LARGE else 0.1
     if len(set(values)) == 1 and len(values) > 5:
-        return text(NEVER_FILLED[index]) if not any(values) else text("always_the_same", ERRORS[index], values[0])
+        if not any(values):
+            return text(NEVER_FILLED[index]), set()
+        return text("always_the_same", ERRORS[index], values[0]), set()
     names = _fitting(index, wrong, thinned, scale)
     if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
         names = [name for name in names if name != "pose_of_start"]
-    return any_of([text(name) for name in names]) or _measured(index, thinned)
+    return "; or: ".join(map(text, names)) or _measured(index, thinned), set(names)
 
 
 def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[str]:
@@ -182,18 +183,6 @@ def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pai
     return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
 
 
-def any_of(causes: Sequence[str]) -> str:
-    """Several causes that explain the same; the only one as it is."""
-    return functools.reduce(lambda one, other: text("{}; or: {}", one, other), causes) if causes else ""
-
-
-def names_in(cause: str) -> Set[str]:
-    """The names of the texts in a cause of any_of()."""
-    if not isinstance(cause, Text):
-        return set()
-    return {cause.name}.union(*(names_in(value) for value in cause.values if isinstance(value, str)))
-
-
 def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     """What is wrong with values that no hypothesis explains."""
     differences = [pair.feedback.errors[index] - pair.truth[index] for pairs in scenarios for pair in pairs]
@@ -203,13 +192,13 @@ def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     misses = [abs(difference - middle) for difference in differences]
     if abs(middle) > OFFSET and _fits(misses, index):
         word = "large" if middle > 0.0 else "small"
-        return text("{} is always {:.2f} {} too {}", ERRORS[index], abs(middle), UNITS[index], word)
+        return f"{ERRORS[index]} is always {abs(middle):.2f} {UNITS[index]} too {word}"
     both = [it for pairs in scenarios for it in pairs if abs(it.truth[index]) > SCALED]
     factors = [it.feedback.errors[index] / it.truth[index] for it in both] or [1.0]
     factor = median(factors)
     steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MAX_WRONG * len(factors)
     if steady and abs(factor - 1.0) > 2.0 * MAX_SPREAD:
-        return text("{} is always {:.3g} times the true one: is its unit that of the handout?", ERRORS[index], factor)
+        return f"{ERRORS[index]} is always {factor:.3g} times the true one: is its unit that of the handout?"
     return text(OTHERWISE[index])
 
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Iterator, List, NamedTuple, Optional, Sequence
+from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
 from ..record import (
@@ -32,7 +32,7 @@ from .consequences import (
 )
 from .endings import of_goals, success_too_far, wrong_ending
 from .topic_types import wrong_type
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
@@ -46,7 +46,7 @@ STILL = 1e-3  # [m/s], [rad/s] slower commands are none
 AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
 LONG_TURN = "a long turn"
 TURN = f"{HEADING_TOLERANCE:g} rad"
-NOT_DRIVING = "linear.x 0 while angle_error is beyond {}"
+NOT_DRIVING = f"linear.x 0 while angle_error is beyond {TURN}"
 
 
 class Situation(NamedTuple):
@@ -106,7 +106,7 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
             )
         if problem is not None:
             return replace(problem, goal=goal)
-    return None if judged else NotReached("no command was given while angle_error was large")
+    return PASSED if judged else NotReached("no command was given while angle_error was large")
 
 
 def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
@@ -116,8 +116,8 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
     at_first = driving.index(False) if False in driving else len(driving)
     if first is None or abs(first.v) <= limits.driving or not 0 < at_first < len(driving) or any(driving[at_first:]):
         return None
-    seen = text("linear.x {:.2f} at {:.2f} rad", first.v, situations[0].angle)
-    return Failed(text(NOT_DRIVING, TURN), seen, first.time, text("moves_first"), MOVES_FIRST)
+    seen = f"linear.x {first.v:.2f} at {situations[0].angle:.2f} rad"
+    return Failed(NOT_DRIVING, seen, first.time, text("moves_first"), MOVES_FIRST)
 
 
 def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
@@ -133,8 +133,8 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
         cause = text("drives_while_turning")
         if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
             cause = text("no_correction" if command.time > aligned else "drives_straight_at", angle, TURN)
-        seen = text("linear.x {:.2f} at {:.2f} rad", command.v, angle)
-        return Failed(text(NOT_DRIVING, TURN), seen, command.time, cause)
+        seen = f"linear.x {command.v:.2f} at {angle:.2f} rad"
+        return Failed(NOT_DRIVING, seen, command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
@@ -181,7 +181,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         problem = _not_forward(aligned if len(idle) < LONG_IDLE else idle, driving) or _curves(driving, limits)
         if problem is not None:
             return replace(problem, goal=goal)
-    return None if judged else NotReached("the robot did not head for the goal for long enough")
+    return PASSED if judged else NotReached("the robot did not head for the goal for long enough")
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
@@ -194,7 +194,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
             command, angle = wrong[0]
-            return Failed("linear.x above 0", text("linear.x {} at {:.2f} rad", seen, angle), command.time, cause)
+            return Failed("linear.x above 0", f"linear.x {seen} at {angle:.2f} rad", command.time, cause)
     return None
 
 
@@ -209,7 +209,7 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
     if len(driving) < ENOUGH or len(curves) <= 0.2 * len(driving):
         return None
     command, angle = curves[0]
-    seen = text("angular.z {:.2f} at {:.2f} rad", command.w, angle)
+    seen = f"angular.z {command.w:.2f} at {angle:.2f} rad"
     return Failed("angular.z near 0", seen, command.time, text("curves"))
 
 
@@ -233,28 +233,27 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
     for (before, far), (after, near) in zip(way, way[1:]):
         if near < GOAL_RADIUS <= far:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            cause = _cause_of_lateness(record, goal, samples_between(record, reached + LATE, end), limits)
-            name = getattr(cause, "name", "")
+            name, *values = _lateness(record, goal, samples_between(record, reached + LATE, end), limits)
             least = min(distance for _, distance in way)
             exact = name in ("waits_at_goal", "turns_at_goal") or least < 2.0 * GOAL_RADIUS - limits.reached
             if end - reached <= (LATE_AT_REST if name == "waits_at_goal" else LATE) or not exact:
                 return None
-            seen = text("success {:.2f} s later, {:.2f} m from the goal", end - reached, least)
-            return Failed(text("success at {:g} m", GOAL_RADIUS), seen, reached, cause, SUCCESS_LATE, goal)
+            seen = f"success {end - reached:.2f} s later, {least:.2f} m from the goal"
+            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, text(name, *values), SUCCESS_LATE, goal)
     return None
 
 
-def _cause_of_lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
-    """What the robot does meanwhile, and what the server has reported."""
+def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> Tuple[Any, ...]:
+    """What the robot does meanwhile, and what the server has reported: a text's name and its values."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > STILL for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
-        return text("turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS)
+        return "turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS
     own = [it.position_error for it in record.feedback if it.id == goal.id and it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
-        return text("unaware_of_goal", GOAL_RADIUS, own[-1])
-    return text("goes_on", GOAL_RADIUS)
+        return "unaware_of_goal", GOAL_RADIUS, own[-1]
+    return "goes_on", GOAL_RADIUS
 
 
 SWERVES = After("drives_straight", kind=LONG_TURN)
@@ -278,7 +277,7 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
     if total <= needed + 2.0:
         return None
-    wanted, seen = text("a turn of about {:.1f} rad", needed), f"{total:.1f} rad"
+    wanted, seen = f"a turn of about {needed:.1f} rad", f"{total:.1f} rad"
     return Failed(wanted, seen, goal.time, text("long_turn"), LONG_TURN, goal)
 
 
@@ -303,7 +302,7 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
     if end - goal.time <= AT_ONCE and moved <= 0.05:
         return None
-    seen = text("a result after {:.1f} s and {:.2f} m of motion", end - goal.time, moved)
+    seen = f"a result after {end - goal.time:.1f} s and {moved:.2f} m of motion"
     if moved <= 0.05:
         return Failed("success at once", seen, goal.time, text("waits_at_goal", GOAL_RADIUS), SUCCESS_LATE, goal)
     return Failed("success at once", seen, goal.time, text("check_before_moving", GOAL_RADIUS))

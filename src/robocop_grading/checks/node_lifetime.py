@@ -7,7 +7,7 @@ from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
 from ..texts import text
 from .output import TRACEBACK, UNCAUGHT, first_error, last_error
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 START = After("action_server", lambda record, *_: record.name == "start")
 # Nothing other than an exception ended the node.
@@ -27,7 +27,7 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if record.name != "start":
         return NotReached("this is checked when the node starts")
     if record.up:
-        return None
+        return PASSED
     name = ACTION[1:]
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
@@ -35,20 +35,20 @@ def action_server(record: Record, limits: Limits) -> Verdict:
             return Failed(ACTION_TYPE, kind, 0.0, text("other_type", kind))
         return Failed("a server that clients can connect to", "no connection", 0.0, text("other_fields"))
     for death in record.deaths:
-        return _died("The node ended while starting: {}", death, record)
+        return _died("The node ended while starting", death, record)
     servers = [server.lstrip("/") for server in record.servers]
     if servers:
         close = closest(name, servers) or servers[0]
         return Failed(name, close, 0.0, text("other_server", close, name))
     cause = text("no_server")
     if isinstance(no_exception(record, limits), Failed):
-        cause = text("An exception while starting: {}", last_error(record))
+        cause = f"An exception while starting: {last_error(record)}"
     return Failed(name, "no action server", 0.0, cause)
 
 
 def _died(cause: str, death: Death, record: Record) -> Failed:
     reason = death.reason or ("signal 9 (SIGKILL)" if death.is_unexplained else last_error(record))
-    return Failed("a running node", text("exit status {}", death.status), death.time, text(cause, reason))
+    return Failed("a running node", f"exit status {death.status}", death.time, f"{cause}: {reason}")
 
 
 @check("states", after=(START,))
@@ -58,14 +58,14 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
         if UNCAUGHT.search(line.text):
             error = first_error([it.text for it in record.lines[number : number + TRACEBACK]])
             return Failed("no exception", error, line.time, last_error(record, line.time))
-    return None
+    return PASSED
 
 
 @check("states", after=(START, OWN_DEATH))
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for death in record.deaths:
-        return _died("The node died: {}", death, record)
+        return _died("The node died", death, record)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
-    return None
+    return PASSED

@@ -11,7 +11,7 @@ from ..texts import sentences, text
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, logged_cause, unpublished
 from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
@@ -32,7 +32,7 @@ def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     """An obstacle closer than 0.3 m ahead aborts the goal before the robot touches it."""
     if not record.goals:
         return NotReached("no goal was sent")
-    return _wrong_abort(record, record.goals[0], limits)
+    return _wrong_abort(record, record.goals[0], limits) or PASSED
 
 
 def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
@@ -46,7 +46,7 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     if contact <= end:
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
         return Failed("a stop before the obstacle", "contact", end, cause)
-    wanted = text("an abort at {:g} m", STOP_DISTANCE)
+    wanted = f"an abort at {STOP_DISTANCE:g} m"
     if logged(record, EXCEPTION_LOGGED, end):
         return Failed(wanted, "an exception", end, logged_cause(record, end), "an exception", goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
@@ -55,10 +55,10 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         cause, kind = text("aborted_far", STOP_DISTANCE), TOO_EARLY
         if nearest <= limits.abort_farthest:
             cause, kind = text("aborted_later", nearest), ""
-        return Failed(wanted, text("an abort at {:.2f} m", min(clearances)), end, cause, kind, goal)
+        return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause, kind, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or text("aborted_near", STOP_DISTANCE)
-        return Failed(wanted, text("an abort at {:.2f} m", clearances[-1]), end, cause)
+        return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     if contact < math.inf:
         cause = keeps_moving(record, results_of(record, goal)[0], contact)
         return Failed("a stop before the obstacle", "contact", contact, cause, MOVING, goal)
@@ -72,7 +72,7 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
     nearest = min((sample.ahead for sample in after), default=math.inf)
     if not before or before[-1] >= STOP_DISTANCE - MARGIN or nearest >= before[-1] - MARGIN:
         return None
-    wanted, seen = text("an abort at {:.2f} m", before[-1]), text("{:.2f} m ahead of it", nearest)
+    wanted, seen = f"an abort at {before[-1]:.2f} m", f"{nearest:.2f} m ahead of it"
     cause = text("towards_obstacle", before[-1], STOP_DISTANCE)
     return Failed(wanted, seen, goal.time, cause, MOVES_FIRST, goal)
 
@@ -100,7 +100,7 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     wanted = STATUS_NAMES.index(goal.ends)
     problem = _wrong_abort(record, goal, limits) if wanted == ABORTED else wrong_ending(record, goal, wanted, limits)
     if problem is None:
-        return None
+        return PASSED
     problem = replace(problem, goal=goal)
     if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == MOVING:
         return problem

@@ -9,7 +9,7 @@ from ..texts import sentences, text
 from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
 MOSTLY = 0.7
@@ -25,7 +25,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
         return NotReached("the goal ended before it could be cancelled")
     request = record.cancels[0]
     goal = next(goal for goal in record.goals if goal.id == request.id)
-    return _preempted(record, goal, request.time, limits, "cancel request", text("check_preempt"))
+    return _preempted(record, goal, request.time, limits, "cancel request", text("check_preempt")) or PASSED
 
 
 @check("states", after=(*PREEMPTION, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
@@ -35,7 +35,7 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
         return NotReached("the first goal ended before a newer one could be sent")
     older, newer = record.goals[:2]
     problem = _preempted(record, older, newer.time, limits, "newer goal", text("check_newer_goal"))
-    return problem or wrong_ending(record, newer, SUCCEEDED, limits)
+    return problem or wrong_ending(record, newer, SUCCEEDED, limits) or PASSED
 
 
 def _preempted(
@@ -43,8 +43,8 @@ def _preempted(
 ) -> Optional[Failed]:
     results = results_of(record, goal)
     if not results or results[0].time > requested + limits.preempt_within:
-        seen = text("a result {:.1f} s later", results[0].time - requested) if results else "no result"
-        wanted = text("PREEMPTED within {:g} s of the {}", limits.preempt_within, request)
+        seen = f"a result {results[0].time - requested:.1f} s later" if results else "no result"
+        wanted = f"PREEMPTED within {limits.preempt_within:g} s of the {request}"
         return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
@@ -57,8 +57,8 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
     results = results_of(record, goal)
     if not results or results[0].status not in (PREEMPTED, RECALLED):
-        return text("The {} is not noticed: {}", request, hint)
-    late = text("The {} is noticed only {:.1f} s later", request, results[0].time - requested)
+        return f"The {request} is not noticed: {hint}"
+    late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
     driving = sum(abs(sample.v) >= MOVING for sample in waiting)
@@ -83,7 +83,7 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
         return Failed("an answer to the next goal", "none", goal.time, cause, NO_ANSWER, goal)
     problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
     if problem is None:
-        return None
+        return PASSED
     if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == NOT_RESET:
         return problem
     before = status_name(results_of(record, record.goals[-2])[0].status)

@@ -1,13 +1,18 @@
-"""The verdict of a check on one record, and the table of all checks with what they depend on.
-
-A check that has tested its contract and found it kept has nothing to say: its verdict is None.
-"""
+"""The verdict of a check on one record, and the table of all checks with what they depend on."""
 
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
 from ..handout import Limits
 from ..record import Goal, Record
+
+
+@dataclass(frozen=True)
+class Passed:
+    """The contract was tested, and kept."""
+
+
+PASSED = Passed()
 
 
 @dataclass(frozen=True)
@@ -33,7 +38,7 @@ class Failed:
     goal: Optional[Goal] = None
 
 
-Verdict = Union[NotReached, Failed, None]
+Verdict = Union[Passed, NotReached, Failed]
 Judge = Callable[[Record, Limits], Verdict]
 Explain = Callable[[Mapping[str, Record], Sequence[str], Failed], Failed]  # all records, names of those to compare
 When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure

@@ -19,13 +19,12 @@ from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
 from ..builds.workspace import exclusive, places
-from ..cli import INTERRUPTED, TEXTS_HELP
+from ..cli import INTERRUPTED
 from ..files.scratch import scratch_folder
 from ..judge import points_in_words, printable_lines
 from ..plan import LARGEST_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private
-from ..texts import load as load_texts
 from .hand_ins import HandIn, collect, pack
 from .results import Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
@@ -109,7 +108,6 @@ def main() -> None:
     )
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
-    parser.add_argument("--texts", metavar="YAML", help=TEXTS_HELP)
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: at most one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
@@ -124,10 +122,8 @@ def main() -> None:
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
         results_folder = Path(args.report) if args.report else state / "classes" / folder.name
-        texts = load_texts(Path(args.texts) if args.texts else None)
-        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE, texts)
-        sources = [plan.path, *([Path(args.texts)] if args.texts else [])]
-        digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
+        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
+        digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
         out = make_report_folder(results_folder)
         if not args.unsafe:
             expect_private(folder)
@@ -139,7 +135,7 @@ def main() -> None:
         version = ElementTree.parse(share / "package.xml").findtext("version")
         with scratch_folder(), exclusive(out / ".run"):
             seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
-            plan = load(plan.path, seed, texts)
+            plan = load(plan.path, seed)
             results = Results(out, {"plan": digest, "seed": seed, "grader": version})
             group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)

@@ -187,7 +187,8 @@ def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
                 causes[line.name][line.cause] += 1
     for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
         tried = len(results) - outcomes[NOT_HANDED_IN] - outcomes[""]
-        yield {"name": check.name, "outcomes": outcomes, "tried": tried, "causes": _most_frequent(causes[check.name])}
+        frequent = _most_frequent(causes[check.name])
+        yield {"check": check, "outcomes": outcomes, "tried": tried, "causes": frequent}
 
 
 def _most_frequent(causes: Mapping[str, int]) -> List[Tuple[str, int]]:

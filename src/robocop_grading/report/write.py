@@ -80,7 +80,7 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
 
 def _check_as_json(check: CheckResult) -> Dict[str, object]:
     values = {"of" if key == "points_available" else key: value for key, value in dataclasses.asdict(check).items()}
-    return {**values, "outcome": check.outcome.value}
+    return {**values, "outcome": check.outcome.value, "words": check.words}
 
 
 def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:

@@ -21,12 +21,12 @@ FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", Outcome.P
 
 def failed(check: CheckResult) -> CheckResult:
     """The check, failed."""
-    return replace(check, outcome=Outcome.FAILED, points=0.0, failure=MISTAKE, words="failed")
+    return replace(check, outcome=Outcome.FAILED, points=0.0, failure=MISTAKE)
 
 
 def blocked(check: CheckResult, by: CheckResult) -> CheckResult:
     """The check, not reached because another one failed."""
-    return replace(check, outcome=Outcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal", words="not reached")
+    return replace(check, outcome=Outcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal")
 
 
 @pytest.mark.parametrize(

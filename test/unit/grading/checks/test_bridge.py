@@ -7,7 +7,7 @@ import pytest
 from grading_records import LIMITS
 
 from robocop_grading import record as rec
-from robocop_grading.checks import CHECKS, Failed
+from robocop_grading.checks import CHECKS, PASSED, Failed
 from robocop_grading.checks.bridge import about_pending
 from robocop_grading.record import Record
 
@@ -49,7 +49,7 @@ def _reported(active: str, succeeded: str) -> Record:
     ],
 )
 def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str) -> None:
-    assert CHECKS["reports_status"](_reported(active, succeeded), LIMITS) is None
+    assert CHECKS["reports_status"](_reported(active, succeeded), LIMITS) is PASSED
 
 
 @pytest.mark.parametrize(
@@ -144,8 +144,8 @@ def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record: Record, wo
 
 def test_position_that_is_wrong_in_both_goals_does_not_count_twice() -> None:
     mirrored = replace(_replaced(older_x=-1.2), clicks=(BEFORE, replace(NEWER, x=0.6)))
-    assert CHECKS["cancels_older"](_replaced(), LIMITS) is None
-    assert CHECKS["cancels_older"](mirrored, LIMITS) is None
+    assert CHECKS["cancels_older"](_replaced(), LIMITS) is PASSED
+    assert CHECKS["cancels_older"](mirrored, LIMITS) is PASSED
 
 
 def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:

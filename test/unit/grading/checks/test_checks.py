@@ -8,7 +8,7 @@ import pytest
 from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
 
 from robocop_grading import record as rec
-from robocop_grading.checks import CHECKS, Failed, NotReached
+from robocop_grading.checks import CHECKS, PASSED, Failed, NotReached
 from robocop_grading.record import Record
 
 
@@ -29,7 +29,7 @@ from robocop_grading.record import Record
     ],
 )
 def test_correct_run_passes(name: str) -> None:
-    assert CHECKS[name](RIGHT, LIMITS) is None
+    assert CHECKS[name](RIGHT, LIMITS) is PASSED
 
 
 _BEFORE = RIGHT.feedback[:1] + RIGHT.feedback[:-1]
@@ -194,8 +194,8 @@ def test_check_that_was_not_reached_states_the_reason() -> None:
 )
 def test_harmless_line_fails_no_check(line: str) -> None:
     record = changed(lines=(rec.Line(3.0, line),))
-    assert CHECKS["one_ending"](record, LIMITS) is None
-    assert CHECKS["no_exception"](record, LIMITS) is None
+    assert CHECKS["one_ending"](record, LIMITS) is PASSED
+    assert CHECKS["no_exception"](record, LIMITS) is PASSED
 
 
 @pytest.mark.parametrize(
@@ -207,8 +207,8 @@ def test_message_of_actionlib_at_its_level_names_the_mistake(line: str, words: s
 
 
 def test_old_feedback_is_one_mistake_and_a_wrong_one_does_not_say_when_the_goal_is_reached() -> None:
-    assert CHECKS["feedback_angle"](OLD, LIMITS) is None
-    assert CHECKS["reaches_goal"](fed_back(position=lambda d: d - 0.1), LIMITS) is None
+    assert CHECKS["feedback_angle"](OLD, LIMITS) is PASSED
+    assert CHECKS["reaches_goal"](fed_back(position=lambda d: d - 0.1), LIMITS) is PASSED
 
 
 @pytest.mark.parametrize("turning, words", [(True, "when the robot has turned"), (False, "drives on until then")])
@@ -249,7 +249,7 @@ def _aborted(**changes: Any) -> Record:
 def test_exception_after_a_goal_is_not_charged_to_it(time: float, words: str) -> None:
     lines = rec.Line(time, "Traceback (most recent call last):"), rec.Line(time, "KeyError: 'x'")
     verdict = CHECKS["stops_at_obstacle"](_aborted(lines=lines), LIMITS)
-    assert verdict is None if not words else isinstance(verdict, Failed) and words in verdict.cause
+    assert verdict is PASSED if not words else isinstance(verdict, Failed) and words in verdict.cause
 
 
 def test_contact_after_an_abort_in_time_is_of_a_robot_that_was_not_stopped() -> None:
