@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Run another package with this simulator."""
 
-import signal
+from aro_robocop_goto_as.process.start import imports
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
-signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])  # ./robocop blocks it while Python starts
-
-from robocop_grading.sim_with import main  # noqa: E402
+with imports():
+    from robocop_grading.sim_with import main
 
 if __name__ == "__main__":
     main()

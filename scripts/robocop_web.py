@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """The web page that shows the system in a browser."""
 
-import signal
+from aro_robocop_goto_as.process.start import imports
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback if Ctrl-C interrupts the imports; main() handles it
-
-from aro_robocop_goto_as.ros.web.node import main  # noqa: E402
+with imports():
+    from aro_robocop_goto_as.ros.web.node import main
 
 if __name__ == "__main__":
     main()

@@ -55,9 +55,9 @@ Only `ros` imports rospy. Each component of the simulator declares its parameter
 composes the groups. Limits and timeouts are parameters first, so look for them there and in `config/` before the
 code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
 name, C computes, and Python has its figures and calls it. `compiled` loads the libraries that CMake builds from these.
-`reading` is what all readers of user-written files share, `process` is about operating system processes, `bootstrap`
-runs before anything is installed. The package `robocop_grading` beside this one builds, runs and judges other people's
-packages.
+`reading` is what all readers of user-written files share, `process` is about operating system processes, `probes` looks
+at the machine, also before anything is installed. The package `robocop_grading` beside this one builds, runs and judges
+other people's packages.
 """
 
 from pkgutil import extend_path

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError
-from aro_robocop_goto_as.process import x_display
+from aro_robocop_goto_as.probes import x_display
 from aro_robocop_goto_as.web import access
 from aro_robocop_goto_as.web_params import WebParams
 

@@ -26,7 +26,7 @@ EXCEPTIONS = {
     "bench": "takes minutes: test_bench_smoke.py",
     "clean": "removes the set-up that the tests use: test_robocop_command.py",
     "docs": "test_docs_site.py",
-    "doctor": "its exit status reports what this machine lacks: bootstrap/test_doctor.py",
+    "doctor": "its exit status reports what this machine lacks: cli/test_doctor.py",
     "grade my_lab --watch": "needs a display or a browser: test/gui",
     "grade-class hand_ins --scheduler": "needs a scheduler: test/solutions/test_class.py",
     "grade-worker": "needs a scheduler: test/solutions/test_class.py",

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.observations import Observations
-from aro_robocop_goto_as.simulation.simulation import Simulation
+from aro_robocop_goto_as.simulation.running import Simulation
 
 
 class FakeClock(Clock):

@@ -41,7 +41,7 @@ ORDER = {
     "bridge_params": "param_loading",
     "web_params": "param_loading",
     "process": "errors",
-    "bootstrap": "errors process names",
+    "probes": "errors names",
     "world": "errors geometry reading suggestions",
     "robot": "compiled errors geometry param_loading reading suggestions world",
     "raycast": "compiled errors geometry robot world",
@@ -57,11 +57,11 @@ ORDER = {
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading sim_params process robot names sensors simulation world",
-    "ros.sim": "bootstrap errors geometry sim_params process raycast robot ros names sensors simulation world",
+    "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation trail",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
-    "ros.web": "bootstrap errors geometry param_loading ros ros.client names trail web web_params",
-    "ros.cli": "bootstrap errors geometry param_loading sim_params process reading robot ros ros.client names "
+    "ros.web": "errors geometry param_loading probes ros ros.client names trail web web_params",
+    "ros.cli": "errors geometry param_loading sim_params probes process reading robot ros ros.client names "
     "suggestions web web_params world",
     f"{GRADER}.agent": "",
     f"{GRADER}.files": "errors process",

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import resource
 import signal
 import sys
 import threading
@@ -11,7 +12,6 @@ import rospy
 
 from ..errors import RobocopError
 from ..param_loading import from_dict
-from ..process.rlimits import raise_descriptor_limit
 from ..process.signals import ending_signals
 
 HELP = """\
@@ -19,6 +19,7 @@ HELP = """\
 usage: rosrun aro_robocop_goto_as {1} {2}
 Names and meanings: docs/interfaces.md. ./robocop run and roslaunch start it with everything else."""
 ROSOUT_TOPICS = "/rosout_disable_topics_generation"
+MAX_DESCRIPTORS = 65_536  # files; in containers the system may grant a billion, over which some libraries loop
 T = TypeVar("T")
 
 
@@ -60,6 +61,18 @@ def node(name: str, **options: Any) -> Iterator[None]:
 def load_params(cls: Type[T]) -> T:
     """All private parameters as `cls`; ParameterError names the node and each key that is wrong."""
     return from_dict(cls, rospy.get_param("~", {}), f"parameters of {rospy.get_name()}")
+
+
+def raise_descriptor_limit() -> None:
+    """Allow this process as many file descriptors as the system grants, up to MAX_DESCRIPTORS.
+
+    Each subscriber of each topic takes two. The usual limit of 1024 is there for programs that call select(), and too
+    low for a recorder, RViz and controllers of 50 robots; rospy accepts no more subscribers once it was reached.
+    """
+    now, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    granted = MAX_DESCRIPTORS if most == resource.RLIM_INFINITY else min(most, MAX_DESCRIPTORS)
+    if now < granted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (granted, most))
 
 
 def _shut_down(number: int, _: object) -> None:

@@ -20,8 +20,8 @@ from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
 from aro_robocop_goto_as.simulation.rates import CLOCK, JOINTS, ODOM, SCAN, TF
+from aro_robocop_goto_as.simulation.running import Simulation
 from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
-from aro_robocop_goto_as.simulation.simulation import Simulation
 
 from .. import record as rec
 from ..handout import AHEAD

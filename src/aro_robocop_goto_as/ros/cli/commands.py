@@ -10,12 +10,11 @@ import sys
 import time
 from typing import Callable, Dict, List, NoReturn, Sequence, Tuple
 
-from ...bootstrap import doctor, master
 from ...errors import MasterError
 from ...names import ACTION, ACTION_TYPE, PACKAGE, absolute
-from ...process import x_display
+from ...probes import master, x_display
 from ...suggestions import did_you_mean
-from . import completion, container_image, program
+from . import completion, container_image, doctor, program
 from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments
 from .program import ROOT, refuse, say
 

@@ -15,9 +15,9 @@ from typing import Any, Callable, Iterator, List
 import rosgraph
 import rospkg
 
-from ...bootstrap import master
 from ...errors import MasterError, RobocopError
 from ...names import COMMAND_VARIABLE, PACKAGE
+from ...probes import master
 from ...process import child, orphans, signals
 from ...process.ports import free_port
 from ..share import share

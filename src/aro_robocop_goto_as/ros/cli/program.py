@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import List, NoReturn
 from xml.etree import ElementTree
 
-from ...bootstrap import doctor
 from ...names import PACKAGE
 from ...process import signals
+from . import doctor
 
 ROOT = Path(__file__).resolve().parents[4]
 SCRIPT = str(ROOT / "robocop")

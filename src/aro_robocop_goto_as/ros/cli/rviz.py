@@ -20,7 +20,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from ...geometry import rotation_matrix
 from ...names import RVIZ_LOG, prefixed
-from ...process import x_display
+from ...probes import x_display
 from .rviz_config import SHARE, Observed, adapted
 
 STDERR = 2  # file descriptor

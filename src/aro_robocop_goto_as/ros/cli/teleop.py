@@ -14,10 +14,10 @@ from typing import Iterator, List
 import rospy
 from geometry_msgs.msg import Twist, Vector3
 
-from ...bootstrap import master
 from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
 from ...names import absolute
+from ...probes import master
 from ...process import signals
 from ..publishing.publisher import publisher
 from ..waiting import wait_until

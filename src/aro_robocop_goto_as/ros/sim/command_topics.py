@@ -13,7 +13,7 @@ from ...geometry import Twist2D
 from ...names import prefixed
 from ...robot.base_controller import require_finite
 from ...simulation.lockstep import ControllerId
-from ...simulation.simulation import Simulation
+from ...simulation.running import Simulation
 from .. import convert
 from ..connected_nodes import publishers_of, sender
 

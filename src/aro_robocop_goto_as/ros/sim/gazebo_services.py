@@ -15,7 +15,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import WorldError
 from ...geometry import STANDSTILL, Pose3D, compose3
-from ...simulation.simulation import Simulation
+from ...simulation.running import Simulation
 from ...world.edit import with_model_at
 from .. import convert
 from .gazebo_topics import State, models, raised, relative, robot_names, state_of

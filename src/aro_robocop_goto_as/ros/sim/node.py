@@ -9,11 +9,11 @@ from typing import AbstractSet, Any, Callable
 import rosgraph
 import rospy
 
-from ...bootstrap import master
 from ...errors import MasterError, ParameterError
 from ...names import SIMULATOR
+from ...probes import master
 from ...sim_params import SimParams, TopicParams
-from ...simulation.simulation import Change, Simulation
+from ...simulation.running import Change, Simulation
 from ...simulation.simulator import Simulator
 from ..node_main import answer_help, load_params, node
 from ..publishing.publisher import resume

@@ -14,8 +14,8 @@ from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, Spaw
 from ...errors import FrameError, PlaceError, WorldError
 from ...geometry import Pose2D, Pose3D, compose
 from ...names import prefixed
+from ...simulation.running import Simulation
 from ...simulation.schedule import stamp_ns
-from ...simulation.simulation import Simulation
 from ...world.edit import requested_model, with_model, with_model_at, without_model
 from ...world.model import World
 from .. import convert

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...names import SIMULATOR
 from ...simulation.lockstep import Connected, ControllerId, TickReport
-from ...simulation.simulation import Simulation
+from ...simulation.running import Simulation
 from ...simulation.time_control import FactorReport
 from .. import convert
 from ..publishing.publisher import publisher

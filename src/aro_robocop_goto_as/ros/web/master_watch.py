@@ -5,8 +5,8 @@ from typing import Any, Callable, Dict, List, Tuple
 
 import rospy
 
-from ...bootstrap import master
 from ...errors import MasterError
+from ...probes import master
 from ...web.state import SharedState
 from .daemon import start_daemon
 

@@ -133,7 +133,7 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
 def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
     program = (
         "import resource\n"
-        "from aro_robocop_goto_as.process.rlimits import raise_descriptor_limit\n"
+        "from aro_robocop_goto_as.ros.node_main import raise_descriptor_limit\n"
         "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
         "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
         "raise_descriptor_limit()\n"

@@ -9,9 +9,8 @@ import subprocess
 from pathlib import Path
 from typing import Dict, List, Tuple
 
-from ..errors import MasterError
-from ..process import x_display
-from . import master
+from ...errors import MasterError
+from ...probes import master, x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")

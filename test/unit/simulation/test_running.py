@@ -7,7 +7,7 @@ from support import ORIGIN, world_named
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
-from aro_robocop_goto_as.simulation.simulation import Change
+from aro_robocop_goto_as.simulation.running import Change
 
 NODE = ControllerId(0, "/controller")
 AHEAD = Twist2D(0.1, 0.0)

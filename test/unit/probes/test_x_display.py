@@ -3,7 +3,7 @@
 import pytest
 from command import x_server
 
-from aro_robocop_goto_as.process import x_display
+from aro_robocop_goto_as.probes import x_display
 
 
 def test_size_of_the_screen_of_a_server_that_answers(monkeypatch):

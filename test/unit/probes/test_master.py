@@ -7,8 +7,8 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
 
-from aro_robocop_goto_as.bootstrap import master
 from aro_robocop_goto_as.errors import MasterError
+from aro_robocop_goto_as.probes import master
 
 SHORT, LONG = 0.3, 60.0  # [s, wall] timeouts of a request that is never answered, and of any other one
 

@@ -1,6 +1,6 @@
-"""A simulation: what its owner steps and runs in a loop of its own.
+"""A simulator while it runs: with its time, its controllers and what other threads ask for.
 
-The owner is the ROS node, the grader, or a test. Its loop, of which every part returns values:
+Its owner, the ROS node, the grader or a test, has the loop, of which every part returns values:
 
     jobs.run_next(time.hold(...))       what other threads ask for, while the wall clock is waited for
     simulator.advance(subscriptions)    -> observations, which the owner publishes

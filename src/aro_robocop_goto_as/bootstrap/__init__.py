@@ -1,1 +1,0 @@
-"""What runs before anything is installed, with Python's standard library only."""
