@@ -19,10 +19,11 @@ from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.ros.covariances import imu_covariances
 from aro_robocop_goto_as.ros.publishing.batch import Batch
-from aro_robocop_goto_as.ros.publishing.packed import (
-    counter,
+from aro_robocop_goto_as.ros.publishing.packed import counter
+from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
+from aro_robocop_goto_as.ros.sim.sensor_messages import (
+    NO_VARIANCES,
     packed_clock,
     packed_imu,
     packed_joint_state,
@@ -30,7 +31,6 @@ from aro_robocop_goto_as.ros.publishing.packed import (
     packed_scan,
     packed_transforms,
 )
-from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.lidar import Lidar
 from aro_robocop_goto_as.sensors.noise_streams import Episode
@@ -120,12 +120,11 @@ def messages(random: np.random.Generator) -> None:
     near, far = socket.socketpair()
     topic: Any = SimpleNamespace(links=(SubscriberLink(SimpleNamespace(), near),), impl=None)
     rows = random.choice(PLACES, (4, 10))
-    covariances = imu_covariances(ImuParams(), real=True)
     made = [
         packed_scan(PROFILES["lds02"].spec.with_samples(10), "scan", rows[0], counter()),
-        packed_odometry("odom", "base", [0.0] * 36, rows[1, :3], rows[1, 3:5]),
+        packed_odometry("odom", "base", NO_VARIANCES, rows[1, :3], rows[1, 3:5]),
         packed_joint_state(rows[2, :2], rows[2, 2:4]),
-        packed_imu("imu", covariances, rows[3]),
+        packed_imu("imu", ImuParams(), True, rows[3]),
         packed_transforms([("a", "b", rows[1, :3]), ("b", "c", rows[2, :3])]),
     ]
     batch = Batch([(topic, message) for message in made], [(topic, packed_clock())])

@@ -1,22 +1,17 @@
 """Converts between the core's values and ROS messages."""
 
 import math
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
-import numpy as np
 from genpy import Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Twist, Vector3
-from nav_msgs.msg import Odometry as OdometryMsg
-from sensor_msgs.msg import Imu, JointState, LaserScan
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from ..errors import FrameError
 from ..geometry import MAX_COORDINATE, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
-from ..sensors.imu import FORCE, ORIENTATION, RATES
-from ..sensors.scan_profiles import LidarSpec
 from ..simulation.schedule import NANOSECONDS
-from .covariances import ImuCovariances
 
 # Of a quaternion's length. A quarter turn typed as z 0.7 w 0.7 has a length of 0.99; what is farther from 1 is an error
 # of its sender, and normalising it would hide that. tf2 refuses transforms from 0.005 on.
@@ -97,49 +92,12 @@ def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time
     return TransformStamped(Header(0, stamp, parent), child, Transform(translation, rotation))
 
 
-def to_odometry(
-    pose: Pose2D, twist: Twist2D, stamp: Time, frame: str, child: str, covariance: List[float]
-) -> OdometryMsg:
-    """Pose of `child` in `frame` with the twist in `child`; one covariance (36,) serves both."""
-    message = OdometryMsg(Header(0, stamp, frame), child, None, None)
-    message.pose.pose.position = Point(pose.x, pose.y, 0.0)
-    message.pose.pose.orientation = to_quaternion(pose.yaw)
-    message.pose.covariance = covariance
-    message.twist.twist = to_twist_msg(twist)
-    message.twist.covariance = covariance
-    return message
-
-
-def to_scan(ranges: np.ndarray, spec: LidarSpec, stamp: Time, frame: str) -> LaserScan:
-    """Ranges as a LaserScan; all beams of one scan are taken at once, as Gazebo does (both time fields zero)."""
-    return LaserScan(
-        header=Header(0, stamp, frame),
-        angle_min=spec.angle_min,
-        angle_max=spec.angle_max,
-        angle_increment=spec.increment,
-        time_increment=0.0,
-        scan_time=0.0,
-        range_min=spec.range_min,
-        range_max=spec.range_max,
-        ranges=ranges.tolist(),
-        intensities=[],
-    )
-
-
 def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
     """Wheel angles [rad] and speeds [rad/s], left then right."""
     return JointState(Header(0, stamp, ""), list(WHEEL_JOINTS), angles, velocities, [])
 
 
-def to_imu(sample: np.ndarray, stamp: Time, frame: str, covariances: ImuCovariances) -> Imu:
-    """A sample (10,) of sensors.imu with covariances of `imu_covariances`."""
-    orientation, rates, accelerations = covariances
-    return Imu(
-        Header(0, stamp, frame),
-        Quaternion(*sample[ORIENTATION].tolist()),
-        orientation,
-        Vector3(*sample[RATES].tolist()),
-        rates,
-        Vector3(*sample[FORCE].tolist()),
-        accelerations,
-    )
+def diagonal(variances: Sequence[float]) -> List[float]:
+    """A row-major diagonal covariance, 6 x 6 or 3 x 3, with these variances."""
+    size = len(variances)
+    return [variances[row] if row == column else 0.0 for row in range(size) for column in range(size)]

@@ -15,7 +15,13 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
-from aro_robocop_goto_as.ros.publishing.packed import packed_clock, packed_odometry, packed_scan, packed_transforms
+from aro_robocop_goto_as.ros.sim.sensor_messages import (
+    NO_VARIANCES,
+    packed_clock,
+    packed_odometry,
+    packed_scan,
+    packed_transforms,
+)
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
@@ -27,7 +33,6 @@ from ..plan import FARTHEST
 from . import ros_internals
 
 MOST_BAG = 32 * 1024**2  # bytes
-NO_COVARIANCE = [0.0] * 36
 
 
 class _NoIndex(Dict[int, Any]):
@@ -63,8 +68,8 @@ class ScenarioBag:
         seen, footprint = sim.observed, robot.footprint_frame
         odometry, truth = (seen.odometry.poses[0], seen.odometry.twists[0]), (seen.fleet.poses[0], seen.fleet.twists[0])
         scan = packed_scan(sim.lidar.spec, frames.scan_frame, seen.scans[0], None)
-        odom = packed_odometry(robot.odom_frame, footprint, NO_COVARIANCE, *odometry)
-        ground_truth_odom = packed_odometry(frames.world_frame, footprint, NO_COVARIANCE, *truth)
+        odom = packed_odometry(robot.odom_frame, footprint, NO_VARIANCES, *odometry)
+        ground_truth_odom = packed_odometry(frames.world_frame, footprint, NO_VARIANCES, *truth)
         self._of_steps = [  # what is written of a step on which one of these is due
             (SCAN, "/scan", LaserScan, scan),
             (TF, "/tf", TFMessage, packed_transforms(robot.transforms())),

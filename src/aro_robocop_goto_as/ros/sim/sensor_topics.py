@@ -15,9 +15,17 @@ from ...robot.model import CAMERA_FRAME
 from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..covariances import TRUTH_VARIANCES, diagonal, imu_covariances, odom_covariance
-from ..publishing.packed import PackedMessage, counter, packed_imu, packed_joint_state, packed_odometry, packed_scan
+from ..publishing.packed import PackedMessage, counter
 from ..publishing.publisher import publisher
+from .sensor_messages import (
+    NO_VARIANCES,
+    ODOM_VARIANCES,
+    TRUTH_VARIANCES,
+    packed_imu,
+    packed_joint_state,
+    packed_odometry,
+    packed_scan,
+)
 
 
 class SensorTopics:
@@ -50,14 +58,14 @@ class SensorTopics:
 
             frame = prefixed(name, CAMERA_FRAME)
             self.topics[CAMERA] = CameraTopics(prefixed(name, ""), camera, frame, on_change)
-        covariance, exact = odom_covariance(real), diagonal(TRUTH_VARIANCES)
+        variances = NO_VARIANCES if real else ODOM_VARIANCES
         poses, twists, footprint = odometry.poses[index], odometry.twists[index], self.footprint_frame
         self._packed = {
-            ODOM: packed_odometry(self.odom_frame, footprint, covariance, poses, twists),
+            ODOM: packed_odometry(self.odom_frame, footprint, variances, poses, twists),
             JOINTS: packed_joint_state(observed.joint_angles[index], truth.wheel_speeds[index]),
-            IMU: packed_imu(self._imu_frame, imu_covariances(p.imu, real), observed.imus[index]),
+            IMU: packed_imu(self._imu_frame, p.imu, real, observed.imus[index]),
             GROUND_TRUTH: packed_odometry(
-                p.frames.world_frame, footprint, exact, truth.poses[index], truth.twists[index]
+                p.frames.world_frame, footprint, TRUTH_VARIANCES, truth.poses[index], truth.twists[index]
             ),
         }
 

@@ -17,9 +17,9 @@ from ...simulation.rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, IMU, JOINTS
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.batch import Batch, Posted
-from ..publishing.packed import packed_clock, packed_transforms
 from ..publishing.publisher import publisher
 from ..publishing.rospy_internals import set_latched
+from .sensor_messages import packed_clock, packed_transforms
 from .sensor_topics import SensorTopics
 
 # Of a step's messages. The first two are published by rospy, the others together; /clock follows them.

@@ -20,7 +20,6 @@ from ...web.state import PageState
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
-from ..covariances import diagonal
 from .marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
 from .requests import Requests
@@ -119,7 +118,7 @@ class Goals(Part):
             estimate = PoseWithCovarianceStamped(header=pose.header)
             estimate.pose.pose = pose.pose
             variances = (POSITION_VARIANCE, POSITION_VARIANCE, 0.0, 0.0, 0.0, YAW_VARIANCE)
-            estimate.pose.covariance = diagonal(variances)
+            estimate.pose.covariance = convert.diagonal(variances)
             requests.publish(f"pose {where}", "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:

@@ -7,17 +7,20 @@ from typing import Any
 
 import numpy as np
 from genpy import Message, Time
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from hypothesis import given
 from hypothesis import strategies as st
+from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Imu, LaserScan
+from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.ros import convert
-from aro_robocop_goto_as.ros.covariances import imu_covariances
-from aro_robocop_goto_as.ros.publishing import packed
 from aro_robocop_goto_as.ros.publishing.batch import Batch
+from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
+from aro_robocop_goto_as.ros.sim import sensor_messages as packed
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 
@@ -32,7 +35,7 @@ NAME = st.sampled_from(["odom", "robot_1/base_footprint", "ö"])
 TOPIC: Any = SimpleNamespace(links=(), impl=None)
 
 
-def filled(message: packed.PackedMessage, stamp: "tuple[int, int]") -> bytes:
+def filled(message: PackedMessage, stamp: "tuple[int, int]") -> bytes:
     """The bytes of a message that a batch has filled at a time [s, ns]."""
     Batch([(TOPIC, message)]).send(stamp[0] * 10**9 + stamp[1])
     return message.data.tobytes()
@@ -63,18 +66,23 @@ def test_latched_message_is_the_one_that_was_sent_last() -> None:
 def test_scan(profile: str, frame: str, stamp: "tuple[int, int]", beams: int, random: "object") -> None:
     spec = PROFILES[profile].spec.with_samples(beams)
     ranges = np.zeros(beams)
-    message = packed.packed_scan(spec, frame, ranges, packed.counter())
+    message = packed.packed_scan(spec, frame, ranges, counter())
     ranges[:] = [random.choice([0.0, np.inf, -np.inf, random.uniform(0.1, 30.0)]) for _ in range(beams)]  # type: ignore[attr-defined]
-    assert filled(message, stamp) == sent(convert.to_scan(ranges, spec, Time(*stamp), frame))
+    figures = (spec.angle_min, spec.angle_max, spec.increment, 0.0, 0.0, spec.range_min, spec.range_max)
+    assert filled(message, stamp) == sent(LaserScan(Header(0, Time(*stamp), frame), *figures, ranges.tolist(), []))
 
 
 @given(NAME, NAME, st.lists(st.tuples(POSE, TWIST, STAMP), min_size=1, max_size=3))
 def test_odometry_counts_its_messages(frame: str, child: str, updates: "list[tuple[Pose2D, Twist2D, object]]") -> None:
-    covariance, row, twist_row = [float(i) for i in range(36)], np.zeros(3), np.zeros(2)
-    message = packed.packed_odometry(frame, child, covariance, row, twist_row)
+    variances, row, twist_row = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), np.zeros(3), np.zeros(2)
+    message = packed.packed_odometry(frame, child, variances, row, twist_row)
     for seq, (pose, twist, stamp) in enumerate(updates, 1):
         row[:], twist_row[:] = pose, twist
-        ordinary = convert.to_odometry(pose, twist, Time(*stamp), frame, child, covariance)  # type: ignore[misc]
+        ordinary = Odometry(header=Header(0, Time(*stamp), frame), child_frame_id=child)  # type: ignore[misc]
+        ordinary.pose.pose.position = Point(pose.x, pose.y, 0.0)
+        ordinary.pose.pose.orientation = convert.to_quaternion(pose.yaw)
+        ordinary.twist.twist = convert.to_twist_msg(twist)
+        ordinary.pose.covariance = ordinary.twist.covariance = np.diag(variances).ravel().tolist()
         assert filled(message, stamp) == sent(ordinary, seq)  # type: ignore[arg-type]
 
 
@@ -86,9 +94,12 @@ def test_joint_states(angles: "tuple[float, float]", speeds: "tuple[float, float
 
 @given(NAME, st.lists(NUMBER, min_size=10, max_size=10).map(np.array), STAMP)
 def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]") -> None:
-    covariances = imu_covariances(ImuParams(0.1, 0.2), real=False)
-    expected = sent(convert.to_imu(sample, Time(*stamp), frame, covariances))
-    assert filled(packed.packed_imu(frame, covariances, sample), stamp) == expected
+    orientation, rates, force = (np.diag([variance] * 3).ravel().tolist() for variance in (1e-6, 0.1**2, 0.2**2))
+    expected = Imu(
+        *(Header(0, Time(*stamp), frame), Quaternion(*sample[:4]), orientation),
+        *(Vector3(*sample[4:7]), rates, Vector3(*sample[7:]), force),
+    )
+    assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), False, sample), stamp) == sent(expected)
 
 
 @given(st.lists(st.tuples(NAME, NAME, POSE), min_size=1, max_size=4), STAMP)

@@ -1,0 +1,104 @@
+"""The packed message of each sensor: what is constant in it, and where the numbers of each step go."""
+
+from typing import List, Optional, Sequence, Tuple
+
+import genpy
+import numpy as np
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Imu, LaserScan
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+
+from ...geometry import Pose2D
+from ...sensors.imu import FORCE, ORIENTATION, RATES, ImuParams
+from ...sensors.scan_profiles import LidarSpec
+from .. import convert
+from ..publishing.packed import DOUBLES, FLOATS, HEADER, POSE, STAMP, TWIST, Field, PackedMessage, counter, string_size
+
+# Bytes. A message begins with its length, then come seq, stamp.secs and stamp.nsecs, then frame_id.
+LENGTH, HEADER_SIZE = 4, 3 * 4
+POSE_SIZE, COVARIANCE, COVARIANCE_3 = 7 * 8, 36 * 8, 9 * 8
+SCAN_FIGURES = 7 * 4  # angle_min to range_max
+
+# Variances of x, y, z, roll, pitch, yaw. A huge variance marks what a differential drive cannot measure. The figures
+# are those of Gazebo's differential drive plugin, which existing lab code was written against.
+ODOM_VARIANCES = (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+TRUTH_VARIANCES = (1e-12,) * 6
+NO_VARIANCES = (0.0,) * 6  # as a real TurtleBot3 sends them
+ORIENTATION_VARIANCE = 1e-6  # the simulated IMU's orientation is exact except for rounding
+REAL_IMU_VARIANCES = (0.0025, 0.02, 0.04)  # orientation, rates, accelerations of a TurtleBot3's firmware
+
+Row = np.ndarray  # of an array of the simulation, which changes in place
+
+
+def packed_clock() -> PackedMessage:
+    """A message on /clock."""
+    return PackedMessage(Clock(), [Field(STAMP, LENGTH, None)])
+
+
+def packed_scan(spec: LidarSpec, frame: str, ranges: Row, number: Optional[np.ndarray]) -> PackedMessage:
+    """The ranges (n_beams,) [m] of one scanner; `number`: a counter, None: all have number 0.
+
+    All beams of one scan are taken at once, as Gazebo does: time_increment and scan_time are zero.
+    """
+    template = LaserScan(
+        header=Header(frame_id=frame),
+        angle_min=spec.angle_min,
+        angle_max=spec.angle_max,
+        angle_increment=spec.increment,
+        range_min=spec.range_min,
+        range_max=spec.range_max,
+        ranges=ranges.tolist(),
+    )
+    start = LENGTH + HEADER_SIZE + string_size(frame) + SCAN_FIGURES + LENGTH
+    return PackedMessage(template, [Field(HEADER, LENGTH, number), Field(FLOATS, start, ranges)])
+
+
+def packed_odometry(frame: str, child: str, variances: Tuple[float, ...], pose: Row, twist: Row) -> PackedMessage:
+    """Pose (3,) of `child` in `frame` with the twist (2,) in `child`; these variances (6,) are those of both."""
+    template = Odometry(header=Header(frame_id=frame), child_frame_id=child)
+    template.pose.covariance = template.twist.covariance = convert.diagonal(variances)
+    start = LENGTH + HEADER_SIZE + string_size(frame) + string_size(child)
+    fields = [Field(POSE, start, pose), Field(TWIST, start + POSE_SIZE + COVARIANCE, twist)]
+    return PackedMessage(template, [Field(HEADER, LENGTH, counter()), *fields])
+
+
+def packed_joint_state(angles: Row, speeds: Row) -> PackedMessage:
+    """Wheel angles (2,) [rad] and speeds (2,) [rad/s], left and right."""
+    template = convert.to_joint_state((0.0, 0.0), (0.0, 0.0), genpy.Time())
+    start = LENGTH + HEADER_SIZE + string_size("") + LENGTH + sum(map(string_size, template.name)) + LENGTH
+    fields = [Field(DOUBLES, start, angles), Field(DOUBLES, start + 2 * 8 + LENGTH, speeds)]
+    return PackedMessage(template, [Field(HEADER, LENGTH, counter()), *fields])
+
+
+def packed_imu(frame: str, noise: ImuParams, real: bool, sample: Row) -> PackedMessage:
+    """A sample (10,) of sensors.imu; with the variances of its noise, or those that a real TurtleBot3 reports."""
+    variances = (ORIENTATION_VARIANCE, noise.gyro_noise**2, noise.accelerometer_noise**2)
+    orientation, rates, force = (convert.diagonal((it,) * 3) for it in (REAL_IMU_VARIANCES if real else variances))
+    template = Imu(
+        header=Header(frame_id=frame),
+        orientation_covariance=orientation,
+        angular_velocity_covariance=rates,
+        linear_acceleration_covariance=force,
+    )
+    start = LENGTH + HEADER_SIZE + string_size(frame)
+    fields = [Field(HEADER, LENGTH, counter())]
+    for part in (ORIENTATION, RATES, FORCE):
+        fields.append(Field(DOUBLES, start, sample[part]))
+        start += sample[part].nbytes + COVARIANCE_3
+    return PackedMessage(template, fields)
+
+
+def packed_transforms(transforms: Sequence[Tuple[str, str, Row]]) -> PackedMessage:
+    """One /tf message with transforms: parent, child, and parent_from_child (3,)."""
+    template: List[TransformStamped] = []
+    fields, start = [], 2 * LENGTH
+    for parent, child, pose in transforms:
+        template.append(convert.to_transform(parent, child, Pose2D(), genpy.Time()))
+        fields.append(Field(HEADER, start, None))
+        start += HEADER_SIZE + string_size(parent) + string_size(child)
+        fields.append(Field(POSE, start, pose))
+        start += POSE_SIZE
+    return PackedMessage(TFMessage(template), fields)
