@@ -7,12 +7,12 @@ from typing import Any, List, Mapping
 from .param_loading import from_dict, parameter, positive
 
 MAX_LINEAR = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
-MAX_ANGULAR = 100.0  # [rad/s], [rad/s^2] likewise
+MAX_ANGULAR = 100.0  # [rad/s], [rad/s^2] the same for turning
 MAX_GAIN = 100.0  # [1/s] with which all but the last millimetres are covered at maximum velocity
 MIN_TOLERANCE = 1e-3  # [m], [rad] what odometry resolves
 MIN_GAIN = 0.01  # [1/s] slower than anybody waits
-MIN_SPEED = 1e-3  # [m/s], [rad/s] likewise
-MIN_ACCELERATION = 0.01  # [m/s^2], [rad/s^2] likewise
+MIN_SPEED = 1e-3  # [m/s], [rad/s] slower than anybody waits
+MIN_ACCELERATION = 0.01  # [m/s^2], [rad/s^2] slower than anybody waits
 MAX_OBSTACLE_DISTANCE = 1e3  # [m] beyond every scanner's range
 
 

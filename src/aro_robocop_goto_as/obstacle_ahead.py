@@ -34,7 +34,7 @@ def clearance_ahead(
     if not ahead.any():
         return None
     distances = distances[ahead]
-    if np.isnan(distances).all() or not range_min < range_max:  # true where a limit is NaN, too
+    if np.isnan(distances).all() or not range_min < range_max:  # also true where a limit is NaN
         return math.nan
     if np.isneginf(distances).any():
         return 0.0

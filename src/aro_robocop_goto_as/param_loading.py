@@ -42,7 +42,7 @@ def positive(default: Any = MISSING, high: float = 1e6, otherwise: str = "") -> 
 
 
 def group(cls: Type[T]) -> T:
-    """A dataclass field that holds a group of parameters: another such dataclass, whose keys are not prefixed."""
+    """A dataclass field that holds a group of parameters, another frozen dataclass; its keys have no prefix."""
     return field(default=cls(), metadata={"group": cls})
 
 

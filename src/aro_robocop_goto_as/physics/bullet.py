@@ -30,7 +30,7 @@ class _Body:
         self.wheels = wheels
         self.forces = [torque, torque]
         self.targets: List[float] = [0.0, 0.0]  # of the wheel motors [rad/s]
-        self.base_from_inertial = base_from_inertial  # Bullet's pose of a body is that of its centre of mass
+        self.base_from_inertial = base_from_inertial  # Bullet gives the pose of a body's centre of mass
         self.resting_steps = 0
         self.parked = False
 
@@ -220,7 +220,7 @@ class BulletEngine:
     def move_obstacles(self, time: float) -> None:
         """Put the moving obstacles where they are at `time` [s]; contacts push robots out of their way.
 
-        Nearby robots are kept awake: Bullet wakes no body for another one whose pose is set.
+        It also keeps nearby robots awake: in Bullet, setting the pose of one body does not wake another.
         """
         for body, obstacle in self._moving:
             pose = obstacle.at(time)

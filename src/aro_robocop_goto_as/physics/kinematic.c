@@ -237,8 +237,8 @@ static void move(struct kinematic *kin, double dt)
     }
 }
 
-/* Base controllers and motion, for `steps` steps from step number `first` on, of which there are `rate` a second: one
- * robot after the other in each step. */
+/* Advance base controllers and motion by `steps` steps, from step number `first` on, at `rate` [Hz].
+ * Each step takes one robot after the other. */
 void aro_kinematic_advance(struct kinematic *kin, int64_t rate, int64_t first, int64_t steps)
 {
     double dt = 1.0 / (double)rate;

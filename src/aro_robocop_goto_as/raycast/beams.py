@@ -67,7 +67,7 @@ class Scene:
             address("plane_of", self._plane_of, (count,), np.int64),
             self._plane_structs,
         )
-        self._as_parameter_ = ctypes.pointer(struct)  # ctypes' name: a call in which the scene is an argument keeps it
+        self._as_parameter_ = ctypes.pointer(struct)  # ctypes passes this, and a call keeps the scene alive
 
     def __len__(self) -> int:
         return len(self._plane_of)

@@ -13,8 +13,8 @@ from ..geometry import MAX_COORDINATE, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
 from ..simulation.schedule import NANOSECONDS
 
-# Of a quaternion's length. A quarter turn typed as z 0.7 w 0.7 has a length of 0.99; what is farther from 1 is an error
-# of its sender, and normalising it would hide that. tf2 refuses transforms from 0.005 on.
+# How far a quaternion's length may be from 1. A quarter turn typed as z 0.7 w 0.7 has length 0.99. A larger difference
+# is an error of the sender, which normalising would hide. tf2 refuses transforms from 0.005 on.
 QUATERNION_TOLERANCE = 0.02
 
 

@@ -15,7 +15,7 @@ TEXT_SIZE, TEXT_HEIGHT = 0.14, 0.9  # [m] of a capital letter; above the floor, 
 ROBOT_COLOR = ColorRGBA(0.35, 0.78, 0.98, 1.0)
 GOAL_COLOR = ColorRGBA(0.9, 0.2, 0.7, 0.9)
 REACHED, NOT_REACHED = ColorRGBA(0.2, 0.7, 0.3, 0.9), ColorRGBA(0.6, 0.6, 0.6, 0.9)
-# Of the sector ahead of a robot in which the server looks for obstacles, by how near the nearest is:
+# Colours of the sector in which the server looks for obstacles, by the distance of the nearest one:
 FREE, NEAR, BLOCKED = ColorRGBA(0.2, 0.8, 0.3, 0.45), ColorRGBA(1.0, 0.75, 0.1, 0.55), ColorRGBA(0.95, 0.2, 0.15, 0.7)
 UNKNOWN = ColorRGBA(0.6, 0.6, 0.6, 0.3)
 TRAIL_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.8)
@@ -50,7 +50,7 @@ def circle(namespace: str, radius: float, x: float, y: float, frame: str, color:
 
 
 def robot_ring(frame: str) -> Marker:
-    """A ring on the floor around a robot, whose base frame is given: a burger is small in a view of a whole room."""
+    """A ring on the floor around the robot with this base frame; in a view of a whole room a burger is small."""
     ring = circle("robot_ring", RING_RADIUS, 0.0, 0.0, frame, ROBOT_COLOR)
     ring.scale.x = RING_WIDTH
     return ring

@@ -48,7 +48,7 @@ class Lidar:
         self._as_parameter_ = ctypes.pointer(struct)
 
     def next_turn(self, rng: np.random.Generator) -> "Lidar":
-        """The scanner for one revolution, whose number of beams varies with the speed of the scanner's motor."""
+        """The scanner for one revolution: its number of beams varies with the motor's speed."""
         low, high = self.spec.samples - self.spec.varying, self.spec.samples + self.spec.varying
         samples = max(2, int(rng.integers(low, high, endpoint=True)))
         if samples not in self._turns:

@@ -19,7 +19,7 @@ struct odometers {
     double slip, tick;    /* relative overcount; resolution [rad], 0: exact */
 };
 
-/* All odometers at true wheel angles (n, 2) [rad], dt [s] after the update before; noise: (n, 2) standard normal, whose
+/* Update all odometers at true wheel angles (n, 2) [rad], dt [s] after the last update. noise: (n, 2) standard normal; its
  * magnitude is used, as slip only adds to what an encoder counts. */
 void aro_odometry(struct odometers *odometers, const double *wheel_angles, const double *noise, double dt)
 {

@@ -59,7 +59,7 @@ class Controllers:
         return self.lockstep.hold(self.tick, connected)
 
     def end_tick(self) -> TickReport:
-        """Apply the commands of the tick; of several nodes that command one robot, that of the last one by name."""
+        """Apply the commands of the tick; where several nodes command one robot, the last one by name wins."""
         report, pending, self._pending = self.lockstep.report, self._pending, {}
         for robot, node in report.gone:
             commands = pending.setdefault(robot, {})

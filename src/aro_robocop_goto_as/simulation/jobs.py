@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class Clock:
-    """The machine's monotonic clock, and the ways in which the owner waits; tests have one that they move."""
+    """The machine's monotonic clock, and how the owner waits; tests use a clock that they move."""
 
     def now(self) -> float:
         """Seconds from an arbitrary origin."""

@@ -42,7 +42,7 @@ class Due:
 class Observations:
     """The sensors of all robots, and what they measured last; one object, changed in place.
 
-    The rows of the arrays are those of all robots. A row is of this step where its sensor is due for its robot.
+    Each array has a row for each robot. A row is new where its sensor was due for its robot.
 
     fleet: ground truth
     map_from_odom: (n, 3) x, y [m], yaw [rad]
@@ -88,7 +88,7 @@ class Observations:
         return self.due.sensors.get(sensor, ())
 
     def measures_of(self, names: Sequence[str], due: Subscriptions) -> Sequence[Callable[[], object]]:
-        """What measures these sensors, but for IMUs. Odometry is integrated whether or not anybody subscribes.
+        """What measures these sensors, except IMUs. Odometry is integrated whether or not anybody subscribes.
 
         The fleet's rows, which are ground truth, are updated first, and no more often than something reads them.
         """
@@ -137,7 +137,7 @@ class Observations:
         self.bumpers = {robot: self._engine.touching(robot) for robot in robots}
 
     def measure_imus(self, robots: Robots, bodies_before: Sequence[BodyState]) -> None:
-        """Measure the IMUs of these robots, whose states before the last step are given."""
+        """Measure the IMUs of these robots, given their states before the last step."""
         for robot, before in zip(robots, bodies_before):
             after, mount = self._engine.body(robot), self._models[robot].base_from_imu
             noise = self._noise.stream(1 + robot)

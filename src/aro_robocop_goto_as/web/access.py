@@ -1,4 +1,4 @@
-"""Where the page listens, and which HTTP and WebSocket requests it answers: those of a page that it served itself."""
+"""Where the page listens, and which HTTP and WebSocket requests it answers: only those from its own pages."""
 
 import ipaddress
 import os
@@ -23,7 +23,7 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: Sequence[str], 
 
     hosts, origins: all values of the request's headers Host and Origin
     names: host names that mean this machine, besides localhost and any numeric address
-    allowed: further origins, as https://host:port, such as that of a proxy
+    allowed: further origins, such as a proxy's, as https://host:port
 
     A page of another site has another origin. A site whose name was made to point to this machine (DNS rebinding) has
     the origin of its Host header, but that is a name which does not belong here.

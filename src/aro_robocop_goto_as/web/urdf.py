@@ -70,7 +70,7 @@ def _shape(geometry: "etree._Element", look: Look) -> Optional[Shape]:
 
 
 def _look(material: "Optional[etree._Element]", looks: Dict[Optional[str], Look]) -> Look:
-    """A material's own look, or that of the robot's material of the same name."""
+    """A material's own look, else the look of the robot's material of that name."""
     color = None if material is None else material.find("color")
     if color is None:
         return looks.get(None if material is None else material.get("name"), PLAIN)

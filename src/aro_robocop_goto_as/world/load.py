@@ -22,7 +22,7 @@ _STAGE = re.compile(
     rb"(interval_(sim|real)|paused|quit_?time|resolution|show_clock(_interval)?|speedup|threads)\s+[\d.-])",
     re.M,
 )
-_HEAD = 1 << 16  # bytes in which that is looked for
+_HEAD = 1 << 16  # bytes of a file in which Stage's words are looked for
 
 LAB_WORLDS = ("house", "aro_maze_1", "aro_maze_2", "aro_maze_8")  # names that the original lab's launch file accepted
 LAB_WORLD_HINT = ", which the original lab had and this package does not have: give the path of its file"

@@ -1,4 +1,4 @@
-"""Generate the SDF of a random maze with clutter, every cell of which a robot can reach.
+"""Generate the SDF of a random maze with clutter; a robot can reach every cell.
 
 Lanes are 0.45 m wide, 0.225 m to each side of their centre line. A Burger, of 0.105 m radius, has room to spare; a
 Waffle, of 0.22 m, has none: 5 mm to each side.

@@ -78,7 +78,7 @@ def master_row() -> Tuple[str, str]:
 
 
 def ros_in_opt() -> str:
-    """The folder of a ROS in /opt/ros that is in use; empty if there is none, and ROS is that of Debian packages."""
+    """The folder of the ROS in /opt/ros that is in use; empty where ROS comes from Debian packages."""
     return os.path.dirname(os.environ.get("ROBOCOP_BASE_SETUP", ""))
 
 

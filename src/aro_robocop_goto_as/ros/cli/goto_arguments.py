@@ -10,7 +10,7 @@ from ...param_loading import MAX_COORDINATE
 
 SERVER_TIMEOUT = 5.0  # [s, wall] for the server of a running system
 START_TIMEOUT = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
-REACHED, NOT_REACHED, WRONG_ARGUMENTS = 0, 1, 2  # exit statuses; argparse's own is 2, too
+REACHED, NOT_REACHED, WRONG_ARGUMENTS = 0, 1, 2  # exit statuses; argparse's own is also 2
 NEGATIVE = re.compile(r"-[\d.]+([eE][-+]?\d+)?")
 DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 

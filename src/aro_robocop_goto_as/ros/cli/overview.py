@@ -12,7 +12,7 @@ from ...sim_params import SimParams
 from ...web.access import default_host, url
 from ...web_params import WebParams
 
-DEFAULT_WORLD = SimParams().world.world  # whose example of a goal is in front of the robot
+DEFAULT_WORLD = SimParams().world.world  # in this world the example of a goal is in front of the robot
 
 
 def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False) -> str:

@@ -43,7 +43,7 @@ class Observed:
     topics: Dict[str, str] = field(default_factory=dict)  # name -> type
     description: bool = True  # whether there is a model of the robot
     odom_tf: bool = True  # whether odom -> base_footprint is published
-    server: bool = True  # whether the package's own server is there, whose markers have a trail that a reset removes
+    server: bool = True  # whether the package's own server is there; its markers include a trail
     obstacles: Optional[np.ndarray] = None  # (n, 2) [m] corners in map; None without a simulator
     start: Tuple[float, float] = (0.0, 0.0)  # [m] of the robot in map
     screen: Tuple[int, int] = (1280, 860)  # [pixel] width, height
@@ -109,7 +109,7 @@ def camera(box: Box, aspect: float) -> Tuple[float, float, float]:
     """Distance and focal point x, y [m] of the orbit camera that just shows a box in a view of this width / height.
 
     A point p relative to the focal point is visible if |up . p| <= tan(FIELD_OF_VIEW / 2) (distance + ahead . p), with
-    the camera's axes up and ahead; in width likewise, times `aspect`.
+    the camera's axes up and ahead. The same holds for the width, times `aspect`.
     """
     low, high = box
     focus = (low + high) / 2.0 - (0.0, LOWERED * (high[1] - low[1]))

@@ -9,7 +9,7 @@ is marked, with one warning, and misses whole messages until it reads again. It 
 do not return to a publisher that has closed the connection.
 
 publisher        advertises a topic, and knows its subscribers
-subscriber_link  one subscriber's socket: what it misses, and the rest of a message of which it took a part
+subscriber_link  one subscriber's socket: the messages that it misses, and the rest of one that it took in part
 packed           messages that are serialized once, and then filled by batch.c
 batch            the messages of one step: batch.c fills and sends them all
 rospy_internals  what is used of rospy's insides

@@ -53,8 +53,8 @@ def _library() -> ctypes.PyDLL:
 class Batch:
     """Messages that are sent together, again and again, to the present subscribers of their topics.
 
-    One thread sends. No other one publishes on these topics, but for what rospy sends to a latched topic's new
-    subscribers; at most one of them is latched.
+    One thread sends, and no other one publishes on these topics. Only rospy does, to new subscribers of a latched
+    topic; at most one of the topics is latched.
     """
 
     def __init__(
@@ -89,8 +89,8 @@ class Batch:
 
         `more`: the next messages follow at once, and the kernel may join them with these (MSG_MORE; 0.2 s at most).
 
-        A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. While one is
-        waited for, that time passes for the others, too: a stopped node can have many topics.
+        A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. All
+        subscribers of a step share that time, because a stopped node can have many topics.
         """
         self._times += 1
         with self._lock:

@@ -64,5 +64,5 @@ class PackedMessage:
         return self.data[_LENGTH.size :].tobytes()
 
     def serialize(self, buff: Any) -> None:
-        """As genpy's messages do it."""
+        """Write the serialized message to a buffer, as genpy's messages do."""
         buff.write(self.body())

@@ -39,7 +39,7 @@ class SubscriberLink:
 
     @property
     def address(self) -> int:
-        """Of an int64 for C: whether it stands still."""
+        """The address of an int64 for C, which is 1 while the subscriber stands still."""
         return ctypes.addressof(self._stands)
 
     def write(self, data: bytes) -> None:

@@ -16,7 +16,7 @@ from ...names import place
 from .inputs import Inputs
 
 MAX_JUMPS = 10  # of odometry after which a goal begins anew, as after a reset; of one that jumps for ever, no more
-MAX_GAP = 2.0  # control periods between two steps; what is longer is time in which the server could not drive
+MAX_GAP = 2.0  # control periods between two steps; in a longer gap the server could not drive
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class GoalExecution:
         self.twist = STANDSTILL  # to command in this control period
         self._inputs = inputs
         self._now = 0.0  # time of the newest control period
-        self._stalled = 0.0  # [s] in which no step ran, as on a machine without time for it: no lack of progress
+        self._stalled = 0.0  # [s] in which no step ran; it does not count as lack of progress
         self._progress: Optional[Progress] = None
         self._errors: Optional[Errors] = None  # of the previous step
         self._jumps = 0

@@ -55,7 +55,7 @@ class Ticks:
         self.wake()
 
     def _warn_of_two_clocks(self) -> None:
-        """Warn once if two nodes publish /clock, between whose times it jumps."""
+        """Warn once if two nodes publish /clock: time jumps between theirs."""
         if self._has_warned:
             return
         with contextlib.suppress(OSError, rosgraph.MasterException):

@@ -57,7 +57,7 @@ def packed_scan(spec: LidarSpec, frame: str, ranges: Row, number: Optional[np.nd
 
 
 def packed_odometry(frame: str, child: str, variances: Tuple[float, ...], pose: Row, twist: Row) -> PackedMessage:
-    """Pose (3,) of `child` in `frame` with the twist (2,) in `child`; these variances (6,) are those of both."""
+    """Pose (3,) of `child` in `frame` and twist (2,) in `child`, both with these variances (6,)."""
     template = Odometry(header=Header(frame_id=frame), child_frame_id=child)
     template.pose.covariance = template.twist.covariance = convert.diagonal(variances)
     start = LENGTH + HEADER_SIZE + string_size(frame) + string_size(child)

@@ -29,7 +29,8 @@ def serve(
 ) -> None:
     """Offer a service; what is refused is answered with success false and the reason.
 
-    answer: request -> the fields of the response, but for success; text: the field for a reason, which begins so
+    answer: request -> the fields of the response except success; text: the field for a refusal's reason, which starts
+    with `begin`
     """
 
     def respond(request: Any) -> Dict[str, Any]:

@@ -22,7 +22,7 @@ from ..publishing.rospy_internals import set_latched
 from .sensor_messages import packed_clock, packed_transforms
 from .sensor_topics import SensorTopics
 
-# Of a step's messages. The first two are published by rospy, the others together; /clock follows them.
+# The order of a step's messages. rospy publishes the first two, a batch all others and then /clock.
 ORDER = (BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
 
 
@@ -65,7 +65,7 @@ class StepTopics:
     def publish(self, observed: Observations, more: bool = False) -> None:
         """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
 
-        `more`: those of the next step follow at once.
+        `more`: the next step's messages follow at once.
         """
         due = observed.due
         key = due, observed.scans.shape[1]

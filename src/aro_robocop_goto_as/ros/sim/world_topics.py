@@ -26,10 +26,10 @@ _LENGTH = struct.Struct("<I")
 
 
 class PackedGrid(OccupancyGrid):
-    """An OccupancyGrid whose cells are an array: genpy would make a Python object of each of up to 16 million cells."""
+    """An OccupancyGrid with an array of cells: genpy would make Python objects of up to 16 million of them."""
 
     def serialize(self, buff: Any) -> None:
-        """As genpy's messages do it."""
+        """Write the serialized message to a buffer, as genpy's messages do."""
         empty = BytesIO()
         OccupancyGrid(self.header, self.info, []).serialize(empty)
         buff.write(empty.getvalue()[: -_LENGTH.size])
@@ -50,7 +50,7 @@ class PackedMap(GetMapResponse):
     """The response of /static_map with a PackedGrid."""
 
     def serialize(self, buff: Any) -> None:
-        """As genpy's messages do it; the map is the only field."""
+        """Write the serialized message to a buffer; the map is its only field."""
         self.map.serialize(buff)
 
 
@@ -62,7 +62,7 @@ class _Whole(MarkerArray):
         self._make = markers
 
     def serialize(self, buff: Any) -> None:
-        """As genpy's messages do it."""
+        """Write the serialized message to a buffer, as genpy's messages do."""
         MarkerArray(self._make()).serialize(buff)
 
 

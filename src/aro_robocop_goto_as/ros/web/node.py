@@ -105,7 +105,7 @@ class WebNode:
         self._parts = [Robots(context), status, *add_parts(context, p), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
         self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
-        self._detailed: Optional[str] = None  # the robot whose topics are subscribed to, None while none are
+        self._detailed: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
         self._asked = 0.0  # [s, wall] when the parts asked the master last
         self._visitors = threading.Event()  # a browser has come or gone
         server.on_client_connect(lambda _: self._visitors.set())

@@ -63,7 +63,7 @@ class Inbox:
         return subscriber
 
     def deliver(self) -> None:
-        """Handle all messages that wait; those of one topic in the order of their arrival."""
+        """Handle all waiting messages, each topic's in the order of arrival."""
         for _, waiting, handler in self._subscriptions:
             while True:
                 try:

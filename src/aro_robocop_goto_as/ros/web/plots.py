@@ -15,7 +15,7 @@ from ...web.state import PageState
 from .part import Context, Inbox, Part
 
 Sample = Tuple[float, float, float]  # time [s] and two figures
-Figures = Callable[[Any], Tuple[float, float]]  # those of a message
+Figures = Callable[[Any], Tuple[float, float]]  # a message -> its two figures
 
 SPAN = 30.0  # [s, wall] that a plot of a running system shows
 MAX_SAMPLES = 900  # samples: 30 Hz

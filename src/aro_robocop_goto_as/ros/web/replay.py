@@ -99,9 +99,9 @@ def beginning_of(bag: str) -> float:
 
 
 def failures(bag: str, beginning: float) -> List[Failure]:
-    """Those of the scenario that PART-SCENARIO.bag shows, in order of time; none without a report beside it.
+    """The failures of the scenario in PART-SCENARIO.bag, in order of time; none without a report beside it.
 
-    beginning: of the recording [s]; a report's times are of the same clock, which goes on from scenario to scenario
+    beginning: of the recording [s]; a report's times are on the same clock, which continues through all scenarios
     """
     path = Path(bag)
     try:

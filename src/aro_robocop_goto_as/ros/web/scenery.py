@@ -16,7 +16,7 @@ from ...web.state import PageState
 from .marker_shapes import MarkerStore, to_pose
 from .part import Context, Inbox, Part
 
-DRAWN_BY_MODEL = ("robots", "noses")  # markers of the simulator that stand for robots whose model is drawn
+DRAWN_BY_MODEL = ("robots", "noses")  # the simulator's markers for robots; the page draws their models instead
 DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
 SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail

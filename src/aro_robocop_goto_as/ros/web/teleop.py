@@ -27,7 +27,7 @@ PAD = (  # in the order of CROSS
     ("Right (L)", "L", Twist2D(0.0, -1.0)),
     ("Back (K)", "K", Twist2D(-1.0, 0.0)),
 )
-# The panel has no rows of buttons: this arranges those of the folder that it is in.
+# The panel has no rows of buttons: this style arranges the buttons of its folder.
 CROSS = """<style class="cross">
 div:has(> div > .cross) {
   display: grid; grid-template-columns: repeat(3, 1fr); padding: 0.6em 0.3em 0;

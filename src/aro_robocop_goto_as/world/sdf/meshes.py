@@ -14,7 +14,7 @@ from ...reading import parse_xml, reading
 KINDS = (".dae", ".obj", ".stl")
 _STL_HEADER, _STL_FACET = 84, 50  # bytes of a binary .stl file
 
-# Of a COLLADA file, what places its triangles.
+# The elements of a COLLADA file that place its triangles.
 _COLLADA_PARTS = ("asset", "library_geometries", "library_nodes", "library_visual_scenes", "scene")
 _WITHOUT_EFFECT = ("bind_material", "extra", "instance_camera", "instance_controller", "instance_light")
 
@@ -57,7 +57,7 @@ def _text(content: bytes) -> str:
 def _stl(content: bytes) -> Tuple[str, Any]:
     """Kind and contents of an .stl file: binary if it is long enough for the number of facets in its header.
 
-    What follows the facets is skipped, as in Gazebo. Many a binary file, too, begins with "solid".
+    What follows the facets is skipped, as in Gazebo. Many binary files also begin with "solid".
     """
     end = _STL_HEADER + _STL_FACET * int.from_bytes(content[80:84], "little")
     if _STL_HEADER <= end <= len(content):
@@ -81,7 +81,7 @@ def _plain_obj(text: str) -> str:
 
 
 def _geometry_alone(content: bytes, path: str) -> Tuple[io.BytesIO, float]:
-    """A COLLADA file without what has no effect on its triangles, whose faults do not matter so; metres per unit."""
+    """A COLLADA file without elements that do not affect its triangles, whose faults do not matter; metres per unit."""
     root = parse_xml(content, path, WorldError)
     for part in list(root):
         if etree.QName(part).localname not in _COLLADA_PARTS:

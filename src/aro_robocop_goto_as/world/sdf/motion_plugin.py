@@ -10,7 +10,7 @@ from ..scripted_motion import Motion, Waypoint
 from . import xml
 
 PLUGIN = "robocop_motion"
-CLOSED = 1e-9  # [m] from the start, within which the last waypoint has to be
+CLOSED = 1e-9  # [m] the last waypoint has to be this near to the start
 
 
 def is_motion(element: Element) -> bool:

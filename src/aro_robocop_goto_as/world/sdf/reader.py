@@ -106,7 +106,7 @@ class _Reader:
         self.models: Dict[str, Pose3D] = {}
         self.ignored: List[str] = []
         self.approximated: List[str] = []
-        self.used: Set[Tuple[str, ...]] = set()  # names of models, each with those of the models around it
+        self.used: Set[Tuple[str, ...]] = set()  # paths of models: names, the outermost model's first
         self.state: SavedPoses = {}
         self.spawn: Optional[Pose2D] = None  # as the file says
         self.keeps_robots = True

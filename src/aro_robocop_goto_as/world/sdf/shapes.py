@@ -17,7 +17,7 @@ _SHAPES = ("box", "cylinder", "empty", "mesh", "plane", "sphere")
 def read_shape(geometry: Element, triangles: Dict[str, np.ndarray]) -> Optional[Geometry]:
     """The shape in a <geometry>; None for <empty>. NotSimulatedError for other shapes, and for a part of a mesh.
 
-    triangles: by path, those of the mesh files that the world has used so far; others are read and added
+    triangles: of the mesh files that the world has used so far, by path; this function reads and adds others
     """
     for other in [*xml.unknown_children(geometry, _SHAPES), *geometry.iterfind("mesh/submesh")]:
         raise xml.NotSimulatedError(f"<{other.tag}>")
