@@ -17,7 +17,7 @@ class Controllers:
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
         self.in_lockstep = params.enabled
         self.lockstep = Lockstep(params.lockstep_timeout, clock)
-        self._rate = simulator.p.rates.control_rate
+        self._rate = simulator.params.rates.control_rate
         self._simulator = simulator
         # In lockstep the newest command of each node since the last tick, by robot and by the node's name:
         self._pending: Dict[int, Dict[str, Twist2D]] = {}

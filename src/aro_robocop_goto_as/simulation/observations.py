@@ -53,7 +53,8 @@ class Observations:
 
     def __init__(self, p: SimParams, world: World, engine: Engine) -> None:
         n, models = len(engine.fleet), engine.fleet.models
-        self._p, self._world, self._engine, self._models = p, world, engine, models
+        self._world, self._engine, self._models, self._imu_params = world, engine, models, p.imu
+        self._follows_truth = p.topics.localization == "truth"  # map -> odom
         self._rate = p.rates.physics_rate  # [Hz]
         self.stamp_ns, self.due = 0, Due()  # of the last step on which something was due [ns]
         self.episode = Episode(p.world.seed, 0)
@@ -126,7 +127,7 @@ class Observations:
         if self.odometry.slipping:
             self._noise.stream(SLIP_STREAM).standard_normal(out=self.odometry.noise)
         self.odometry.update()
-        if self._p.topics.localization == "truth":
+        if self._follows_truth:
             for robot, pose in enumerate(self.odometry.poses.tolist()):
                 self.map_from_odom[robot] = compose(self.fleet.pose(robot), inverse(Pose2D(*pose)))
 
@@ -141,7 +142,7 @@ class Observations:
         for robot, before in zip(robots, bodies_before):
             after, mount = self._engine.body(robot), self._models[robot].base_from_imu
             noise = self._noise.stream(1 + robot)
-            self.imus[robot] = imu.measure(before, after, 1.0 / self._rate, mount, self._p.imu, noise)
+            self.imus[robot] = imu.measure(before, after, 1.0 / self._rate, mount, self._imu_params, noise)
 
     def _take_images(self, robots: Robots) -> None:
         bases = [self._engine.body(robot).world_from_base for robot in range(len(self._models))]

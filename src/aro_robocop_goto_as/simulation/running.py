@@ -35,12 +35,12 @@ class Simulation:
         self, simulator: Simulator, clock: Optional[Clock] = None, stopped: Callable[[], bool] = lambda: False
     ) -> None:
         """`stopped`: whether the owner's loop has ended; by the wall clock unless another one is given."""
-        p: SimParams = simulator.p
+        params: SimParams = simulator.params
         clock = clock or Clock()
         self.simulator = simulator
         self.jobs = Jobs(clock, stopped)
-        self.time_control = TimeControl(p.time, simulator.rate, clock)
-        self.controllers = Controllers(simulator, p.lockstep, clock)
+        self.time_control = TimeControl(params.time, simulator.rate, clock)
+        self.controllers = Controllers(simulator, params.lockstep, clock)
         self._changes: Set[Change] = set()
 
     def take_changes(self) -> Set[Change]:

@@ -25,16 +25,16 @@ UNASKED = {CLOCK, CONTROL, ODOM}  # due also if nobody subscribes: odometry is i
 class Simulator:
     """The robots of one world. Owned by one thread, as Bullet requires."""
 
-    def __init__(self, p: SimParams, world: World, engine: Engine, robots: Sequence[RobotSpec]) -> None:
+    def __init__(self, params: SimParams, world: World, engine: Engine, robots: Sequence[RobotSpec]) -> None:
         """`engine` holds the same world and the robots' fleet."""
-        self.p = p
+        self.params = params
         self.world = world
         self.models_at_start = frozenset(world.models)  # names
         self.robots = tuple(robots)
         self.steps = 0
-        self.rate = p.rates.physics_rate  # [Hz]
+        self.rate = params.rates.physics_rate  # [Hz]
         self.engine = engine
-        self.observed = Observations(p, world, engine)
+        self.observed = Observations(params, world, engine)
         self.lidar = self.observed.lidar
         self._schedule_for({})
         self._newly_placed: Set[int] = set()
@@ -112,7 +112,7 @@ class Simulator:
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
         self._subscriptions = subscriptions
-        every = rates_of(self.p.rates, self.p.scan.rate)
+        every = rates_of(self.params.rates, self.params.scan.rate)
         rates = {name: rate for name, rate in every.items() if name in UNASKED or subscriptions.get(name)}
         self._schedule = Schedule(rates, self.rate)
         self._dues = {names: self._due(names) for names in self._schedule.occurring}
@@ -168,13 +168,13 @@ class Simulator:
         section = self.observed.scanners.section(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
-        return occupancy_of(section.segments, section.circles_at_start, starts, self.p.world.map_resolution)
+        return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
 
     # -- changes from outside --
 
     def change_world(self, world: World) -> None:
         """Replace the world from the next step on; a reset keeps the new one."""
-        self.world = world.with_motion(self.p.world.moving)
+        self.world = world.with_motion(self.params.world.moving)
         self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
         for names, due in self._dues.items():

@@ -40,7 +40,7 @@ class SimNode:
         self._commands = CommandTopics(self._simulation)
         self._services = Services(self._simulation)
         self._gazebo: Any = None
-        self._offer_gazebo(simulator.p.topics)
+        self._offer_gazebo(simulator.params.topics)
 
     def _offer_gazebo(self, topics: TopicParams) -> None:
         """Gazebo's topics and services, imported only where they are asked for."""

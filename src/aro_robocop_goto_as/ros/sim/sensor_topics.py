@@ -33,7 +33,7 @@ class SensorTopics:
 
     def __init__(self, index: int, simulator: Simulator, on_change: Callable[[], None]) -> None:
         """`on_change` is called when a subscriber of any topic connects or disconnects."""
-        p, observed, truth = simulator.p, simulator.observed, simulator.fleet
+        p, observed, truth = simulator.params, simulator.observed, simulator.fleet
         name, odometry, real = simulator.robots[index].name, observed.odometry, p.topics.covariances == "real"
         self._robot, self._simulator = index, simulator
         self.odom_frame = prefixed(name, p.frames.odom_frame)
@@ -93,7 +93,7 @@ class SensorTopics:
 
     def transforms(self) -> List[Tuple[str, str, np.ndarray]]:
         """Parent, child and parent_from_child (3,): odom -> base; map -> odom if it follows ground truth."""
-        p, observed = self._simulator.p, self._simulator.observed
+        p, observed = self._simulator.params, self._simulator.observed
         found = []
         if p.topics.odom_tf:
             found.append((self.odom_frame, self.footprint_frame, observed.odometry.poses[self._robot]))

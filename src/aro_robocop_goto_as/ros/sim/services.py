@@ -46,7 +46,7 @@ class Services:
     """Files are read in the service's thread; all else is done in the owner's, between two steps."""
 
     def __init__(self, simulation: Simulation) -> None:
-        p = simulation.simulator.p
+        p = simulation.simulator.params
         self._simulation, self._simulator = simulation, simulation.simulator
         self._call = simulation.jobs.call
         self._frames = p.frames

@@ -101,7 +101,7 @@ class StatusTopics:
             world=simulator.world.name,
             robots=[robot.name for robot in simulator.robots],
             seed=simulator.seed,
-            drive=simulator.p.engine.drive,
+            drive=simulator.params.engine.drive,
             sync="lockstep" if simulation.controllers.in_lockstep else "free",
             paused=simulation.time_control.paused,
             factor_asked=simulation.time_control.pacer.factor,

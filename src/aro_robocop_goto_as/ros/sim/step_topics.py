@@ -78,10 +78,10 @@ class StepTopics:
 
     def publish_static(self) -> Sequence[TransformStamped]:
         """world -> map, and each robot's map -> odom where that is static; returns what was sent."""
-        simulator, frames = self._simulator, self._simulator.p.frames
+        simulator, frames = self._simulator, self._simulator.params.frames
         stamp = convert.to_time(simulator.stamp_ns)
         transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
-        if simulator.p.topics.localization == "static":
+        if simulator.params.topics.localization == "static":
             transforms += [
                 convert.to_transform(frames.map_frame, robot.odom_frame, simulator.map_from_odom(index), stamp)
                 for index, robot in enumerate(self.robots)

@@ -72,14 +72,14 @@ class WorldTopics:
     def __init__(self, simulator: Simulator) -> None:
         """Robots with a name are shown as markers; a lone robot without one by RViz's RobotModel instead."""
         self._simulator = simulator
-        self._frames = simulator.p.frames
+        self._frames = simulator.params.frames
         self._robots = [
             (robot.name, prefixed(robot.name, self._frames.base_frame), radius)
             for robot, radius in zip(simulator.robots, simulator.fleet.radii.tolist())
             if robot.name
         ]
         self._markers = publisher("~world", MarkerArray, latch=True)
-        self._has_map = simulator.p.topics.publish_map or simulator.world.occupancy is not None
+        self._has_map = simulator.params.topics.publish_map or simulator.world.occupancy is not None
         self._grid: Optional[PackedGrid] = None  # that was published last
         if self._has_map:
             self._map = publisher("/map", OccupancyGrid, latch=True)
