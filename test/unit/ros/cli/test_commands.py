@@ -9,7 +9,8 @@ from command import dry_run, robocop, x_server
 
 from aro_robocop_goto_as.process.ports import free_port
 from aro_robocop_goto_as.ros.cli import program
-from aro_robocop_goto_as.ros.cli.commands import COMMANDS, web_arguments
+from aro_robocop_goto_as.ros.cli.commands import COMMANDS
+from aro_robocop_goto_as.ros.cli.system_commands import web_arguments
 
 LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
 
