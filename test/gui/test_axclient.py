@@ -4,6 +4,7 @@ import math
 import signal
 from pathlib import Path
 
+import pytest
 from desktop import Desktop, Recorder, Ros, end
 from waiting import wait_for
 
@@ -33,6 +34,7 @@ def layout(pixels):
     return fields[0] + 10, fields[-1] + (state[0] - fields[-1]) // 4
 
 
+@pytest.mark.slow
 def test_goal_sent_from_axclient_is_reached(tmp_path):
     with Desktop(tmp_path, "800x600x24") as desktop, Ros(tmp_path, desktop, "rviz:=false") as ros:
         results = Recorder(ros, SERVER, "/robocop_goto_as/result")

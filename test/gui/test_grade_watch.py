@@ -5,11 +5,10 @@ import time
 
 import pytest
 from desktop import Desktop
-from processes import busy_processes
 from waiting import DEADLINE, wait_for
 from watched_grading import DURATION, Watched
 
-pytestmark = pytest.mark.xdist_group("hosting")  # it uses the workspace that hosting tests build
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("hosting")]  # it uses the workspace that hosting tests build
 TITLE, INTERRUPTED = " - RViz$", 130
 
 
@@ -60,7 +59,6 @@ def test_watched_run_is_shown_in_real_time_and_gets_full_marks(tmp_path):
         assert desktop.window(TITLE) is None, "RViz outlived the grading"
 
 
-@pytest.mark.slow
 def test_grading_continues_when_rviz_is_closed(tmp_path):
     with Desktop(tmp_path) as desktop, WatchedInRviz(tmp_path, desktop, ahead=5.0) as grading:
         grading.wait_for_picture({"goal"}, "the goal drawn in RViz")
@@ -70,11 +68,9 @@ def test_grading_continues_when_rviz_is_closed(tmp_path):
         grading.wait_for_full_marks()
 
 
-@pytest.mark.slow
 def test_rviz_ends_with_a_grading_that_is_interrupted(tmp_path):
     with Desktop(tmp_path) as desktop, WatchedInRviz(tmp_path, desktop) as grading:
         grading.wait_for(grading.view, "RViz's view")
-        with busy_processes():
-            grading.process.send_signal(signal.SIGINT)
-            assert grading.process.wait(DEADLINE) == INTERRUPTED, grading.text()
+        grading.process.send_signal(signal.SIGINT)
+        assert grading.process.wait(DEADLINE) == INTERRUPTED, grading.text()
         wait_for(lambda: desktop.window(TITLE) is None, "RViz ended")

@@ -9,7 +9,6 @@ from aro_robocop_goto_as.names import absolute
 from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
 
 pytestmark = pytest.mark.slow
-TIMES = 3
 TITLE = " - RViz$"
 DRAWN = 60.0  # [s, wall] for a picture to be complete on a busy machine
 ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel
@@ -57,29 +56,22 @@ def environment_of(namespace):
 
 
 @CASES
-@pytest.mark.timeout(1200)
 def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, arguments, namespace, parts):
     config = tmp_path / "robocop.rviz"
     config.write_text(adapted(Observed(robot=namespace)))
-    with Desktop(tmp_path) as desktop:
-        for number in range(TIMES):
-            folder = tmp_path / f"early_{number}"
-            folder.mkdir()
-            with Master(folder, desktop) as ros:
-                ros.start("rviz", *environment_of(namespace), "rviz", "-d", config)
-                wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
-                ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", *arguments)
-                wait_for(lambda: complete(desktop, parts), f"start {number} of {TIMES}: {parts}", DRAWN)
+    with Desktop(tmp_path) as desktop, Master(tmp_path, desktop) as ros:
+        ros.start("rviz", *environment_of(namespace), "rviz", "-d", config)
+        wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
+        ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", *arguments)
+        wait_for(lambda: complete(desktop, parts), f"{parts}", DRAWN)
 
 
 @CASES
-@pytest.mark.timeout(1200)
 def test_rviz_that_is_opened_late_shows_everything(tmp_path, arguments, namespace, parts):
     with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", *arguments) as ros:
         wait_for(lambda: ros.subscriber(absolute(namespace, "scan"), "/"), "the server")
-        for number in range(TIMES):
-            rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
-            ros.start(f"rviz_{number}", *environment_of(namespace), *rviz)
-            wait_for(lambda: complete(desktop, parts), f"opening {number} of {TIMES}: {parts}", DRAWN)
-            desktop.quit_by_menu(desktop.window(TITLE))
-            wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")
+        rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
+        ros.start("rviz", *environment_of(namespace), *rviz)
+        wait_for(lambda: complete(desktop, parts), f"{parts}", DRAWN)
+        desktop.quit_by_menu(desktop.window(TITLE))
+        wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")

@@ -56,6 +56,7 @@ def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_err
 PIXEL_5 = (393, 727)  # [pixel] of its browser's window
 
 
+@pytest.mark.slow
 def test_a_tap_on_a_phone_sends_a_goal_however_short_or_long_it_is(web, browser):
     goals = Recorder(web.ros, "/robocop_rviz_goto_ac_node", "/robocop_goto_as/goal")
     wait_for(goals.connected, "recorder of goals")

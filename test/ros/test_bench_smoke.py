@@ -31,6 +31,7 @@ def running(tmp_path, word=b""):
     return processes_with(b"BENCH_TEST=" + os.fsencode(tmp_path), word)
 
 
+@pytest.mark.slow
 def test_one_case_yields_every_figure_and_loses_no_message(tmp_path):
     bench = start(tmp_path, "--quick", "--json", "--seconds", "1", "--cases", "kinematic:2")
     output, errors = bench.communicate(timeout=DEADLINE)

@@ -1,4 +1,7 @@
-"""Every ./robocop command that README, CONTRIBUTING and docs/ print runs as printed, in a folder with its files."""
+"""The ./robocop commands that README, CONTRIBUTING and docs/ print run as printed, in a folder with their files.
+
+One of each program with the same options: test_documentation.py has all of them, with their launch arguments, checked.
+"""
 
 import os
 import re
@@ -149,7 +152,17 @@ def test_each_exception_is_printed_somewhere():
     assert sum(exception(command) is None for command in documented()) > 30
 
 
-@pytest.mark.parametrize("command", [command for command in documented() if exception(command) is None])
+def of_each_kind():
+    """The first command of each program with the same options and settings of the environment."""
+    kinds = {}
+    for command in documented():
+        words = [word.partition("=")[0] for word in command.split() if ":=" not in word]
+        program = next(word for word in words if not word.isupper())
+        kinds.setdefault((program, *words[1:] * (program == "shell"), *(w for w in words if w[:2] == "--")), command)
+    return [command for command in kinds.values() if exception(command) is None]
+
+
+@pytest.mark.parametrize("command", of_each_kind())
 def test_printed_command_runs(command, system):
     name = next(word for word in command.split() if "=" not in word)
     printed = re.sub(r"^((?:\w+=\S+ )*)", r"\1./robocop ", command)

@@ -47,20 +47,8 @@ def test_a_robots_name_is_refused_where_no_system_runs(goto):
 ONCE, TWICE = [signal.SIGINT], [signal.SIGTERM, signal.SIGINT]
 
 
-@pytest.mark.parametrize(
-    "word, signals",
-    [
-        ("robocop_sim.py", ONCE),
-        *(
-            pytest.param(word, signals, marks=pytest.mark.slow)
-            for word, signals in [
-                ("robocop_launch.py", ONCE),
-                ("robocop_launch.py", TWICE),
-                ("robocop_sim.py", TWICE),
-            ]
-        ),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("word, signals", [("robocop_launch.py", ONCE), ("robocop_sim.py", TWICE)])
 def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word, signals):
     command = goto("5", "0", "--world", "empty")
     command.wait_for_process(word)
@@ -70,14 +58,13 @@ def test_interrupted_while_the_system_starts_it_leaves_nothing_behind(goto, word
     assert "Traceback" not in command.output
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto, number):
+def test_interrupted_while_the_master_does_not_answer_it_starts_nothing(goto):
     command = goto("1", "0")
     with socket.create_server(("127.0.0.1", command.port)) as silent:
         silent.settimeout(command.deadline)
         connection, _ = silent.accept()
         assert connection.recv(1)
-        command.process.send_signal(number)
+        command.process.send_signal(signal.SIGINT)
         assert command.wait_for_exit() == 1
     assert command.output == "robocop goto: interrupted\n"
 

@@ -67,10 +67,6 @@ def test_launch_fails_and_shows_why_when_the_simulator_refuses_its_parameters(la
     assert "Ctrl-C" not in launched.output  # nothing about how to use what does not run
 
 
-def test_launch_starts_the_node_that_gathers_the_logs_of_all_nodes(launch):
-    launch("world:=empty").wait_for_process("/rosout")
-
-
 @pytest.mark.parametrize(
     "argument, words",
     [
@@ -110,7 +106,7 @@ def test_interrupted_launch_ends_all_processes_and_is_no_failure(launch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("program", ["rosmaster", "/rosout", "robocop_sim.py"])
+@pytest.mark.parametrize("program", ["rosmaster", "robocop_sim.py"])
 def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch, program):
     launched = launch("world:=empty")
     launched.wait_for_process(program)

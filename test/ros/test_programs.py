@@ -54,6 +54,7 @@ def roslaunch(tmp_path):
         launched.kill()
 
 
+@pytest.mark.slow
 def test_without_a_display_roslaunch_leaves_rviz_out_with_one_warning_and_goes_on(roslaunch):
     launched = roslaunch("robocop_goto_as.launch", "drive:=kinematic")
     launched.wait_until(lambda: "RViz is not started" in launched.output, "the warning")
@@ -76,6 +77,7 @@ def launched_script(name):
     return str(ROOT / "scripts" / name)
 
 
+@pytest.mark.slow
 def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch, tmp_path):
     launched = roslaunch("robocop_sim.launch", "drive:=kinematic")
     master = rosgraph.Master("/test", launched.uri)

@@ -14,9 +14,12 @@ from processes import processes_with
 DEADLINE = 800.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit.
 SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
-LONG = ("lab", "messages", "time_and_pose", "two_robots")
+LONG = ("faults", "lab", "loop", "messages", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
-SLOW = ("documented_commands", "faults", "many_robots", "models", "navigation")
+SLOW = (
+    *("bridge", "commands", "faults", "many_robots", "models", "navigation"),
+    *("parameters", "teleop", "time_and_pose", "two_robots"),
+)
 
 
 def run_rostest(test_file, directory):

@@ -3,7 +3,6 @@
 import fcntl
 import os
 import shutil
-import socket
 import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
@@ -163,14 +162,11 @@ def test_doctor_shows_the_system_the_versions_and_that_nothing_is_missing():
 
 def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(checkout):
     (checkout / "install" / "deb-packages" / "run.txt").write_text("bash\nno-such-package\n")
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
-        done = in_copy(checkout, "doctor", ROS_MASTER_URI=uri)
+    done = in_copy(checkout, "doctor", ROS_MASTER_URI=f"http://localhost:{free_port()}")
     assert done.returncode == 1
     missing = done.stdout.partition("\nmissing or wrong:\n")[2]
     assert "apt-get install --no-install-recommends no-such-package\n" in missing
     assert "      ./robocop setup\n" in missing
-    assert f"{uri} did not answer within 5 s" in missing
     assert not (checkout / ".robocop").exists() and not (checkout.parent / "cache").exists()
 
 

@@ -8,7 +8,7 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 
-ROUNDS = 30
+ROUNDS = 10
 
 
 class FullSpeed(unittest.TestCase):

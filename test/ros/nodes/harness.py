@@ -331,12 +331,6 @@ def in_world(spawn, point):
     return Pose2D(spawn.x + cos * point.x - sin * point.y, spawn.y + sin * point.x + cos * point.y)
 
 
-def pid_of(node):
-    """Process id of a running node."""
-    master = rosgraph.Master(rospy.get_name())
-    return xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid(rospy.get_name())[2]
-
-
 def script(name):
     """The path of one of this package's scripts."""
     return roslib.packages.find_node(PACKAGE, name)[0]

@@ -8,7 +8,6 @@ import termios
 import unittest
 
 from harness import Process, Robot, run, script, wait_for
-from processes import busy_processes
 
 TURNS = 0.5  # [rad/s]
 MOVES = 0.05  # [m/s]
@@ -68,9 +67,8 @@ class Teleop(unittest.TestCase):
     def test_interrupt_stops_the_robot_and_restores_the_terminal(self):
         with Terminal() as terminal:
             self.hold_until(terminal, "a", lambda twist: twist.angular.z > TURNS)
-            with busy_processes():
-                terminal.program.process.send_signal(signal.SIGINT)
-                self.assertEqual(terminal.program.wait_for_exit(), 0, terminal.program.output)
+            terminal.program.process.send_signal(signal.SIGINT)
+            self.assertEqual(terminal.program.wait_for_exit(), 0, terminal.program.output)
             self.assertEqual(termios.tcgetattr(terminal.screen), terminal.settings)
         self.robot.wait_until_it_stands()
         self.assertNotIn("Traceback", terminal.program.output)

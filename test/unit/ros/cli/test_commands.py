@@ -117,14 +117,8 @@ def test_unknown_launch_argument_is_refused_with_the_known_ones(command):
     assert done.stderr.endswith("; did you mean world?\n")
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        ("run", "rviz:=false"),
-        pytest.param(("sim",), marks=pytest.mark.slow),
-        pytest.param(("goto", "1", "0"), marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [("run", "rviz:=false"), ("goto", "1", "0")])
 def test_port_that_never_answers_is_reported_within_seconds(command):
     with socket.create_server(("127.0.0.1", 0)) as silent:
         uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
