@@ -10,19 +10,29 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 
-import distributed
 import pytest
-from distributed.security import Security
+from documentation import ROOT
 from graded import RIGHT
 from processes import busy_processes, processes_mentioning
 from waiting import wait_for
 
-from robocop_grading.classroom.dask_cluster import connected
-from robocop_grading.classroom.worker import Place
+from robocop_grading.classroom.cluster import connected
 
 PATIENCE = 120.0  # [s, wall]
+BUSY = """
+import sys, time
+from distributed import Client
+with Client(sys.argv[1], timeout=60.0) as client:
+    client.wait_for_workers(2)
+    while True:
+        known = {worker: info["id"] for worker, info in client.scheduler_info()["workers"].items()}
+        busy = [known[worker] for worker, tasks in client.processing().items() if tasks and worker in known]
+        if busy:
+            print(busy[0], flush=True)
+            break
+        time.sleep(0.1)
+"""  # prints the name of a worker that has something to do
 PLAN = """
 limits: {}
 scenarios:
@@ -54,18 +64,12 @@ def group(tmp_path, count):
 
 
 @pytest.fixture
-def credentials(tmp_path):
-    """A key and its certificate in one file, made as docs/grading.md says."""
-    file = tmp_path / "grading.pem"
-    subprocess.run(
-        "openssl req -x509 -newkey rsa:2048 -nodes -days 7 -subj /CN=grading -keyout key.pem -out cert.pem "
-        "&& cat key.pem cert.pem > grading.pem && chmod 600 *.pem",
-        shell=True,
-        cwd=tmp_path,
-        check=True,
-        capture_output=True,
-    )
-    return file
+def key_of_cluster(tmp_path, monkeypatch):
+    """A key and dask's configuration with it, made as docs/grading.md says."""
+    text = (ROOT / "docs" / "grading.md").read_text(encoding="utf-8")
+    commands = text[text.index("openssl req") : text.index("export DASK_CONFIG")]
+    subprocess.run(commands, shell=True, cwd=tmp_path, check=True, capture_output=True)
+    monkeypatch.setenv("DASK_CONFIG", str(tmp_path / "dask.yaml"))
 
 
 @pytest.fixture
@@ -130,71 +134,24 @@ def expect_everybody_once(folder, count, output):
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)  # 30 hand-ins, and one worker left for most of them
-def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(group, count, start, credentials, tmp_path):
-    file, pem = tmp_path / "scheduler.json", str(credentials)
-    tls = ["--tls-ca-file", pem, "--tls-cert", pem, "--tls-key", pem]
-    security = Security(tls_ca_file=pem, tls_client_cert=pem, tls_client_key=pem, require_encryption=True)
-    start(
-        [
-            sys.executable,
-            "-m",
-            "distributed.cli.dask_scheduler",
-            "--host",
-            "127.0.0.1",
-            "--port",
-            "0",
-            "--scheduler-file",
-            str(file),
-            "--no-dashboard",
-            *tls,
-            "--protocol",
-            "tls",
-        ],
-        stderr=subprocess.DEVNULL,
-    )
-    address = wait_for(lambda: file.exists() and json.loads(file.read_text() or "{}").get("address"), "a scheduler")
+def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(group, count, start, key_of_cluster):
+    dask, log = [sys.executable, "-m"], group.parent / "log"
+    own = ["--host", "127.0.0.1", "--port", "0", "--protocol", "tls", "--no-dashboard", "--scheduler-file", log]
+    start([*dask, "distributed.cli.dask_scheduler", *own], stderr=subprocess.DEVNULL)
+    address = wait_for(lambda: log.exists() and json.loads(log.read_text() or "{}").get("address"), "a scheduler")
+    worker = ["distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--name"]
     workers = {
-        name: start(
-            [
-                sys.executable,
-                "-m",
-                "distributed.cli.dask_worker",
-                address,
-                "--no-nanny",
-                "--nthreads",
-                "1",
-                "--name",
-                name,
-                "--no-dashboard",
-                "--memory-limit",
-                "0",
-                "--local-directory",
-                str(tmp_path),
-                *tls,
-            ],
-            stderr=subprocess.DEVNULL,
-        )
-        for name in ("first", "second")
+        name: start([*dask, *worker, name], cwd=group.parent, stderr=subprocess.DEVNULL) for name in ("first", "second")
     }
-    with distributed.Client(address, timeout=PATIENCE, security=security) as client:
-        client.wait_for_workers(2, timeout=PATIENCE)
-        grading = grade_class(start, group, "--scheduler", address, "--credentials", pem)
-
-        def busy_worker():
-            """The workers with a task, once there are some results."""
-            known = {info["id"]: worker for worker, info in client.scheduler_info()["workers"].items()}
-            processing = client.processing()
-            busy = [name for name in workers if processing.get(known.get(name))]
-            return busy if len(stamps(group)) >= count // 4 else None
-
-        victim = workers[wait_for(busy_worker, "a busy worker and some results")[0]]
-        os.kill(victim.pid, signal.SIGKILL)
+    grading = grade_class(start, group, "--scheduler", address)
+    # In another process: dask reads its configuration when it is imported.
+    watch = start([*dask[:1], "-c", BUSY, address], stdout=subprocess.PIPE)
+    wait_for(lambda: len(stamps(group)) >= count // 4, "some results")
+    os.kill(workers[watch.stdout.readline().strip()].pid, signal.SIGKILL)
     output, _ = grading.communicate(timeout=PATIENCE + 25.0 * count)
     assert grading.returncode == 0, output
     expect_everybody_once(group, count, output)
     assert len(stamps(group)) == count
-    used = {stamp["worker"].split(":")[1] for stamp in stamps(group).values()}
-    assert used <= {str(worker.pid) for worker in workers.values()}
 
 
 @pytest.mark.timeout(900)
@@ -266,8 +223,8 @@ def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceba
 
 
 @pytest.mark.slow
-def test_unreachable_scheduler_is_reported(group, start, credentials):
-    grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1", "--credentials", str(credentials))
+def test_unreachable_scheduler_is_reported(group, start, key_of_cluster):
+    grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1")
     output, _ = grading.communicate(timeout=PATIENCE)
     assert grading.returncode == 1
     assert "no dask scheduler answers at tls://127.0.0.1:1" in output
@@ -303,7 +260,7 @@ Client(f"tcp://127.0.0.1:{sys.argv[1]}", timeout=3.0).run_on_scheduler(print, "S
 )
 def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run(code, refusal):
     other = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-    with connected(Place(workers=1)) as client:
+    with connected("", 1) as client:
         address = client.scheduler.address
         assert address.startswith("tls://127.0.0.1:")
         done = subprocess.run(
@@ -315,9 +272,3 @@ def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run
         )
         assert done.returncode != 0 and refusal in done.stderr, done.stdout + done.stderr
         assert client.submit(sum, [1, 2]).result(timeout=PATIENCE) == 3
-
-
-def test_local_workers_are_not_profiled_which_can_hang_python():
-    with connected(Place(workers=1)) as client:
-        (names,) = client.run(lambda: [thread.name for thread in threading.enumerate()]).values()
-    assert "Nanny stop queue watch" in names and "Profile" not in names

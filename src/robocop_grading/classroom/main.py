@@ -8,12 +8,12 @@ import os
 import random
 import sys
 import time
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Collection, Dict, Iterable, List, Optional, Sequence, Set, Union
+from typing import Callable, Collection, Dict, List, Optional, Sequence, Set
 from xml.etree import ElementTree
 
-from aro_robocop_goto_as.errors import GradingSetupError, NoTimeError, RobocopError
+from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
@@ -24,16 +24,17 @@ from ..files.scratch import scratch_folder
 from ..judge import points_in_words, printable_lines
 from ..plan import LARGEST_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
-from ..sandbox.bubblewrap import expect_private
-from .hand_ins import HandIn, collect, pack
+from ..sandbox.bubblewrap import expect_private, open_sandbox
+from ..submission import lab_environment
+from .hand_ins import HandIn, collect
 from .results import Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
-from .worker import Done, Place, Task
+from .worker import work
 
 CSV, HTML = "grades.csv", "index.html"
 WORKERS_LOG = ".workers.log"  # in the folder of the results
-WRITING = 0.05  # share of the time in which the table and the overview are written while a class is graded
+PERIOD = 5.0  # [s, wall] after which the table and the overview are written anew, at the earliest
 MAX_LINE = 300  # characters of a hand-in's problems on the terminal
 AGAIN = "also grade these hand-ins, or all, if no name follows, that have a result"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
@@ -45,7 +46,7 @@ class Class:
     def __init__(
         self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: Collection[str]
     ) -> None:
-        self.title, self.plan, self._results = folder.name, plan, results
+        self.title, self.plan, self.results = folder.name, plan, results
         self.count = len(hand_ins)
         self.done: Dict[str, Result] = {
             it.name: results.read(it.name) for it in hand_ins if it.name not in again and results.has(it)
@@ -73,13 +74,12 @@ class Class:
         reasons.update(self.problems)
         return self.figures.lines() + [one_line(f"not gradable: {it}: {why}")[:MAX_LINE] for it, why in reasons.items()]
 
-    def add(self, name: str, outcome: Union[Done, str]) -> str:
-        """Store the report of one hand-in, or the reason why there is none; a line about it for the terminal."""
-        if isinstance(outcome, str):
-            self.problems[name] = outcome
-            return one_line(f"{name}: {outcome}")
-        self._results.keep(outcome)
-        result = self.done[name] = self._results.read(name)
+    def add(self, name: str, problem: str) -> str:
+        """Note that a hand-in has a result, or the reason why it has none; a line about it for the terminal."""
+        if problem:
+            self.problems[name] = problem
+            return one_line(f"{name}: {problem}")
+        result = self.done[name] = self.results.read(name)
         self.waiting.pop(name, None)
         if time.monotonic() >= self._next_write:
             self.write(running=True)
@@ -91,13 +91,11 @@ class Class:
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
-        started = time.monotonic()
-        results, folder = [self.done[name] for name in sorted(self.done)], self._results.folder
+        results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems))
         waiting = {name: self.problems.get(name, "waiting") for name in self.waiting}
         write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running, self.figures, self.pace))
-        finished = time.monotonic()
-        self._next_write = finished + (finished - started) / WRITING
+        self._next_write = time.monotonic() + PERIOD
 
 
 def main() -> None:
@@ -109,9 +107,8 @@ def main() -> None:
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
-    parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: at most one a core)")
+    parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
-    parser.add_argument("--credentials", default="", metavar="PEM", help="key and certificate of that scheduler")
     parser.add_argument("--again", nargs="*", metavar="NAME", help=AGAIN)
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     args = parser.parse_args()
@@ -121,7 +118,10 @@ def main() -> None:
         state, share = places()
         if args.workers is not None and args.workers < 1:
             raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
-        results_folder = Path(args.report) if args.report else state / "classes" / folder.name
+        if args.scheduler and not args.scheduler.startswith("tls://"):
+            # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
+            raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
+        results_folder = Path(args.report).resolve() if args.report else state / "classes" / folder.name
         plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
         digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
         out = make_report_folder(results_folder)
@@ -140,11 +140,12 @@ def main() -> None:
             group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
             print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
             print(f"scenarios: seed {seed}", flush=True)
-            # Packed when it is their turn, from what is there then.
-            tasks = (Task(pack(it.path), plan, args.unsafe) for it in list(group.waiting.values()))
+            if not args.scheduler:
+                open_sandbox(args.unsafe)
+                lab_environment(share, state)
             send_child_errors_to(out / WORKERS_LOG)
-            place = Place(args.scheduler, args.credentials, args.workers or len(os.sched_getaffinity(0)), args.unsafe)
-            grade(group, tasks, place, adapts=args.workers is None)
+            workers = args.workers or len(os.sched_getaffinity(0))
+            grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
@@ -177,30 +178,19 @@ def class_seed(given: Optional[int], results: Path) -> int:
     return next(seed for seed in seeds if seed is not None)
 
 
-def grade(group: Class, tasks: Iterable[Task], place: Place, adapts: bool = True) -> None:
-    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt.
-
-    If it `adapts`, fewer local workers grade at once where the machine is too busy for all of them.
-    """
+def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
+    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
     group.write(running=bool(group.waiting))
     try:
         if group.waiting:
-            from .dask_cluster import MOST_AHEAD, Pace, connected, grade_all  # importing dask takes half a second
+            from .cluster import connected, done  # importing dask takes half a second
 
-            place = replace(place, workers=min(place.workers, len(group.waiting)))
-            pace = Pace(MOST_AHEAD, True) if place.scheduler else Pace(place.workers, not adapts)
-            with connected(place) as client:
-                for name, outcome in grade_all(client, tasks, pace):
+            paths = [hand_in.path for hand_in in group.waiting.values()]
+            with connected(scheduler, min(workers, len(paths))) as client:
+                for path, problem in done(client, task, paths):
                     reraise_if_interrupted()
                     orphans.reap_adopted("bwrap")  # two of each hand-in
-                    try:
-                        line = group.add(name, outcome)
-                    except Exception as error:  # a report that nobody expected: its own row, and nobody else's
-                        line = group.add(name, f"the report can't be stored: {type(error).__name__}: {error}")
-                    print(line, flush=True)
-    except NoTimeError as error:
-        for name in list(group.waiting):
-            print(group.add(name, f"no grade: {error}"), flush=True)
+                    print(group.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
         with contextlib.suppress(OSError):  # the terminal may be closed
             print(

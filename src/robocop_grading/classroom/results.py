@@ -2,9 +2,9 @@
 
 import collections
 import contextlib
-import functools
 import json
 import os
+import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,6 @@ from ..plan import PARTS, Plan
 from ..report.write import render
 from .hand_ins import HandIn
 from .summary import Summary
-from .worker import Done
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
 NOT_HANDED_IN = "not handed in"
@@ -38,9 +37,6 @@ class Check:
     points: float
     cause: str = ""
     extra: bool = False
-
-
-_without_cause = functools.lru_cache(maxsize=1024)(Check)  # most results of a large class consist of the same few
 
 
 @dataclass(frozen=True)
@@ -107,13 +103,12 @@ class Results:
     def _from(self, digest: str) -> Dict[str, Any]:
         return {**self._made_with, "digest": digest}
 
-    def keep(self, done: Done) -> None:
-        """Store a report; a concurrent reader sees either the old or the new one, but no mixture."""
-        new, final = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / done.name
+    def keep(self, name: str, digest: str, report: Path, seconds: float) -> None:
+        """Store the report in a folder; a concurrent reader sees either the old or the new one, but no mixture."""
+        new, final = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / name
         new.chmod(0o755)
-        for name, content in done.files.items():
-            (new / name).write_bytes(content)
-        stamp = {"made_from": self._from(done.digest), "seconds": round(done.seconds, 1), "worker": done.worker}
+        shutil.copytree(report, new, dirs_exist_ok=True)
+        stamp = {"made_from": self._from(digest), "seconds": round(seconds, 1)}
         (new / STAMP).write_text(json.dumps(stamp, indent=1))
         if final.exists():
             tree.remove(final)
@@ -129,8 +124,7 @@ class Results:
 
 def _check(raw: Mapping[str, Any]) -> Check:
     cause = raw["failure"]["cause"] if raw["failure"] else ""
-    values = raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"]
-    return Check(*values) if cause else _without_cause(*values)
+    return Check(raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"])
 
 
 def write_atomically(path: Path, text: str) -> None:

@@ -1,132 +1,52 @@
-"""Grades a packed hand-in on a dask worker and returns the files of its report."""
+"""Grades one hand-in of a class and stores its report; run by dask's workers."""
 
-import contextlib
-import dataclasses
-import faulthandler
-import os
-import socket
 import time
-from dataclasses import dataclass, field
+from dataclasses import replace
 from pathlib import Path
-from typing import Dict, Iterator, Optional, Union
+from typing import List
 
-from aro_robocop_goto_as.errors import NoTimeError, RobocopError, SubmissionError, UngradableError
+from aro_robocop_goto_as.errors import RobocopError, UngradableError
 
 from ..builds.workspace import places
+from ..files import packing
 from ..files.tree import temporary_folder
 from ..grader import grade
 from ..judge import Grade
 from ..plan import Plan
 from ..report.write import write
-from ..runner import BUDGET, Runner
+from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
-from ..submission import lab_environment, prepare_submission
-from .hand_ins import HandIn, unpack
+from ..submission import prepare_submission
+from .hand_ins import packed
+from .results import Results
 
 MOST_PROBLEM = 4_000  # characters
-# [s, wall] for one hand-in. The limits of its parts, attempts and builds are less than that in sum: a worker that takes
-# longer hangs itself.
-LONGEST = 8.0 * BUDGET
 
 
-@dataclass(frozen=True)
-class Task:
-    """A hand-in with the options for grading it."""
-
-    hand_in: HandIn
-    plan: Plan
-    unsafe: bool = False
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a class is graded."""
-
-    scheduler: str = ""  # tls://HOST:PORT; none: local workers
-    credentials: str = ""  # PEM file with the key and the certificate that scheduler, workers and client share
-    workers: int = 1  # local ones
-    unsafe: bool = False
-
-
-@dataclass(frozen=True)
-class Done:
-    """The report of a hand-in; one that could not be graded has a report that states the problem."""
-
-    name: str
-    digest: str
-    files: Dict[str, bytes] = field(default_factory=dict)
-    seconds: float = 0.0
-    worker: str = ""
-
-
-def work(task: Task) -> Union[Done, NoTimeError]:
-    """Grade one hand-in; its mistakes go into the report, other errors are raised.
-
-    A NoTimeError is returned: dask would repeat at once what raises an error.
-    """
-    started, name = time.monotonic(), task.hand_in.name.encode("utf-8", "replace").decode()
-    state, share = places()
-    with ended_if_it_hangs(LONGEST), temporary_folder("robocop-class-", _scratch()) as top:
-        folder = top / "report"
+def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
+    """Grade one hand-in; its mistakes go into its report, and what is not its fault is raised."""
+    started, (state, share) = time.monotonic(), places()
+    sandbox = open_sandbox(unsafe, [state / "venv", state / "compat"])
+    digest = ""
+    notes: List[str] = []  # about what is not used of it
+    with temporary_folder("robocop-class-") as top:
+        report = top / "report"
         try:
-            sandbox = open_sandbox(task.unsafe, [state / "venv", state / "compat"])
-            if task.hand_in.problem:
-                raise SubmissionError(task.hand_in.problem)
-            path = unpack(task.hand_in, top / "hand_in")
-            submission = prepare_submission(str(path), share, state, top / "workshop", sandbox)
-            notes = [*submission.notes, *task.hand_in.notes]
-            submission = dataclasses.replace(submission, name=name, notes=notes)
-            grade(Runner(task.plan, state, sandbox), submission, folder, scratch=top)
-        except NoTimeError as error:
-            return error
+            archive, digest, notes = packed(path)
+            packing.unpack(archive, top / "hand_in")
+            submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
+            submission = replace(submission, name=shown(path), notes=[*submission.notes, *notes])
+            grade(Runner(plan, state, sandbox), submission, report, scratch=top)
         except UngradableError:
             raise
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
-            folder.mkdir(exist_ok=True)
+            report.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
             problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
-            write(Grade(name, (), (problem, *task.hand_in.notes)), task.plan, {}, folder)
-        files = {entry.name: entry.read_bytes() for entry in sorted(folder.iterdir())}
-    return Done(
-        task.hand_in.name,
-        task.hand_in.digest,
-        files,
-        time.monotonic() - started,
-        f"{socket.gethostname()}:{os.getpid()}",
-    )
+            write(Grade(shown(path), (), (problem, *notes)), plan, {}, report)
+        results.keep(path.name, digest, report, time.monotonic() - started)
 
 
-@contextlib.contextmanager
-def ended_if_it_hangs(limit: float) -> Iterator[None]:
-    """End this process with a traceback if the block takes longer than `limit` [s, wall], though nothing can run in it.
-
-    Dask then starts another worker and gives it the hand-in. One at a time in a process.
-    """
-    faulthandler.dump_traceback_later(limit, exit=True)  # by a thread that does not need the interpreter
-    try:
-        yield
-    finally:
-        faulthandler.cancel_dump_traceback_later()
-
-
-def _scratch() -> Optional[Path]:
-    """This dask worker's folder, which dask removes even after the worker was killed."""
-    from distributed import get_worker  # takes half a second
-
-    try:
-        return Path(get_worker().local_directory)
-    except ValueError:  # not a dask worker
-        return None
-
-
-def ready(unsafe: bool) -> str:
-    """Prepare this worker's machine; what it lacks for grading, or nothing."""
-    try:
-        state, share = places()
-        open_sandbox(unsafe, [state / "venv"])
-        lab_environment(share, state)
-    except NoTimeError:
-        pass  # each hand-in tries again
-    except RobocopError as error:
-        return str(error)
-    return ""
+def shown(path: Path) -> str:
+    """Its name as text."""
+    return path.name.encode("utf-8", "replace").decode()

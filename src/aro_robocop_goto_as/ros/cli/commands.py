@@ -36,17 +36,6 @@ def grade(arguments: List[str]) -> None:
     program.start_script("robocop_grade.py", *arguments)
 
 
-def grade_worker(arguments: List[str]) -> None:
-    """A dask worker for grade-class."""
-    if any(argument.split("=")[0] == "--nthreads" for argument in arguments):
-        program.refuse("grade-worker grades one hand-in at a time: start several instead of --nthreads")
-    program.need("hosting", "grade", "class")
-    options = "--nthreads 1 --memory-limit 0 --no-dashboard --local-directory".split()
-    os.environ["DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED"] = "False"  # see PROFILER in classroom/dask_cluster.py
-    folder = str(program.state() / "dask")
-    program.start(*program.module("distributed.cli.dask_worker", *options, folder, *arguments))
-
-
 def shell(arguments: List[str]) -> None:
     """Run a command in the workspace, or open a shell in it."""
     program.need()
@@ -116,7 +105,6 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "new": to_script("robocop_new.py"),
     "grade": grade,
     "grade-class": to_script("robocop_grade_class.py", "hosting", "grade", "class"),
-    "grade-worker": grade_worker,
     "test": developer_commands.test,
     "bench": developer_commands.bench,
     "shell": shell,

@@ -1,12 +1,12 @@
 """The seed of a class, also when it is graded twice at a time; who is graded again; what is told meanwhile."""
 
-import json
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
-from class_records import PLAN, report
+from class_records import PLAN, keep, keep_report
 
 from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.builds.workspace import exclusive
@@ -14,13 +14,12 @@ from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.hand_ins import HandIn
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
-from robocop_grading.classroom.worker import Done
 from robocop_grading.plan import LARGEST_SEED
 
 
 @pytest.mark.parametrize("used", [0, 7])
 def test_class_keeps_its_seed_unless_another_one_is_given(used, tmp_path):
-    Results(tmp_path, {"seed": used}).keep(report("anna", 0.2))
+    keep(Results(tmp_path, {"seed": used}), "anna", 0.2)
     assert class_seed(None, tmp_path) == used
     assert class_seed(3, tmp_path) == 3
 
@@ -34,7 +33,7 @@ def test_gradings_of_a_new_class_at_the_same_time_share_a_seed(tmp_path):
     with exclusive(out / ".run"):  # the first one is running
         second = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         assert "waiting for another process" in second.stderr.readline()
-        Results(out, {"seed": 4711}).keep(report("anna", 0.2))
+        keep(Results(out, {"seed": 4711}), "anna", 0.2)
     try:
         assert [second.stdout.readline() for _ in range(2)][1] == "scenarios: seed 4711\n"
     finally:
@@ -49,11 +48,10 @@ def test_new_class_gets_a_seed_that_draws(tmp_path):
 @pytest.fixture
 def group(tmp_path):
     """A class of four: Anna is judged, Ben is not gradable, the others have no result yet."""
-    hand_ins = [HandIn(name, digest=f"digest of {name}") for name in ("anna", "ben", "carl.zip", "řehoř")]
+    hand_ins = [HandIn(Path(name), f"digest of {name}") for name in ("anna", "ben", "carl.zip", "řehoř")]
     results = Results(tmp_path, {})
-    results.keep(report("anna", 0.5))
-    empty = json.dumps({"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]}).encode()
-    results.keep(Done("ben", "digest of ben", {"report.json": empty}))
+    keep(results, "anna", 0.5)
+    keep_report(results, "ben", {"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]})
 
     def make(again=()):
         return Class(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
@@ -81,7 +79,8 @@ def test_unknown_name_is_refused(name, advice, group):
 def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkeypatch):
     made = group()
     monkeypatch.setattr(made, "_started", time.monotonic() - 60.0)
-    line = made.add("carl.zip", report("carl.zip", 8.0))
+    keep(made.results, "carl.zip", 8.0)
+    line = made.add("carl.zip", "")
     assert line == "[3/4] carl.zip: 8 of 8 points, 0 of 1 extra, 3 s; 1.0 a minute, about 2 min left"
     assert made.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
     lines = made.summary_lines()

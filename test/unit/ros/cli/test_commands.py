@@ -26,7 +26,7 @@ def test_clean_with_an_argument_removes_nothing():
     assert done.stderr == "robocop: clean: expected no arguments, got web\n"
 
 
-@pytest.mark.parametrize("words", [("run", "--help"), ("sim", "world:=stage_1", "-h"), ("grade-worker", "--help")])
+@pytest.mark.parametrize("words", [("run", "--help"), ("sim", "world:=stage_1", "-h")])
 def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
     done = robocop(*words)
     assert done.returncode == 0 and done.stdout.startswith(f"  {words[0]} "), done.stderr
@@ -72,12 +72,6 @@ def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
     done = robocop("setup", "wbe")
     assert done.returncode == 1
     assert "no part 'wbe'; there are: axclient class docs grade " in done.stderr and "did you mean web?" in done.stderr
-
-
-@pytest.mark.parametrize("words", [("--nthreads", "4"), ("--nthreads=4",)])
-def test_a_worker_with_several_threads_is_refused(words):
-    done = robocop("grade-worker", "tls://127.0.0.1:1", *words)
-    assert done.returncode == 1 and "start several instead of --nthreads" in done.stderr
 
 
 def test_unreachable_display_counts_as_none():

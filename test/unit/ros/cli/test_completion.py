@@ -105,7 +105,7 @@ def test_tab_completes(shell, line, completed):
 def test_options_are_those_of_the_help_text():
     found = options()
     assert found["sim"] == ["--verbose", "--with", "--launch"]
-    assert "--credentials" in found["grade-class"] and found["help"] == []
+    assert "--scheduler" in found["grade-class"] and found["help"] == []
 
 
 def test_rostopic_pub_is_completed_in_robocop_shell(tmp_path):
