@@ -95,7 +95,20 @@ def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch
         wait_for(lambda: ended(simulator), lambda: launched.output)
     finally:
         os.kill(launched.process.pid, signal.SIGCONT)
-    assert "has ended, and so does the simulator" in launched.output
+    assert "has ended, and so does /robocop_sim" in launched.output
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("name", ["robocop_goto_as.py", "robocop_rviz_goto_ac.py"])
+def test_a_program_that_waits_for_a_master_says_so_and_is_ended_by_a_signal(tmp_path, name, number):
+    program = Program(tmp_path, name, ROS_MASTER_URI=f"http://localhost:{free_port()}")
+    try:
+        program.wait_until(lambda: "waiting for a ROS master" in program.output, "the message")
+        program.process.send_signal(number)
+        assert program.wait_for_exit() in (128 + number, -number)
+    finally:
+        program.kill()
+    assert "Traceback" not in program.output
 
 
 def services(master):

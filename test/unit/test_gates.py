@@ -56,11 +56,11 @@ ORDER = {
     "obstacle_ahead": "",
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
-    "ros": "compiled errors geometry param_loading sim_params process robot names sensors simulation world",
+    "ros": "compiled errors geometry param_loading probes sim_params process robot names sensors simulation world",
     "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation trail",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
-    "ros.web": "errors geometry param_loading probes ros ros.client names trail web web_params",
+    "ros.web": "errors geometry param_loading ros ros.client names trail web web_params",
     "ros.cli": "errors geometry param_loading sim_params probes process reading robot ros ros.client names "
     "suggestions web web_params world",
     f"{GRADER}.agent": "",

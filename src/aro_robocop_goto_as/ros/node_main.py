@@ -6,18 +6,23 @@ import resource
 import signal
 import sys
 import threading
+import time
 from typing import Any, Iterator, Type, TypeVar
 
+import rosgraph
 import rospy
 
-from ..errors import RobocopError
+from ..errors import MasterError, RobocopError
 from ..param_loading import from_dict
+from ..probes import master
 from ..process.signals import ending_signals
 
 HELP = """\
 {0}
 usage: rosrun aro_robocop_goto_as {1} {2}
 Names and meanings: docs/interfaces.md. ./robocop run and roslaunch start it with everything else."""
+MASTER_PERIOD = 0.5  # [s, wall] between two looks for a ROS master
+MASTER_WATCH_PERIOD = 2.0  # [s, wall] between two looks whether it is still there
 ROSOUT_TOPICS = "/rosout_disable_topics_generation"
 MAX_DESCRIPTORS = 65_536  # files; in containers the system may grant a billion, over which some libraries loop
 T = TypeVar("T")
@@ -30,6 +35,18 @@ def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTH
         sys.exit()
 
 
+def wait_for_master() -> None:
+    """Return when there is a ROS master. rospy's own wait for one, in init_node, can't be ended by a signal."""
+    if rosgraph.is_master_online():
+        return
+    print(f"waiting for a ROS master at {rosgraph.get_master_uri()}: start ./robocop run or roscore", file=sys.stderr)
+    try:
+        while not rosgraph.is_master_online():
+            time.sleep(MASTER_PERIOD)
+    except KeyboardInterrupt:
+        sys.exit(128 + signal.SIGINT)
+
+
 @contextlib.contextmanager
 def node(name: str, **options: Any) -> Iterator[None]:
     """rospy.init_node for the block in which the node lives; a RobocopError in it is logged, with exit status 1.
@@ -37,6 +54,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
     rospy shuts down inside its signal handler. If the signal interrupts a call to the master, the handler waits forever
     for the lock that this call holds. Here a thread shuts down, so that the call can complete.
     """
+    wait_for_master()
     for number in ending_signals():
         signal.signal(number, _shut_down)
     raise_descriptor_limit()
@@ -56,6 +74,21 @@ def node(name: str, **options: Any) -> Iterator[None]:
         rospy.logdebug("%s", error)
     finally:  # threads that wait for rospy's end would keep the process alive
         rospy.signal_shutdown("the node has ended")
+
+
+def end_with_master() -> None:
+    """End the node, which nobody could find any more, when the ROS master's port is closed; looks from a thread."""
+
+    def watch() -> None:
+        uri = master.master_uri()
+        while not rospy.is_shutdown():
+            with contextlib.suppress(MasterError):  # it is busy
+                if not master.master_answers(uri):
+                    rospy.logfatal("the ROS master at %s has ended, and so does %s", uri, rospy.get_name())
+                    rospy.signal_shutdown("the ROS master has ended")
+            time.sleep(MASTER_WATCH_PERIOD)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def load_params(cls: Type[T]) -> T:

@@ -64,7 +64,7 @@ def run(arguments: List[str]) -> None:
 def sim(arguments: List[str]) -> None:
     """The simulator alone, or with somebody else's package."""
     if arguments[:1] != ["--with"]:
-        given = LaunchArguments.parse(SIM, arguments)
+        given = LaunchArguments.parse(SIM, [word for word in arguments if word != "rviz:=false"])  # it starts none
         refuse_second_simulator()
         program.need(*["gui"] * given.is_true("gui"))
         launch(given)

@@ -2,8 +2,6 @@
 
 import contextlib
 import sys
-import threading
-import time
 from typing import AbstractSet, Any, Callable
 
 import rosgraph
@@ -15,7 +13,7 @@ from ...probes import master
 from ...sim_params import SimParams, TopicParams
 from ...simulation.running import Change, Simulation
 from ...simulation.simulator import Simulator
-from ..node_main import answer_help, load_params, node
+from ..node_main import answer_help, end_with_master, load_params, node
 from ..publishing.publisher import resume
 from .command_topics import CommandTopics
 from .loading import load_simulator
@@ -24,7 +22,6 @@ from .status import StatusTopics
 from .step_topics import StepTopics
 from .world_topics import WorldTopics
 
-MASTER_PERIOD = 2.0  # [s, wall] between two looks whether the ROS master is still there
 SHORT = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
 
 
@@ -160,16 +157,6 @@ def refuse_second() -> None:
         )
 
 
-def end_with_master() -> None:
-    """Wait until the ROS master's port is closed, then end the node, which nobody could find any more."""
-    while not rospy.is_shutdown():
-        with contextlib.suppress(MasterError):  # it is busy
-            if not master.master_answers(master.master_uri()):
-                rospy.logfatal("the ROS master at %s has ended, and so does the simulator", master.master_uri())
-                rospy.signal_shutdown("the ROS master has ended")
-        time.sleep(MASTER_PERIOD)
-
-
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     answer_help("The simulator: a world and its robots; publishes scan, odom, tf and clock, obeys cmd_vel.")
@@ -177,5 +164,5 @@ def main() -> None:
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
         with contextlib.closing(load_simulator(load_params(SimParams))) as simulator:
-            threading.Thread(target=end_with_master, daemon=True).start()
+            end_with_master()
             SimNode(simulator).run()

@@ -64,6 +64,11 @@ def test_without_a_display_the_web_page_is_left_as_chosen(chosen):
     assert "no usable display; RViz is not started\n" in messages
 
 
+def test_sim_takes_that_rviz_is_not_wanted():
+    assert dry_run("sim", "world:=empty", "rviz:=false")[0].endswith(f"{LAUNCH} robocop_sim.launch world:=empty")
+    assert "there is no argument rviz" in robocop("sim", "rviz:=true").stderr
+
+
 def test_web_starts_the_page_with_its_arguments():
     assert dry_run("web", "web_port:=8090")[0].endswith("/robocop_web.py web_port:=8090")
 
