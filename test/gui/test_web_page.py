@@ -243,21 +243,6 @@ def test_the_buttons_that_drive_form_a_cross(web, tab):
     assert boxes["Forward (I)"]["y"] < left["y"] < boxes["Back (K)"]["y"]
 
 
-@pytest.mark.slow
-def test_the_log_has_what_nodes_said_before_the_page_was_opened(web, browser):
-    web.place(*SPAWN)
-    tab = Tab(browser, web.url)
-    tab.wait_for_text(READY)
-    tab.click_floor(-0.5, 0.0)
-    tab.wait_for_text("REACHED")
-    tab.close()
-    tab = Tab(browser, web.url)
-    tab.wait_for_text(READY)
-    tab.open("Plots")
-    tab.wait_for_text("aro_robocop_goto_as_node REACHED")
-    tab.close()
-
-
 def test_the_page_links_to_the_lab(web, tab):
     assert tab.page.get_by_text("The lab, step by step").get_attribute("href") == "/lab.md"
     assert web.status("/lab.md") == 200
@@ -274,9 +259,5 @@ BRIGHTNESS = """() => {  // of the scene's picture, from 0 to 255, and how much 
 
 
 @pytest.mark.slow
-def test_the_scene_is_light_and_can_be_made_dark(web, tab):
+def test_the_scene_is_light(web, tab):
     wait_for(lambda: tab.page.evaluate(BRIGHTNESS) > 200, "a light scene")
-    tab.open("View")
-    for bright in (False, True):
-        tab.page.get_by_label("Dark colours").first.click(force=True)
-        wait_for(lambda b=bright: (tab.page.evaluate(BRIGHTNESS) > 200) == b, f"a scene that is light: {bright}")

@@ -1,4 +1,4 @@
-"""The web page in a real Chromium when parts of the system are killed and come back: it goes on by itself."""
+"""The web page in a real Chromium when parts of the system are killed: it goes on, or ends with its master."""
 
 import math
 import os
@@ -8,15 +8,15 @@ import xmlrpc.client
 import pytest
 from browser import Tab, chromium
 from desktop import Master
-from systems import CALLER, end
-from waiting import wait_for
+from systems import CALLER
+from waiting import DEADLINE, wait_for
 from web import REACHED, READY, Web
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
 
 PACKAGE = "aro_robocop_goto_as"
 SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
-GONE, SILENT = "ROS does not answer", "No report from the simulator"
+SILENT = "No report from the simulator"
 
 
 class Parts(Web):
@@ -104,33 +104,6 @@ def test_a_reloaded_page_drives_the_robot(parts, tab):
     expect_a_click_to_drive_the_robot(parts, tab)
 
 
-@pytest.fixture
-def lab(tmp_path):
-    web = Web(tmp_path)
-    with web.ros:
-        page = web.start()
-        yield web
-        assert page.poll() is None
-
-
-def test_an_open_page_reports_that_the_master_is_gone_and_goes_on_with_a_new_master_and_system(lab, browser):
-    tab = Tab(browser, lab.url)
-    tab.wait_for_text(READY)
-    end(lab.ros.running[0][0], signal.SIGINT, signal.SIGTERM)
-    tab.wait_for_text(GONE)
-    lab.ros.launch()
-    wait_for(lambda: GONE not in tab.text(), "the page no longer misses ROS")
-    tab.wait_for_text(READY)
-    expect_a_click_to_drive_the_robot(lab, tab)
-    tab.close()
-
-
-def test_a_page_opened_without_a_master_says_so_and_shows_the_system_that_is_started_then(lab, browser):
-    wait_for(lambda: lab.ros.subscriber("/robocop_goto_as/result", "/robocop_web"), "the page's node is registered")
-    end(lab.ros.running[0][0], signal.SIGINT, signal.SIGTERM)
-    tab = Tab(browser, lab.url)
-    tab.wait_for_text(GONE)
-    lab.ros.launch()
-    tab.wait_for_text(READY)
-    expect_a_click_to_drive_the_robot(lab, tab)
-    tab.close()
+def test_the_page_ends_with_its_master(parts):
+    os.kill(parts.ros.master.getPid(CALLER)[2], signal.SIGKILL)
+    assert parts.page.wait(DEADLINE) == 0

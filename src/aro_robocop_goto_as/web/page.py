@@ -1,7 +1,7 @@
 """The page before it shows anything: its colours, where its cameras are, and which point of the floor they show."""
 
 import math
-from typing import Any, Dict, Iterable, Optional, Tuple
+from typing import Any, Iterable, Optional, Tuple
 
 import numpy as np
 
@@ -28,10 +28,7 @@ STYLE = """<style onload="window.addEventListener(
 }
 </style>"""
 FLOOR_SIZE = 40.0  # [m] of the grid
-FLOOR: Dict[bool, Dict[str, Tuple[int, int, int]]] = {  # its colours by whether the theme is dark
-    False: {"plane_color": (246, 247, 249), "cell_color": (222, 226, 230), "section_color": (190, 197, 205)},
-    True: {"plane_color": (34, 38, 46), "cell_color": (62, 68, 80), "section_color": (95, 103, 118)},
-}
+FLOOR = {"plane_color": (246, 247, 249), "cell_color": (222, 226, 230), "section_color": (190, 197, 205)}
 MAX_CLICK = 1000.0  # [m] from the scene's origin; a ray that almost misses the floor meets it somewhere beyond
 SUN = (-3.0, -5.0, 9.0)  # [m] where the light comes from: the left of the first view
 
@@ -48,6 +45,9 @@ def set_up(server: Any) -> None:
     scene.configure_default_lights(False)
     scene.add_light_ambient("/light/everywhere", intensity=1.6)
     scene.add_light_directional("/light/sun", intensity=1.8, position=SUN)
+    opaque = {"plane_opacity": 1.0, "shadow_opacity": 0.0}
+    scene.add_grid("/floor", FLOOR_SIZE, FLOOR_SIZE, cell_size=0.5, section_size=1.0, **opaque, **FLOOR)
+    server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
     server.gui.add_html(STYLE)
 
 
@@ -121,13 +121,6 @@ def view_of(corners: np.ndarray, width: int, height: int) -> Tuple[np.ndarray, n
     right, up = ((low + high) / 2.0 + middle * ahead for low, high, middle, _ in limits)
     position = right * RIGHT + up * UP + ahead * AHEAD
     return position, position - position[2] / AHEAD[2] * AHEAD
-
-
-def set_theme(server: Any, dark: bool) -> None:
-    """Show panel and floor in dark or light colours."""
-    server.gui.configure_theme(dark_mode=dark, show_logo=False, show_share_button=False, control_width="medium")
-    opaque = {"plane_opacity": 1.0, "shadow_opacity": 0.0}
-    server.scene.add_grid("/floor", FLOOR_SIZE, FLOOR_SIZE, cell_size=0.5, section_size=1.0, **opaque, **FLOOR[dark])
 
 
 def floor_point(origin: Vector3, direction: Vector3) -> Optional[Tuple[float, float]]:

@@ -13,14 +13,10 @@ class PageState:
 
     live: bool = True  # visitors can send requests; otherwise they watch the system, or a recording
     recorded: bool = False  # a recording is shown, no running system
-    registered: bool = False  # with the ROS master
-    forgotten: bool = False  # the master answers, but is another one than the node registered with
-    master_problem: str = "it has not been asked yet"  # why the ROS master does not answer, empty if it does
     robots: Tuple[str, ...] = ("",)  # namespaces; "" is a robot without one
     chosen: str = ""  # the robot that a visitor chose last
     answer: str = ""  # why the last request failed, empty if it did not
     simulated: bool = False  # a simulator has reported
-    factor: float = 1.0  # simulated seconds per second, as the simulator reached it
     factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
     answering: bool = False  # there is a server of the selected robot, which publishes its status
     executing: Optional[bool] = None  # the selected robot's server executes a goal; None until it is known
@@ -32,11 +28,6 @@ class PageState:
     def selected(self) -> str:
         """The robot that is shown in detail and driven."""
         return self.chosen if self.chosen in self.robots else self.robots[0]
-
-    @property
-    def accepts_requests(self) -> bool:
-        """Return whether requests of visitors are sent on."""
-        return self.live and self.registered and not self.master_problem
 
 
 class SharedState:

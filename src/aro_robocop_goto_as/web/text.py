@@ -10,7 +10,6 @@ GOAL = r"goal x \S+ y \S+(?: in \S+)?"
 OFF = re.compile(rf"([\d.]+) m from the {GOAL} after ([\d.]+ s)")
 STOPPED = re.compile(rf"{GOAL} stopped after ([\d.]+ s): (.*)")
 OBSTACLE = re.compile(r"(OBSTACLE: )obstacle ([\d.]+ m ahead)(?: \(limit [\d.]+ m\))?")
-LEVELS = {4: "color:#e8590c", 8: "color:#e03131", 16: "color:#e03131"}  # of rosgraph_msgs/Log: WARN, ERROR, FATAL
 ALERT = "margin:0 0.8em 0.6em;padding:0.5em 0.7em;border-radius:4px;background:#b3261e;color:#fff;font-size:0.9em"
 
 
@@ -61,15 +60,6 @@ def history(ended: Iterable[Tuple[bool, str]]) -> str:
     marks = {True: '<span style="color:#2b8a3e">✓</span>', False: '<span style="color:#e8590c">✗</span>'}
     lines = "".join(f"<div>{marks[reached]} {plain(line)}</div>" for reached, line in ended)
     return f'<div style="{STYLE}">{lines or "no goal has ended yet"}</div>'
-
-
-def log(lines: Iterable[Tuple[int, str, str]]) -> str:
-    """What nodes logged: level, name and message of each; warnings and errors stand out."""
-    shown = "".join(
-        f'<div style="{LEVELS.get(level, "")}"><b>{plain(name)}</b> {plain(message)}</div>'
-        for level, name, message in lines
-    )
-    return f'<div style="{STYLE}">{shown or "nothing yet"}</div>'
 
 
 def legend(what: str, colors: Mapping[str, Tuple[int, int, int]]) -> str:

@@ -12,10 +12,3 @@ def test_the_selected_robot_is_the_one_chosen_as_long_as_there_is_one_of_that_na
     assert state.now.selected == "red"
     state.change(robots=("blue",))
     assert state.now.selected == "blue"
-
-
-def test_requests_are_accepted_only_of_a_live_page_that_is_registered_with_a_master_that_answers() -> None:
-    ready = {"live": True, "registered": True, "master_problem": ""}
-    assert PageState(**ready).accepts_requests
-    for change in ({"live": False}, {"registered": False}, {"master_problem": "it hangs"}):
-        assert not PageState(**{**ready, **change}).accepts_requests

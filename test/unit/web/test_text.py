@@ -12,7 +12,6 @@ def test_markup_in_names_and_messages_is_shown_as_text() -> None:
         text.answer(attack),
         text.table([(attack, attack)]),
         text.history([(True, attack)]),
-        text.log([(2, attack, attack)]),
         text.legend(attack, {attack: (1, 2, 3)}),
         text.link(attack, attack),
     ):

@@ -1,6 +1,5 @@
 """robocop_web: shows the system in a browser, and sends what a visitor asks for."""
 
-import os
 import sys
 import threading
 import time
@@ -19,10 +18,8 @@ from ...web.scene import PageScene, color_of
 from ...web.state import PageState, SharedState
 from ...web_params import WebParams
 from .. import markers
-from ..node_main import answer_help, node
+from ..node_main import answer_help, end_with_master, node
 from .goals import Goals
-from .log import Log
-from .master_watch import watch_master
 from .part import Context, Inbox, Part
 from .plots import PLOTTED, Plot
 from .replay import Replay
@@ -38,7 +35,6 @@ from .view import View
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
 TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
-MASTER_PERIOD = 0.1  # [s, wall] between two checks for a ROS master at the start
 SECTOR = {"free": markers.FREE, "near": markers.NEAR, "too near": markers.BLOCKED, "no scan": markers.UNKNOWN}
 ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
@@ -64,13 +60,11 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 
 def add_parts(context: Context, p: WebParams) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs."""
-    live, goals = context.state.now.live, Goals(context)
-    replay = Replay(context, p.replay, p.replay_waits) if p.replay else None
-    parts: List[Part] = [goals] if replay is None else [replay, goals]
+    live = context.state.now.live
+    parts: List[Part] = [Replay(context, p.replay_waits)] if p.replay else []
+    goals = Goals(context)
+    parts.append(goals)
     tabs = context.server.gui.add_tab_group()
-    if replay is not None and replay.failed:
-        with tabs.add_tab("Checks"):
-            replay.add_failures()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
         parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
@@ -81,8 +75,6 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     with tabs.add_tab("Plots"):
         for plotted in PLOTTED:
             parts.append(Plot(context, plotted))
-        if not p.view_only:
-            parts.append(Log(context))
     with tabs.add_tab("View"):
         parts.append(View(context))
     return parts
@@ -101,8 +93,7 @@ class WebNode:
         context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
         cameras = Cameras(server)
-        status = Status(context)
-        self._parts = [Robots(context), status, *add_parts(context, p), Scenery(context, cameras)]
+        self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
         self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._detailed: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
@@ -110,24 +101,13 @@ class WebNode:
         self._visitors = threading.Event()  # a browser has come or gone
         server.on_client_connect(lambda _: self._visitors.set())
         server.on_client_disconnect(lambda _: self._visitors.set())
-        watch_master(self._state, status.show_master_problem)
 
-    def wait_for_master(self) -> None:
-        """Return when a ROS master answers; meanwhile the page says that there is none."""
-        while self._state.now.master_problem:
-            time.sleep(MASTER_PERIOD)
-
-    def run(self) -> bool:
-        """Serve until shutdown; True if the master has been replaced by one that does not know this node."""
-        self._state.change(registered=True)
+    def run(self) -> None:
+        """Serve until shutdown."""
         rospy.on_shutdown(self._end)
         while not rospy.is_shutdown():
-            if self._state.now.forgotten:
-                self._end()
-                return True
             visited = bool(self._server.get_clients())
-            if not self._state.now.master_problem:  # otherwise, connections that exist go on
-                self._connect(visited)
+            self._connect(visited)
             for inbox in (self._always, self._system, self._detail):
                 inbox.deliver()
             if visited:
@@ -138,7 +118,6 @@ class WebNode:
             else:
                 self._visitors.wait(IDLE_PERIOD)
                 self._visitors.clear()
-        return False
 
     def _connect(self, visited: bool) -> None:
         """Subscribe to what is to be shown, if it is. Only this needs the ROS master, and may wait for it."""
@@ -157,7 +136,7 @@ class WebNode:
         if time.monotonic() - self._asked >= ASK_PERIOD:
             self._asked = time.monotonic()
             for part in self._parts:
-                part.ask_master(state, self._always)
+                part.ask_master(self._state.now, self._always)
 
     def _end(self) -> None:
         for part in self._parts:
@@ -165,22 +144,18 @@ class WebNode:
 
 
 def main() -> None:
-    """Serve the page until a signal; start over when the ROS master was replaced, since rospy registers only once."""
+    """Serve the page until a signal, or the end of the ROS master."""
     answer_help("The web page that shows the running system in a browser.", "[web_port:=N] [web_host:=ADDRESS]")
     try:
         p = load_params(sys.argv[1:])
         server = start_server(p)
     except RobocopError as error:
         sys.exit(f"{WEB}: {error.code}: {error}")
-    print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
-    web = WebNode(server, p)
-    web.wait_for_master()
-    replaced = False
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
+        end_with_master()
+        print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
         if not access.is_loopback(p.web_host) and not p.view_only:
             warning = "the page listens on %s:%d without a password: every machine that reaches it can drive the robot"
             rospy.logwarn(warning, p.web_host, p.web_port)
-        replaced = web.run()
-    if replaced:  # this closes the port, and browsers connect again by themselves
-        os.execv(sys.executable, [sys.executable, *sys.argv])
+        WebNode(server, p).run()
     server.stop()

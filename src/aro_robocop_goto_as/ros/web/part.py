@@ -68,14 +68,9 @@ class Inbox:
             while True:
                 try:
                     message = waiting.popleft()
-                except IndexError:  # none is left; clear() may be called by another thread
+                except IndexError:  # none is left
                     break
                 handler(*message)
-
-    def clear(self) -> None:
-        """Forget the messages that wait."""
-        for _, waiting, _ in self._subscriptions:
-            waiting.clear()
 
     def close(self) -> None:
         """Unsubscribe."""

@@ -3,7 +3,7 @@
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import Any, Callable, Deque, Dict, Iterable, Sequence, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
@@ -19,10 +19,16 @@ Figures = Callable[[Any], Tuple[float, float]]  # a message -> its two figures
 
 SPAN = 30.0  # [s, wall] that a plot of a running system shows
 MAX_SAMPLES = 900  # samples: 30 Hz
-HEIGHT = 110  # [pixel]
+HEIGHT = 150  # [pixel]
 PERIOD = 0.25  # [s, wall] between two updates
 COLORS = "#1c7ed6", "#e8590c"
-TIME: Dict[str, Any] = {"size": 32, "grid": {"show": False}, "labelSize": 18, "labelFont": "12px sans-serif"}
+TIME: Dict[str, Any] = {
+    "label": "time [s], 0 is now",
+    "labelFont": "12px sans-serif",
+    "labelSize": 18,
+    "size": 32,
+    "grid": {"show": False},
+}
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
 
 
@@ -50,32 +56,23 @@ PLOTTED = (
 )
 
 
-def add_plot(gui: Any, texts: Tuple[str, ...], data: Sequence[Any], span: Tuple[float, float]) -> Any:
-    """A plot with two figures; data: times [s], the figures; span: of the time axis [s].
-
-    texts: title, labels of the figures and of the time axis
-    """
-    title, *labels, axis = texts
-    figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
-    series = ({"label": "t [s]"}, *figures)
-    scales = {"x": {"time": False, "range": span}, "y": {"range": AROUND_ZERO}}
-    look = {
-        "axes": ({**TIME, "label": axis}, {"size": 42}),
-        "legend": {"live": False},
-        "height": HEIGHT,
-        "padding": (10, 12, 0, 0),
-    }
-    return gui.add_uplot(tuple(data), series, title=title, scales=scales, **look)
-
-
 class Plot(Part):
     """The last seconds until now; sent only while there is something in them."""
 
     def __init__(self, context: Context, plotted: Plotted) -> None:
         super().__init__(context)
         self._plotted = plotted
-        self._handle = add_plot(
-            context.server.gui, (*plotted.texts, "time [s], 0 is now"), columns((), 0.0), (-SPAN, 0.0)
+        title, *labels = plotted.texts
+        figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
+        self._handle = context.server.gui.add_uplot(
+            columns((), 0.0),
+            ({"label": "t [s]"}, *figures),
+            title=title,
+            scales={"x": {"time": False, "range": (-SPAN, 0.0)}, "y": {"range": AROUND_ZERO}},
+            axes=(TIME, {"size": 42, "space": 16}),
+            legend={"live": False},
+            height=HEIGHT,
+            padding=(10, 12, 0, 0),
         )
         self._samples: Deque[Sample] = deque(maxlen=MAX_SAMPLES)
         self._changed = False  # the robot

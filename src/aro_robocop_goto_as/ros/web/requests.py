@@ -1,32 +1,27 @@
 """Visitors' requests as messages and service calls, made by one thread, so that no caller waits for a service."""
 
-import queue
-import traceback
-from typing import Any, Callable, Dict, Tuple
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Dict
 
 import rospy
 
 from ...names import SIMULATOR, absolute
 from ...web.state import SharedState
 from ..waiting import wait_until
-from .daemon import start_daemon
 
 SERVICE_TIMEOUT, CONNECT_TIMEOUT = 2.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect
-MAX_WAITING = 8  # requests
 
 
 class Requests:
     """Carries out one request after the other; the state says what the last one failed with.
 
-    Requests are ignored where nobody may send them, and while there is no ROS master, which the page says.
+    Requests are ignored where nobody may send them.
     """
 
     def __init__(self, state: SharedState) -> None:
         self._state = state
-        self._jobs: queue.Queue[Tuple[str, Callable[[], str]]] = queue.Queue(MAX_WAITING)
-        self._waiting = ""
+        self._worker = ThreadPoolExecutor(1)
         self._publishers: Dict[str, rospy.Publisher] = {}
-        start_daemon("requests", self._step)
 
     def publish(self, what: str, name: str, message: Any, otherwise: str = "") -> None:
         """Publish on a topic of the selected robot; a new publisher is given some time to be found by subscribers."""
@@ -54,22 +49,12 @@ class Requests:
         self._post(what, call)
 
     def _post(self, what: str, job: Callable[[], str]) -> None:
-        if self._state.now.accepts_requests:
+        def carry_out() -> None:
             try:
-                self._jobs.put_nowait((what, job))
-            except queue.Full:
-                self._answer(what, f"ignored, because {self._waiting} is still waiting for its answer")
+                problem = job()
+            except (rospy.ROSException, rospy.ServiceException, OSError) as error:
+                problem = str(error)
+            self._state.change(answer=f"{what}: {problem}" if problem else "")
 
-    def _answer(self, what: str, outcome: str) -> None:
-        self._state.change(answer=f"{what}: {outcome}" if outcome else "")
-
-    def _step(self) -> None:
-        what, job = self._jobs.get()
-        self._waiting = what
-        try:
-            self._answer(what, job())
-        except (rospy.ROSException, rospy.ServiceException, OSError) as error:
-            self._answer(what, str(error))
-        except Exception as error:  # the request's outermost level: the next one is served nevertheless
-            self._answer(what, f"{type(error).__name__}: {error}")
-            rospy.logerr("%s failed:\n%s", what, traceback.format_exc())
+        if self._state.now.live:
+            self._worker.submit(carry_out)

@@ -1,7 +1,7 @@
 """The robots, drawn from their descriptions where tf says that their links are."""
 
 import xmlrpc.client
-from typing import Dict, Optional, Set
+from typing import Dict, Iterable, Optional, Set, Tuple
 
 import rosgraph
 import rospy
@@ -13,10 +13,11 @@ from ...names import absolute
 from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
+from ..graph import Topic, published_topics
 from .marker_shapes import to_pose
 from .part import Context, Inbox, Part
 
-DESCRIPTION = "robot_description"
+DESCRIPTION, ODOM = "robot_description", "/odom"
 BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that exists
 TRANSFORMS = 1000  # messages that wait at most while the ROS master keeps the main thread waiting
 
@@ -67,7 +68,12 @@ class Robots(Part):
         context.state.change(pose=next((pose for pose in poses if pose is not None), None))
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
-        found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in state.robots}
+        try:
+            robots = robots_of(published_topics()) or ("",)
+        except (OSError, rosgraph.MasterException):
+            return
+        self.context.state.change(robots=robots)
+        found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in robots}
         self._links = {robot: links for robot, links in found.items() if links is not None}
 
     def _load(self, robot: str) -> Optional[Dict[str, Shape]]:
@@ -84,3 +90,9 @@ class Robots(Part):
         except RobotModelError as error:
             rospy.logwarn_throttle(60.0, "the robot %r is not drawn: %s", robot, error)
             return {}
+
+
+def robots_of(topics: Iterable[Topic]) -> Tuple[str, ...]:
+    """Namespaces of the robots: those with odometry on a topic called odom; "" for a robot without a namespace."""
+    odometry = (topic.name for topic in topics if topic.type == "nav_msgs/Odometry" and topic.name.endswith(ODOM))
+    return tuple(sorted(name[: -len(ODOM)].lstrip("/") for name in odometry))

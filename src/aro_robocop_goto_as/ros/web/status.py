@@ -7,14 +7,11 @@ from std_msgs.msg import String
 
 from aro_robocop_goto_as.msg import SimStatus
 
-from ...geometry import Pose3D
 from ...names import ACTION, BRIDGE, SIMULATOR, absolute
 from ...web import text
-from ...web.scene import TEXT, Shape
 from ...web.state import PageState
 from .part import Context, Inbox, Part
 
-GROUPS = ("robots", "world", "server", "scan", "map")  # of the scene; while all are empty a notice takes their place
 SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
 
 
@@ -24,12 +21,11 @@ class Status(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui = context.server.gui
-        self._master_alert, self._alert, self._overview, self._answer = (gui.add_html("") for _ in range(4))
+        self._alert, self._overview, self._answer = (gui.add_html("") for _ in range(3))
         self._robot = gui.add_dropdown("Robot", ("",), visible=False, hint="shown in detail and driven")
         self._sim: Optional[SimStatus] = None
         self._sim_at = 0.0  # [s, wall]
         self._bridge = ""
-        self._show_notice()
 
         async def on_select(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
             if event.client is not None:
@@ -46,23 +42,16 @@ class Status(Part):
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
-        self.context.state.change(
-            simulated=True, factor=message.factor_reached or 1.0, factor_asked=message.factor_asked
-        )
+        self.context.state.change(simulated=True, factor_asked=message.factor_asked)
 
     def _on_bridge(self, _: float, message: String) -> None:
         self._bridge = message.data
-
-    def show_master_problem(self, problem: str) -> None:
-        """Why the ROS master does not answer, if it does not. Only one thread calls this, also while others hang."""
-        self._master_alert.content = text.alert(f"ROS does not answer: {problem}." if problem else "")
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
         self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else "")
-        self._show_notice()
         known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)
@@ -71,19 +60,12 @@ class Status(Part):
         self._robot.value = state.selected
         self._robot.visible = len(state.robots) > 1
 
-    def _show_notice(self) -> None:
-        empty = not any(self.context.scene.draws(group) for group in GROUPS)
-        notice = Shape(TEXT, text="waiting for the simulator, or for a robot's topics")
-        self.context.scene.show("notice", {"notice": (notice, Pose3D())} if empty else {})
-
     def _rows(self, state: PageState) -> List[Tuple[str, str]]:
         rows, sim = [], self._sim
         if sim is not None:
             speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}"
             rows += [("world", sim.world), ("time", f"{sim.stamp.to_sec():.0f} s, {speed}")]
-        if len(state.robots) != 1:
-            rows.append(("robots", str(len(state.robots))))
         answers = "answers, no report from the bridge" if state.answering else "does not publish its status"
         # What the bridge adds to that, and its words for a goal, the page shows elsewhere.
-        report = "ready" if self._bridge.startswith(f"{ACTION} is ready") else self._bridge
+        report = "ready" if self._bridge.startswith((f"{ACTION} is ready", "goal x ")) else self._bridge
         return [*rows, ("server", "executes a goal" if state.executing else report or answers)]

@@ -12,7 +12,6 @@ from ...names import absolute
 from ...web.dead_man import RATE, DeadMan
 from .. import convert
 from ..waiting import wait_until
-from .daemon import start_daemon
 from .goals import cancel
 from .part import Context, Part
 
@@ -49,7 +48,6 @@ class Teleop(Part):
         """Full speed: linear [m/s], angular [rad/s]."""
         super().__init__(context)
         self._dead_man = DeadMan()
-        self._began = False  # somebody drives, and it is not known yet whether a goal is executed
         self._wake = threading.Condition()
         self._publishers: Dict[str, rospy.Publisher] = {}  # by robot
         self._used = 0.0  # [s, wall] when the last command was sent
@@ -67,7 +65,7 @@ class Teleop(Part):
                 command = gui.add_command(label, hotkey=key, description="drives while the key is held")
                 command.on_trigger(hold)
         context.server.on_client_disconnect(self._on_release)
-        start_daemon("driver", self._step)
+        threading.Thread(target=self._run, daemon=True).start()
 
     def _holder(self, twist: Twist2D) -> Callable[[Any], Any]:
         # Coroutines run one after the other in viser's event loop; functions would run in its thread pool, where a late
@@ -85,15 +83,12 @@ class Teleop(Part):
     def drive(self, page: int, twist: Twist2D) -> None:
         """Drive the selected robot; a goal is cancelled, or the server would go on commanding the robot as well."""
         state = self.context.state.now
-        if not state.accepts_requests:
+        if not state.live:
             return
         with self._wake:
-            if self._dead_man.request(page, state.selected, twist, time.monotonic()):
-                self._began = True
-                self._wake.notify()
-            cancels = self._began and state.answering and state.executing is not False
-            self._began = self._began and not state.answering  # a server may be about to connect
-        if cancels:
+            begins = self._dead_man.request(page, state.selected, twist, time.monotonic())
+            self._wake.notify()
+        if begins and state.answering and state.executing is not False:
             cancel(self.context.requests)
 
     def stop(self) -> None:
@@ -106,6 +101,10 @@ class Teleop(Part):
         """Before topics are closed: stop the robot that is being driven, and wait until that has been sent."""
         self.stop()
         wait_until(lambda: not self._dead_man.active, END_TIMEOUT)
+
+    def _run(self) -> None:
+        while True:
+            self._step()
 
     def _step(self) -> None:
         with self._wake:

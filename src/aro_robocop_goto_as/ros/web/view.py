@@ -1,4 +1,4 @@
-"""Display options: frames, the trail, the camera's image, and the scene from beside the robot."""
+"""Display options: frames, the trail and the camera's image."""
 
 import math
 import time
@@ -9,10 +9,9 @@ import numpy as np
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
-from ...geometry import Pose3D, Vector3
+from ...geometry import Pose3D
 from ...names import absolute
 from ...trail import Trail
-from ...web.page import set_theme
 from ...web.scene import FRAME, LINE, Group, Shape
 from ...web.state import PageState
 from .part import Context, Inbox, Part
@@ -21,7 +20,6 @@ CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
 TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 CROWDED = 0.6  # [m] between two frames; the names of nearer ones are below each other beside one of them
-MIN_MOVE = 0.005  # [m] that the robot may move before the cameras follow
 
 
 class View(Part):
@@ -30,17 +28,12 @@ class View(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui, state = context.server.gui, context.state.now
-        self._follow = gui.add_checkbox("Follow the robot", False)
         self._frames = gui.add_checkbox("Frames", False)
         self._with_trail = gui.add_checkbox("Trail", state.live or state.recorded)
-        self._dark = gui.add_checkbox("Dark colours", False)
         self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
-        self._dark.on_update(lambda _: set_theme(context.server, self._dark.value))
-        set_theme(context.server, self._dark.value)
         self._message: Optional[Image] = None  # that is not shown yet
         self._image_at = 0.0  # [s, wall]
         self._trail, self._odom = Trail(), ""  # and its frame
-        self._followed: Optional[Vector3] = None
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._trail = Trail()
@@ -62,7 +55,6 @@ class View(Part):
         self._show_trail()
         self._show_frames()
         self._show_image()
-        self._move_cameras(state.pose)
 
     def _show_trail(self) -> None:
         group: Group = {}
@@ -83,19 +75,6 @@ class View(Part):
             if image is not None:
                 self._image.image = image
             self._image.visible = image is not None
-
-    def _move_cameras(self, robot: Optional[Pose3D]) -> None:
-        if robot is None or not self._follow.value:
-            self._followed = None
-            return
-        if self._followed is None:
-            self._followed = robot.position
-        moved = np.subtract(robot.position, self._followed)
-        if float(np.abs(moved).max()) >= MIN_MOVE:
-            self._followed = robot.position
-            for client in self.context.server.get_clients().values():
-                if client.camera.update_timestamp:
-                    client.camera.position = client.camera.position + moved
 
 
 def frames(poses: Mapping[str, Pose3D]) -> Group:

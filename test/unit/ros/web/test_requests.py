@@ -1,4 +1,4 @@
-"""Visitors' requests: whatever one of them fails with is its answer, and the next one is served."""
+"""Visitors' requests: what one of them fails with is its answer, and the next one is served."""
 
 import pytest
 from waiting import wait_for
@@ -26,13 +26,13 @@ class Service:
 @pytest.mark.parametrize(
     "problem, answer",
     [
-        (TypeError("required argument is not a float"), "TypeError: required argument is not a float"),
+        (requests.rospy.ROSException("timeout exceeded"), "timeout exceeded"),
         (requests.rospy.ServiceException("no such robot"), "no such robot"),
     ],
 )
-def test_a_request_that_fails_in_any_way_says_so_and_the_next_one_is_served(monkeypatch, problem, answer):
+def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch, problem, answer):
     Service(monkeypatch, [problem])
-    state = SharedState(PageState(registered=True, master_problem=""))
+    state = SharedState(PageState())
     made = requests.Requests(state)
     made.call("pause", "pause", object)
     wait_for(lambda: state.now.answer == f"pause: {answer}", "the failure is the answer")
@@ -41,7 +41,9 @@ def test_a_request_that_fails_in_any_way_says_so_and_the_next_one_is_served(monk
 
 
 def test_a_page_that_only_watches_sends_nothing(monkeypatch):
-    monkeypatch.setattr(requests, "start_daemon", lambda *_: None)
-    made = requests.Requests(SharedState(PageState(live=False, registered=True, master_problem="")))
+    Service(monkeypatch, [requests.rospy.ServiceException("it was called")])
+    state = SharedState(PageState(live=False))
+    made = requests.Requests(state)
     made.call("pause", "pause", object)
-    assert made._jobs.empty()
+    made._worker.shutdown()
+    assert not state.now.answer

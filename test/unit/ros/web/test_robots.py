@@ -1,4 +1,4 @@
-"""Where the page takes robots' places from."""
+"""Which robots the page knows, and where it takes their places from."""
 
 from unittest.mock import MagicMock
 
@@ -6,8 +6,9 @@ from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
+from aro_robocop_goto_as.ros.graph import Topic
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.ros.web.robots import Robots
+from aro_robocop_goto_as.ros.web.robots import Robots, robots_of
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
@@ -32,3 +33,9 @@ def test_odometry_is_the_transform_where_nobody_publishes_that_one():
     robots._on_tf(0.0, transform(2.0))
     robots._on_odometry(0.0, odometry(1.0))
     assert frames.lookup("odom", "base_footprint").position == (2.0, 0.0, 0.0)
+
+
+def test_robots_are_the_namespaces_of_published_odometry():
+    odometry = "nav_msgs/Odometry"
+    topics = (("/odom", odometry), ("/red/odom", odometry), ("/blue/odom", "std_msgs/String"), ("/red/truth", odometry))
+    assert robots_of(Topic(name, kind, ("/sim",)) for name, kind in topics) == ("", "red")
