@@ -1,0 +1,26 @@
+"""What the page says of the server."""
+
+from unittest.mock import MagicMock
+
+import pytest
+
+from aro_robocop_goto_as.ros.web.part import Context
+from aro_robocop_goto_as.ros.web.status import Status
+from aro_robocop_goto_as.web.frames import FrameTree
+from aro_robocop_goto_as.web.state import PageState, SharedState
+
+
+@pytest.mark.parametrize(
+    "bridge, shown",
+    [
+        ("", "answers, no report from the bridge"),
+        ("robocop_goto_as is ready, no goal yet", "ready"),
+        ("goal x 0.30 y 0.00 in map is ACTIVE: driving, 0.10 m to go", "ready"),  # the bridge's next report follows
+        ("goal refused: no transform from map to odom", "goal refused: no transform from map to odom"),
+    ],
+)
+def test_a_server_that_executes_no_goal_is_ready_unless_the_bridge_reports_something_else(bridge, shown):
+    state = PageState(answering=True, executing=False)
+    status = Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
+    status._on_bridge(0.0, MagicMock(data=bridge))
+    assert status._rows(state) == [("server", shown)]
