@@ -105,5 +105,5 @@ def test_a_reloaded_page_drives_the_robot(parts, tab):
 
 
 def test_the_page_ends_with_its_master(parts):
-    os.kill(parts.ros.master.getPid(CALLER)[2], signal.SIGKILL)
+    os.kill(parts.ros.master.getPid(), signal.SIGKILL)
     assert parts.page.wait(DEADLINE) == 0

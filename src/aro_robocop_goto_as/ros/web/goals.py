@@ -145,6 +145,8 @@ class Goals(Part):
         self._history.sent(message.goal_id.id, message.goal.position.x, message.goal.position.y)
 
     def _on_result(self, robot: str, _: float, message: GoToPositionActionResult) -> None:
+        if robot == self._robot:
+            self._feedback = None
         state, goal_id = STATES.get(message.status.status, ""), message.status.goal_id.id
         self._history.ended(robot, goal_id, state, message.result.message)
 

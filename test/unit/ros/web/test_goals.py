@@ -86,6 +86,16 @@ def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_
     assert shown(part, context) == (False, None, False)
 
 
+def test_feedback_ends_with_the_result_also_where_no_status_is_reported_as_in_a_recording():
+    part, context = made(recorded=True)
+    part._on_feedback(0.0, GoToPositionActionFeedback())
+    assert shown(part, context) == (False, None, True)
+    part._on_result("blue", 0.0, GoToPositionActionResult())
+    assert shown(part, context) == (False, None, True)
+    part._on_result("red", 0.0, GoToPositionActionResult())
+    assert shown(part, context) == (False, None, False)
+
+
 def test_the_history_names_the_robot_whose_server_sent_the_result():
     part, _ = made()
     goal, result = GoToPositionActionGoal(), GoToPositionActionResult()
