@@ -29,10 +29,14 @@ from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.rates import CLOCK, ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
+from ..handout import ACTION
 from ..plan import FARTHEST
 from . import ros_internals
 
 MOST_BAG = 32 * 1024**2  # bytes
+MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
+# What holds until the next message: a replay that begins later sends the last one before that, by rosbag's own rule.
+LASTING = ("/tf_static", "/robocop_sim/world", "/joint_states", f"{ACTION}/goal", MARKERS)
 
 
 class _NoIndex(Dict[int, Any]):
@@ -98,7 +102,7 @@ class ScenarioBag:
 
     def _write(self, topic: str, message: Any, stamp: rospy.Time, raw: bool = False) -> None:
         if self._bag is not None and self._file.tell() < MOST_BAG:
-            self._bag.write(topic, message, stamp, raw)
+            self._bag.write(topic, message, stamp, raw, latched(topic, message) if topic in LASTING else None)
 
     def write_static_frames(self, site: Pose2D) -> None:
         """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
@@ -128,3 +132,9 @@ class ScenarioBag:
         for sensor, topic, kind, message in self._of_steps:
             if sensor in seen.due.names:
                 self._write(topic, ros_internals.raw(kind, message.body()), convert.to_time(seen.stamp_ns), raw=True)
+
+
+def latched(topic: str, message: Any) -> Dict[str, str]:
+    """The header that a latching publisher's connection has in a bag."""
+    kind = {"type": message._type, "md5sum": message._md5sum, "message_definition": message._full_text}
+    return {"topic": topic, "latching": "1", **kind}

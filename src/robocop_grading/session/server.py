@@ -18,6 +18,7 @@ from ..plan import START, Push, Scenario, Step
 from ..record import Record
 from ..runner import Job
 from .run import TICK, Run
+from .scenario_bag import MARKERS
 from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node to connect to the recorder of /rosout
@@ -25,7 +26,6 @@ SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then 
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AT_END = 0.25  # [s] before a result, in which the robot was where it ended
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
-MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
 
 
 class ServerRun(Run):

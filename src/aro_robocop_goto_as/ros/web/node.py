@@ -108,7 +108,7 @@ class WebNode:
         while not rospy.is_shutdown():
             visited = bool(self._server.get_clients())
             self._connect(visited)
-            for inbox in (self._always, self._system, self._detail):
+            for inbox in (self._system, self._detail, self._always):  # feedback before the result
                 inbox.deliver()
             if visited:
                 with self._server.atomic():

@@ -1,0 +1,17 @@
+"""What a scenario's bag says of its topics."""
+
+import rosbag
+import rospy
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+
+from robocop_grading.session.scenario_bag import latched
+
+
+def test_a_topic_with_the_header_is_one_that_rosbags_player_sends_also_when_it_begins_later(tmp_path):
+    with rosbag.Bag(tmp_path / "a.bag", "w") as bag:
+        bag.write("/tf_static", TFMessage(), rospy.Time(1), connection_header=latched("/tf_static", TFMessage()))
+        bag.write("/other", String("x"), rospy.Time(1))
+    with rosbag.Bag(tmp_path / "a.bag") as bag:
+        read = {topic: header for topic, _, _, header in bag.read_messages(return_connection_header=True)}
+    assert read["/tf_static"]["latching"] in ("1", b"1") and "latching" not in read["/other"]
