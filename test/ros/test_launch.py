@@ -56,20 +56,11 @@ def test_single_robot_has_no_namespace_or_prefix():
     assert launch.nodes["/rviz"].args == "--wait 60 --frame 'map' --config ''"
 
 
-@pytest.mark.parametrize("file", ["robocop_goto_as.launch", "robocop_sim.launch"])
-def test_the_state_publisher_can_be_left_out(file):
-    for robots in ("", "2"):
-        left_out = Launch("state_publisher:=false", f"robots:={robots}", file=file).nodes
-        started = {name for name in Launch(f"robots:={robots}", file=file).nodes if "state_publisher" not in name}
-        assert set(left_out) == started
-
-
 @pytest.mark.parametrize(
     "robots, names",
     [
         ("1", ["robot_1"]),
         ("3", ["robot_1", "robot_2", "robot_3"]),
-        pytest.param("50", [f"robot_{i}" for i in range(1, 51)], marks=pytest.mark.slow),
         ("red 0 0", ["red"]),
         ("red 0 0.5; blue_2 1 -1 3.14", ["red", "blue_2"]),
         ("true 0 0", ["true"]),
@@ -104,17 +95,6 @@ def test_an_unknown_model_is_refused_with_the_models_that_there_are(capfd, argum
     with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
         Launch(argument)
     assert capfd.readouterr().err.startswith("ROBOT_MODEL: there is no model 'tank'; known are: burger, burger_rgbd, ")
-
-
-def test_a_robots_model_is_not_part_of_its_name():
-    launch = Launch("robots:=red:waffle 0 0; blue 1 0")
-    assert set(launch.nodes) == {"/robocop_sim", "/red/rviz"} | of_robots("red", "blue")
-    assert launch.params["/robocop_sim/robots"] == "red:waffle 0 0; blue 1 0"
-
-
-def test_simulator_alone_publishes_the_state_of_each_robot():
-    launch = Launch("robots:=2", file="robocop_sim.launch")
-    assert set(launch.nodes) == {"/robocop_sim", "/robot_1/robocop_state_publisher", "/robot_2/robocop_state_publisher"}
 
 
 def test_simulator_bridges_and_rviz_can_be_left_out():
@@ -202,14 +182,6 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
     assert Launch("sim:=false", bridge, "robots:=red 0 0").given("/red" + BRIDGE) == values
 
 
-def test_more_robots_than_launch_files_can_be_nested_are_refused():
-    command = [sys.executable, str(LAUNCH / "robocop_launch.py"), str(LAUNCH / "robocop_goto_as.launch")]
-    robots = ";".join(f"r{i} 0 {i}" for i in range(400))
-    ended = subprocess.run([*command, f"robots:={robots}"], stderr=subprocess.PIPE, text=True)
-    assert ended.returncode == 1
-    assert ended.stderr.strip() == "[FATAL] PARAMETER: robots: too many for a launch file"
-
-
 def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):
     config = tmp_path / "config.yaml"
     config.write_text("model: waffle\nscan_angle_max: !degrees 90\n")  # a tag of rosparam
@@ -274,23 +246,6 @@ def test_unknown_model_of_the_environment_is_refused_with_the_name_of_the_variab
 @pytest.fixture(autouse=True)
 def without_a_model_in_the_environment(monkeypatch):
     monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
-
-
-def test_profile_overrides_the_default_and_arguments_override_both():
-    def loaded(*arguments):
-        p = from_dict(SimParams, Launch(*arguments, file="robocop_sim.launch").given(SIM), SIM)
-        return p.limits.cmd_vel_timeout, p.scan.scan_profile
-
-    assert loaded() == (None, "gazebo")
-    assert loaded("profile:=gazebo") == (0.0, "gazebo")
-    assert loaded("profile:=real") == (None, "lds01")
-    assert loaded("profile:=real", "cmd_vel_timeout:=2", "scan_profile:=lds02") == (2.0, "lds02")
-
-
-def test_time_and_drive_are_passed_on_to_the_simulator():
-    launch = Launch("robots:=2", "drive:=kinematic", "sync:=lockstep", "real_time_factor:=0")
-    found = [launch.params[f"/robocop_sim/{name}"] for name in ("drive", "sync", "real_time_factor")]
-    assert found == ["kinematic", "lockstep", 0.0]
 
 
 def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():

@@ -60,12 +60,11 @@ def run(test_case):
 
 
 class Recorder:
-    """All messages of a topic in order of arrival, each with the ROS time [s] of its arrival."""
+    """All messages of a topic in order of arrival."""
 
     def __init__(self, topic, kind, wait=True):
         self.topic = topic
         self.messages = []
-        self.times = []
         self._subscriber = rospy.Subscriber(topic, kind, self._on_message)
         if wait:
             wait_for(self._subscriber.get_num_connections, f"a publisher of {topic}")
@@ -74,7 +73,6 @@ class Recorder:
         return len(self.messages)
 
     def _on_message(self, message):
-        self.times.append(rospy.get_time())
         self.messages.append(message)
 
     def close(self):
@@ -83,7 +81,7 @@ class Recorder:
 
     def clear(self):
         """Drop the messages received so far."""
-        self.messages, self.times = [], []
+        self.messages = []
 
     def wait_for(self, wanted, what, start=0):
         """The first message, counted from number `start`, for which `wanted` is true."""

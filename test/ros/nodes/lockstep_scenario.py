@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A scripted run in lockstep: three goals are reached, one is preempted, one ends at an obstacle.
 
-Usage: lockstep_scenario.py RESULT.json [BAG]. The result holds the outcomes and a digest of all messages. Time advances
+Usage: lockstep_scenario.py RESULT.json. The result holds the outcomes and a digest of all messages. Time advances
 only by ~step, and goals are sent while it stands, so the run is the same on any machine.
 """
 
@@ -10,7 +10,6 @@ import io
 import json
 import sys
 
-import rosbag
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult, SimStatus
@@ -83,19 +82,11 @@ class Scenario:
             "digests": {topic: hashlib.sha256(data).hexdigest() for topic, data in content.items()},
         }
 
-    def write_bag(self, path):
-        with rosbag.Bag(path, "w") as bag:
-            for topic, recorder in self.recorders.items():
-                for message, time in zip(recorder.messages, recorder.times):
-                    bag.write(topic, message, rospy.Time.from_sec(max(time, 1e-3)))
-
 
 def main():
     rospy.init_node("scenario")
     scenario = Scenario()
     summary = scenario.summary(scenario.run())
-    if len(sys.argv) > 2:
-        scenario.write_bag(sys.argv[2])
     with open(sys.argv[1], "w") as result:
         json.dump(summary, result)
 
