@@ -80,8 +80,8 @@ def errors_to(goal: Goal, pose: Pose2D) -> Errors:
 class Turning:
     """The direction of a goal's newest rotation (1.0: counter-clockwise), and how often it has been reversed.
 
-    With late data or commands, as on a busy machine or over a slow network, a robot turns too far each time; at full
-    speed it would turn to and fro for ever. At half the speed after each reversal it comes to an end.
+    With late data or commands, as over a slow network, a robot turns too far each time; at full speed it would turn to
+    and fro for ever. Halving the speed after each reversal ends that.
     """
 
     direction: float = 0.0

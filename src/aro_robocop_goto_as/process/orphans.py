@@ -15,8 +15,8 @@ POLL = 0.02  # [s, wall]
 def end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
     """A preexec_fn for subprocess.Popen: Linux sends the child a signal when this process ends, however that ends.
 
-    Linux sends it already when the thread ends that starts the child, so that must live as long as this process. What
-    the child starts itself is not affected; that is the child's business.
+    Linux ties the signal to the thread that starts the child, so that thread must live as long as this process. What
+    the child starts itself is not affected.
     """
     parent = os.getpid()
 

@@ -100,7 +100,7 @@ class Fan:
     def casting(
         self, scene: Scene, robots: Sequence[int], max_range: float, distances: np.ndarray
     ) -> Callable[[], object]:
-        """What casts the beams of these robots' scanners each time it is called.
+        """A function that casts the beams of these robots' scanners each time it is called.
 
         It writes to their rows of `distances` (n, samples) [m], +inf where nothing is within max_range [m]. From inside
         a circle its far side is seen; a segment is seen from both sides. A scan does not depend on which other robots

@@ -42,7 +42,7 @@ class _Room:
 
 
 def occupant(world: World, pose: Pose2D, model: RobotModel) -> str:
-    """What is where a robot has no room, in words that follow "is": an obstacle, or an unknown cell of a map."""
+    """What takes the room at a pose, in words that follow "is": an obstacle, or an unknown cell of a map."""
     if world.occupancy is not None and not world.occupancy.is_known(pose.x, pose.y):
         return "unknown in the map"
     return f"occupied by '{ObstacleDistance(world, body_heights(model)).nearest(pose.x, pose.y).name}'"

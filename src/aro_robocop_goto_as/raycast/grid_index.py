@@ -37,7 +37,7 @@ class Tiles:
         per_tile = np.bincount(tile, minlength=self._columns * self._rows)
         self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(np.int32)
         self._tile_marks = np.zeros(self._columns * self._rows, np.int64)
-        self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark: compared with in the latest scan
+        self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark of the last scan that compared the segment
         self.struct = self._make_struct()  # Create only once: it holds the mark counter.
 
     def _make_struct(self) -> GridStruct:

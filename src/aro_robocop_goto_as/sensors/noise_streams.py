@@ -1,4 +1,4 @@
-"""Repeatable noise of slip, IMU and number of beams, by seed, stream and step only; ranges draw theirs in lidar.c."""
+"""Repeatable noise of slip, IMU and number of beams, by seed, stream and step; lidar.c draws the noise of ranges."""
 
 import ctypes
 

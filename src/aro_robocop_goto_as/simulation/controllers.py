@@ -25,7 +25,7 @@ class Controllers:
     def command(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick.
 
-        None: it was refused, so the one before stays in force, but in lockstep it is an answer like any other.
+        None: the command was refused. The earlier one stays in force; in lockstep this still counts as an answer.
         """
         if not self.in_lockstep:
             if twist is not None:

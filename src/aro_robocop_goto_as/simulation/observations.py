@@ -89,7 +89,7 @@ class Observations:
         return self.due.sensors.get(sensor, ())
 
     def measures_of(self, names: Sequence[str], due: Subscriptions) -> Sequence[Callable[[], object]]:
-        """What measures these sensors, except IMUs. Odometry is integrated whether or not anybody subscribes.
+        """Functions that measure these sensors, except IMUs. Odometry is integrated even if nobody subscribes.
 
         The fleet's rows, which are ground truth, are updated first, and no more often than something reads them.
         """

@@ -83,7 +83,7 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _import_go_to() -> Callable[..., int]:
-    """rospy is imported where it is needed, and at its time; an import must not be interrupted half-way."""
+    """Import rospy, only where it is needed; a signal must not interrupt the import half-way."""
     with signals.Deferred():
         from .followed_goal import go_to
     return go_to

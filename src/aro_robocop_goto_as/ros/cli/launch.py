@@ -120,7 +120,7 @@ def _check(words: List[str]) -> None:
 def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
     """Wait until the simulator runs, if the launch file starts one or another process is `expected` to; its parameters.
 
-    So the reason why a simulator can't start is not preceded by what to do with it.
+    Otherwise the overview would be printed before the reason why the simulator can't start.
     """
     nodes = [node for node in launcher.config.nodes if node.name == SIMULATOR]
     names = [rosgraph.names.ns_join(node.namespace, node.name) for node in nodes]

@@ -27,7 +27,7 @@ def launch(given: LaunchArguments, *words: str) -> NoReturn:
 def refuse_second_simulator() -> None:
     """End with an error if a simulator is running: nodes of the same name on one master shut each other down.
 
-    Likewise if something that is no ROS master has the master's port.
+    Also if something other than a ROS master has the master's port.
     """
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)

@@ -60,7 +60,7 @@ class Batch:
     def __init__(
         self, messages: Sequence[Posted], last: Sequence[Posted] = (), filled: Sequence[PackedMessage] = ()
     ) -> None:
-        """`last`: messages that are not sent before all others are, such as the clock; `filled`: sent to nobody."""
+        """`last`: messages sent after all others, such as the clock; `filled`: messages filled but not sent."""
         self._messages = [*messages, *last]
         self._parcels = [(*posted, link) for posted in self._messages for link in posted[0].links]
         fields = [

@@ -75,7 +75,7 @@ def send_latched(publisher: rospy.Publisher, connection: Any, is_ready: Callable
 def write_with(connection: Any, method: "weakref.WeakMethod[Callable[[bytes], None]]") -> None:
     """Have rospy write a connection's messages with a method, which must outlive the connection's use.
 
-    rospy's own one closes the connection of a subscriber that takes no data for a while, in the middle of a message.
+    rospy's own method closes the connection of a slow subscriber in the middle of a message.
     """
 
     def write_data(data: bytes) -> None:

@@ -20,7 +20,7 @@ class SubscriberLink:
     """One subscriber of one topic; its publisher's thread calls the methods.
 
     A subscriber that takes nothing for as long as its socket's send timeout stands still: it misses all messages until
-    its socket has room again, and nobody waits for it. What is kept for it is the rest of one message.
+    its socket has room again, and nobody waits for it. Only the rest of one message is kept for it.
     """
 
     def __init__(self, connection: Any, duplicate: socket.socket) -> None:
@@ -83,7 +83,7 @@ class SubscriberLink:
     def _has_room(self) -> bool:
         """Return whether a third of the socket's buffer is free, or the connection lost.
 
-        The kernel finds room for a message now and then although nobody reads, but not for so many.
+        The kernel sometimes finds room for one message although nobody reads, but not for that many.
         """
         poll = select.poll()
         poll.register(self.descriptor, select.POLLOUT)

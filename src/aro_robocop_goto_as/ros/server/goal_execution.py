@@ -15,7 +15,7 @@ from ...goto_params import GotoParams
 from ...names import place
 from .inputs import Inputs
 
-MAX_JUMPS = 10  # of odometry after which a goal begins anew, as after a reset; of one that jumps for ever, no more
+MAX_JUMPS = 10  # of odometry, after each of which a goal begins anew, as after a reset; later ones are ignored
 MAX_GAP = 2.0  # control periods between two steps; in a longer gap the server could not drive
 
 
@@ -107,7 +107,7 @@ class GoalExecution:
         return 0.0 if self.started is None else self._now - self.started
 
     def where(self) -> str:
-        """The goal's position in words, with its frame, the one of odometry, once that is known."""
+        """The goal's position in words, with odometry's frame once that is known."""
         x, y, odom = self.goal.x, self.goal.y, self._inputs.odom
         return f"x {x:.2f} y {y:.2f}" if odom is None else place(x, y, odom.message.header.frame_id)
 

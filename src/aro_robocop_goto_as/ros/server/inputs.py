@@ -100,7 +100,7 @@ class Inputs:
         return None
 
     def _absence(self, name: str, valid: Optional[Received], now: float) -> str:
-        # By the present time, as scans have arrived since the control period began.
+        # Compared with the present time: scans may have arrived since the control period began.
         what = "valid beam ahead" if name == "scan" and self._is_recent(self.scan) else "message"
         since = "so far" if valid is None else f"for {now - valid.at:.1f} s"
         return f"no {what} on {rospy.resolve_name(name)} {since} (limit {self._tuning.params.data_timeout:g} s)"

@@ -25,8 +25,8 @@ class Ticks:
     def __init__(self, period: float, inputs: Sequence[rospy.Subscriber], on_set_back: Callable[[str], None]) -> None:
         """`period` [s]; `on_set_back` is called with the reason when simulated time was set back.
 
-        The first answer, from which on a simulator in lockstep waits for this node, is sent once its `inputs` are
-        connected.
+        The first answer is sent once the `inputs` are connected; from then on a simulator in lockstep waits for this
+        node.
         """
         self.command: Optional[Twist2D] = None  # since the last answer
         self._period_ns = round(period * NANOSECONDS)

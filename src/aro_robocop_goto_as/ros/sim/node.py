@@ -144,7 +144,7 @@ class SimNode:
 
 
 def refuse_second() -> None:
-    """End the program if a simulator has this one's name: the master would end that one, in the middle of its run."""
+    """End the program if a simulator of this name runs: the master would end that other one."""
     given = rosgraph.names.load_mappings(sys.argv)
     name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), given.get("__name", SIMULATOR))
     try:
