@@ -17,7 +17,19 @@ from .sensors.imu import ImuParams
 from .sensors.odometry import OdometryParams
 from .sensors.scan_profiles import ScanParams
 from .simulation.lockstep import LockstepParams
-from .simulation.rates import Rates
+from .simulation.rates import (
+    BUMPER,
+    CAMERA,
+    CLOCK,
+    CONTROL,
+    GROUND_TRUTH,
+    IMU,
+    JOINTS,
+    ODOM,
+    SCAN,
+    TF,
+    Rates,
+)
 from .simulation.time_control import TimeParams
 
 
@@ -95,21 +107,41 @@ class SimParams:
         """These parameters by their ROS names, and the defaults of all others; ParameterError as from_dict."""
         return from_dict(cls, given, "arguments")
 
+    def due_rates(self) -> Dict[str, int]:
+        """How often each sensor and tick is due [Hz], in the order in which they are measured; 0 = never."""
+        rates, odom_rate = self.rates, self.odometry.odom_rate
+        return {
+            CLOCK: rates.clock_rate,
+            CONTROL: rates.control_rate,
+            GROUND_TRUTH: rates.ground_truth_rate,
+            IMU: self.imu.imu_rate,
+            JOINTS: rates.joint_state_rate,
+            ODOM: odom_rate,
+            SCAN: self.scan.rate,
+            BUMPER: rates.bumper_rate,
+            CAMERA: self.camera.camera_rate,
+            TF: odom_rate,
+        }
+
     def conflicts(self) -> List[str]:
         """Combinations of values that are impossible, in words; empty when there are none."""
         return self._rate_conflicts() + self._frame_conflicts() + self._range_conflicts()
 
     def _rate_conflicts(self) -> List[str]:
-        problems = []
-        physics, others = self.rates.physics_rate, vars(self.rates)
-        first = {name: others[name] for name in ("clock_rate", "control_rate")}
-        rates: Dict[str, int] = {**first, "scan_rate": self.scan.rate, **others}
-        for name, rate in rates.items():
-            if name == "imu_rate":  # need not divide physics_rate
-                if rate > physics:
-                    problems.append(f"{name}: {rate} Hz is above physics_rate {physics} Hz")
-            elif rate and physics % rate:
-                problems.append(f"{name}: {rate} Hz does not divide physics_rate {physics} Hz")
+        physics, imu = self.rates.physics_rate, self.imu.imu_rate
+        others = {
+            "scan_rate": self.scan.rate,
+            "odom_rate": self.odometry.odom_rate,
+            "camera_rate": self.camera.camera_rate,
+        }
+        rates: Dict[str, int] = {**vars(self.rates), **others}
+        problems = [
+            f"{name}: {rate} Hz does not divide physics_rate {physics} Hz"
+            for name, rate in rates.items()
+            if rate and physics % rate
+        ]
+        if imu > physics:  # it need not divide physics_rate
+            problems.append(f"imu_rate: {imu} Hz is above physics_rate {physics} Hz")
         if self.lockstep.enabled and self.rates.clock_rate % self.rates.control_rate:
             problems.append(
                 f"control_rate: {self.rates.control_rate} Hz does not divide clock_rate {self.rates.clock_rate} Hz; in "

@@ -103,7 +103,7 @@ def drives(random: np.random.Generator, engine: KinematicEngine) -> None:
     if random.integers(3) == 0:
         engine.place(int(random.integers(len(fleet))), Pose2D(*random.choice(PLACES, 3)))
     errors = OdometryParams("encoders", 0.1, *random.choice([0.0, 1e-3, 1.0], 2).tolist())
-    odometers = Odometers(errors, fleet, 30)
+    odometers = Odometers(errors, fleet)
     for step in range(0, 60, 10):
         for robot in range(len(fleet)):
             fleet.commands[robot] = random.choice(SPEEDS if step % 20 else SPEEDS[:3], 2)

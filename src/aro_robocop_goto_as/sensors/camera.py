@@ -50,7 +50,7 @@ class CameraSpec:
 
 @dataclass(frozen=True)
 class CameraParams:
-    """The cameras: a profile, and figures that replace its own."""
+    """The cameras: a profile, figures that replace its own, and how often they take images."""
 
     camera_profile: str = parameter("small", choices=tuple(PROFILES))
     camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
@@ -58,6 +58,7 @@ class CameraParams:
     camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)  # [rad]
     camera_range_min: float = positive(0.05)  # [m]
     camera_range_max: float = positive(10.0)  # [m]
+    camera_rate: int = parameter(10, low=0)  # [Hz]; 0: never
 
     def spec(self, model: str) -> CameraSpec:
         """The camera of a model, by its name."""

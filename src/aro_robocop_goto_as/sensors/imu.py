@@ -11,11 +11,12 @@ from ..robot.model import BodyState
 
 @dataclass(frozen=True)
 class ImuParams:
-    """Standard deviations of the IMU's white noise, and the accelerometer's bias."""
+    """Standard deviations of the IMU's white noise, the accelerometer's bias, and how often it measures."""
 
     gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]
     accelerometer_noise: float = parameter(1.7e-2, low=0.0, high=100.0)  # [m/s^2]
     accelerometer_bias: float = parameter(0.0, low=-100.0, high=100.0)  # [m/s^2] added to each axis
+    imu_rate: int = parameter(200, low=1)  # [Hz]
 
 
 # Parts of a sample (10,): the orientation of imu_link in the world (x, y, z, w), angular velocity [rad/s] and specific

@@ -15,12 +15,13 @@ from ..robot.fleet import Fleet, library
 
 @dataclass(frozen=True)
 class OdometryParams:
-    """Errors of wheel odometry."""
+    """Errors of wheel odometry, and how often it is updated."""
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
     odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
     odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
     encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
+    odom_rate: int = parameter(30, low=1)  # [Hz]
 
 
 class _OdometersStruct(ctypes.Structure):
@@ -42,8 +43,7 @@ class Odometers:
     update(): bring all of them to the fleet's present state
     """
 
-    def __init__(self, params: OdometryParams, fleet: Fleet, rate: int) -> None:
-        """Updated at `rate` [Hz]."""
+    def __init__(self, params: OdometryParams, fleet: Fleet) -> None:
         n = len(fleet)
         self._fleet = fleet
         self.in_world = params.odom_source == "world"
@@ -68,7 +68,7 @@ class Odometers:
         self.update: Callable[[], None] = self._copy
         if not self.in_world:
             rows = ctypes.addressof(self._struct), fleet.struct.wheel_angles, address("noise", self.noise, (n, 2))
-            self.update = partial(library().aro_odometry, *rows, 1.0 / rate)
+            self.update = partial(library().aro_odometry, *rows, 1.0 / params.odom_rate)
         self.reset()
 
     def reset(self) -> None:

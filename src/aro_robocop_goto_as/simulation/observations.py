@@ -60,7 +60,7 @@ class Observations:
         self.episode = Episode(p.world.seed, 0)
         self.lidar = Lidar(p.scan.lidar())
         self.scanners = Scanners(models, world, engine.fleet.poses)
-        self.fleet, self.odometry = engine.fleet, Odometers(p.odometry, engine.fleet, p.rates.odom_rate)
+        self.fleet, self.odometry = engine.fleet, Odometers(p.odometry, engine.fleet)
         self.map_from_odom, self.joint_angles, self.imus = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 10))
         self._ranges: Dict[int, np.ndarray] = {}
         self.scans = self.ranges(self.lidar.spec.samples)

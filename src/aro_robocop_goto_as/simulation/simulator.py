@@ -16,7 +16,7 @@ from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .observations import Due, Observations, Subscriptions
-from .rates import CLOCK, CONTROL, IMU, ODOM, rates_of
+from .rates import CLOCK, CONTROL, IMU, ODOM
 from .schedule import Schedule, stamp_ns
 
 UNASKED = {CLOCK, CONTROL, ODOM}  # due also if nobody subscribes: odometry is integrated
@@ -112,8 +112,9 @@ class Simulator:
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
         self._subscriptions = subscriptions
-        every = rates_of(self.params.rates, self.params.scan.rate)
-        rates = {name: rate for name, rate in every.items() if name in UNASKED or subscriptions.get(name)}
+        rates = {
+            name: rate for name, rate in self.params.due_rates().items() if name in UNASKED or subscriptions.get(name)
+        }
         self._schedule = Schedule(rates, self.rate)
         self._dues = {names: self._due(names) for names in self._schedule.occurring}
 

@@ -53,7 +53,7 @@ class SensorTopics:
             if is_offered:
                 self.topics[sensor] = publisher(prefixed(name, relative), kind, on_change=on_change)
         camera = observed.cameras[index]
-        if camera is not None and p.rates.camera_rate:
+        if camera is not None and p.camera.camera_rate:
             from .camera_topics import CameraTopics
 
             frame = prefixed(name, CAMERA_FRAME)
