@@ -1,3 +1,19 @@
-"""What is in nodes/ runs inside rostest, which has a master for it; pytest runs it only through test_rostests.py."""
+"""Programs of a test; what is in nodes/ runs inside rostest, which has a master for it: test_rostests.py."""
+
+import pytest
 
 collect_ignore = ["nodes"]
+
+
+@pytest.fixture
+def started():
+    """A function that returns a program; what is left of it at the end of the test is killed."""
+    programs = []
+
+    def keep(program):
+        programs.append(program)
+        return program
+
+    yield keep
+    for program in programs:
+        program.kill()

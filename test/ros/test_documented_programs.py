@@ -13,15 +13,13 @@ from pathlib import Path
 import pytest
 from documentation import commands, inline_commands
 from students import copy_of
-from waiting import wait_for
-
-from aro_robocop_goto_as.process.ports import free_port
+from systems import System, end
 
 ROOT = Path(__file__).resolve().parents[2]
 DEADLINE = 300.0  # [s, wall] for one command on a busy machine
 OVERVIEW = r"^stop +Ctrl-C|is ready, no goal yet"
 SERVING = {"run": OVERVIEW, "sim": OVERVIEW, "web": "http://", "record": "recording to", "replay": OVERVIEW}
-INTERRUPTED = (0, 130, -signal.SIGINT)
+INTERRUPTED = {0, 130, -signal.SIGINT}
 UNFINISHED = "grade my_lab"  # exit status 1: not all points
 # Why a command, recognised by how it begins, is not run here.
 EXCEPTIONS = {
@@ -56,13 +54,11 @@ def exception(command):
 
 
 def environment(folder):
-    """A home, a master and settings of its own, without a display."""
-    left_out = ("DISPLAY", "ROS_IP", "TURTLEBOT3_MODEL")
+    """A home of its own, without a display."""
+    left_out = ("DISPLAY", "TURTLEBOT3_MODEL")
     kept = {name: value for name, value in os.environ.items() if name not in left_out}
     cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    master = f"http://localhost:{free_port()}"
-    own = {"HOME": str(folder), "XDG_CACHE_HOME": cache, "ROS_MASTER_URI": master, "ROS_HOSTNAME": "localhost"}
-    return {**kept, **own}
+    return {**kept, "HOME": str(folder), "XDG_CACHE_HOME": cache}
 
 
 @pytest.fixture
@@ -86,64 +82,29 @@ def folder(tmp_path):
     return tmp_path
 
 
-class Commands:
-    """Runs ./robocop as printed, in a folder; `close` ends what still runs."""
+class Commands(System):
+    """Runs ./robocop as printed, in its folder and on a master of its own."""
 
-    def __init__(self, folder):
-        self.folder, self.environment, self.running = folder, environment(folder), []
+    def _type(self, command):
+        name, words = f"output_{len(self.running)}", ("bash", "-c", f"exec env {command}")
+        return self.start(name, *words, cwd=self.directory, stdin=subprocess.DEVNULL, start_new_session=True)
 
-    def start(self, command, ready):
+    def serve(self, command, ready):
         """Start a command that serves until Ctrl-C, and wait until its output matches `ready`; the process."""
-        output = self.folder / f"output_{len(self.running)}"
-        with open(output, "wb") as stream:
-            process = self._popen(command, stdout=stream)
-        self.running.append(process)
-
-        def text():
-            return output.read_text(errors="replace")
-
-        def ended():
-            return process.poll() is not None
-
-        wait_for(lambda: re.search(ready, text(), re.M), lambda: f"{command}: {text()}", DEADLINE, given_up=ended)
+        process = self._type(command)
+        self.wait(lambda: re.search(ready, process.text(), re.M), command, process)
         return process
 
     def run(self, command):
         """Run a command that ends by itself; its exit status and output."""
-        output = self.folder / f"output_{len(self.running)}"
-        with open(output, "wb") as stream:
-            self.running.append(self._popen(command, stdout=stream))
-        process = self.running[-1]
-        wait_for(lambda: process.poll() is not None, lambda: f"{command}: {output.read_text()}", DEADLINE)
-        return process.returncode, output.read_text(errors="replace")
-
-    def _popen(self, command, stdout):
-        return subprocess.Popen(
-            ["bash", "-c", f"exec env {command}"],
-            cwd=self.folder,
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            stdout=stdout,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-
-    def end(self, process):
-        """Ctrl-C; the exit status."""
-        os.killpg(process.pid, signal.SIGINT)
-        return process.wait(DEADLINE)
-
-    def close(self):
-        for process in reversed(self.running):
-            if process.poll() is None:
-                self.end(process)
+        process = self._type(command)
+        return process.wait(DEADLINE), process.text()
 
 
 @pytest.fixture
 def system(folder):
-    commands = Commands(folder)
-    yield commands
-    commands.close()
+    with Commands(folder, environment(folder)) as commands:
+        yield commands
 
 
 def test_each_exception_is_printed_somewhere():
@@ -169,13 +130,13 @@ def test_printed_command_runs(command, system):
     if "my_lab" in command and name != "new":
         system.run("./robocop new my_lab")
     if "--robot" in command or "rosnode" in command or name in ("web", "record", "replay"):
-        lab = system.start("./robocop run robots:=3 web:=false", SERVING["run"])
+        lab = system.serve("./robocop run robots:=3 web:=false", SERVING["run"])
     if name == "replay":
-        recording = system.start("./robocop record run.bag", SERVING["record"])
+        recording = system.serve("./robocop record run.bag", SERVING["record"])
         assert system.run("./robocop goto 0.3 0 --robot robot_1")[0] == 0
-        assert system.end(recording) in INTERRUPTED and system.end(lab) in INTERRUPTED
+        assert {end(recording, signal.SIGINT), end(lab, signal.SIGINT)} <= INTERRUPTED
     if name in SERVING:
-        assert system.end(system.start(printed, SERVING[name])) in INTERRUPTED
+        assert end(system.serve(printed, SERVING[name]), signal.SIGINT) in INTERRUPTED
     else:
         status, output = system.run(printed)
         assert status == (1 if command == UNFINISHED else 0), output

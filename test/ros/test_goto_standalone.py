@@ -20,16 +20,8 @@ class Goto(Program):
 
 
 @pytest.fixture
-def goto(tmp_path):
-    started = []
-
-    def start(*arguments):
-        started.append(Goto(tmp_path, *arguments))
-        return started[-1]
-
-    yield start
-    for command in started:
-        command.kill()
+def goto(started, tmp_path):
+    return lambda *arguments: started(Goto(tmp_path, *arguments))
 
 
 def test_goal_is_reached_in_a_system_started_for_it(goto):

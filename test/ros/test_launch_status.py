@@ -34,16 +34,8 @@ class Launch(Program):
 
 
 @pytest.fixture
-def launch(tmp_path):
-    started = []
-
-    def start(*arguments):
-        started.append(Launch(tmp_path, *arguments))
-        return started[-1]
-
-    yield start
-    for launched in started:
-        launched.kill()
+def launch(started, tmp_path):
+    return lambda *arguments: started(Launch(tmp_path, *arguments))
 
 
 def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(launch):

@@ -42,16 +42,8 @@ class Roslaunch(Program):
 
 
 @pytest.fixture
-def roslaunch(tmp_path):
-    started = []
-
-    def start(*arguments):
-        started.append(Roslaunch(tmp_path, *arguments))
-        return started[-1]
-
-    yield start
-    for launched in started:
-        launched.kill()
+def roslaunch(started, tmp_path):
+    return lambda *arguments: started(Roslaunch(tmp_path, *arguments))
 
 
 @pytest.mark.slow

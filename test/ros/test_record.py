@@ -64,16 +64,3 @@ def test_a_recorded_goal_is_played_again(ros, robocop, folder):
     replay = robocop("replay", "run.bag", "rate:=5", "waits:=false", f"web_port:={free_port()}")
     wait_for(lambda: "REACHED" in listener.text(), "the recorded result")
     assert end(replay, signal.SIGINT) == 0
-
-
-def test_recording_never_overwrites_a_bag(robocop, folder):
-    (folder / "run.bag").write_text("precious")
-    assert robocop("record", "run").wait(60.0) == 1
-    assert (folder / "run.bag").read_text() == "precious"
-
-
-def test_recording_without_a_running_system_is_refused_with_what_to_do(robocop, folder):
-    record = robocop("record", "run")
-    assert record.wait(60.0) == 1
-    assert "no ROS system is running; start ./robocop run" in record.text()
-    assert list(folder.iterdir()) == []

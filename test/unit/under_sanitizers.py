@@ -9,7 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from reference_beams import cut_of
+from scenes import cut_of
 from support import model_named
 
 from aro_robocop_goto_as import compiled

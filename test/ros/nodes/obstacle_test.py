@@ -29,10 +29,6 @@ class Obstacle(SystemTest):
         self.assertGreater(nearest, stands - 0.01)
         self.assertLess(stands + SCANNER_BEHIND, 0.3 + 0.02)  # it drove up to the limit
 
-    def test_the_next_goal_after_an_obstacle_is_served(self):
-        self.send_goal_behind_the_pillar()
-        self.goals.send(0.3, 0.0).result("REACHED")
-
 
 if __name__ == "__main__":
     run(Obstacle)

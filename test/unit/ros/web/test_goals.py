@@ -25,23 +25,6 @@ def made(**state):
     return part, context
 
 
-def test_nothing_is_known_of_a_robot_that_was_chosen_just_now():
-    part, context = made()
-    part.show(context.state.now)
-    assert context.state.now.answering
-    context.state.change(chosen="blue")
-    part.show(context.state.now)
-    assert (context.state.now.answering, context.state.now.executing) == (False, None)
-
-
-def test_a_click_sends_a_2d_nav_goal():
-    part, context = made()
-    part._on_click(CLICK)
-    what, topic, pose, _ = context.requests.publish.call_args[0]
-    assert (what, topic, pose.header.frame_id) == ("goal (1.00, 2.00)", "move_base_simple/goal", "map")
-    assert (pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.w) == (1.0, 2.0, 1.0)
-
-
 @pytest.mark.parametrize("simulated", [True, False])
 def test_a_click_places_the_robot_with_the_heading_that_it_has(simulated):
     part, context = made(simulated=simulated)
@@ -94,18 +77,6 @@ def test_feedback_ends_with_the_result_also_where_no_status_is_reported_as_in_a_
     assert shown(part, context) == (False, None, True)
     part._on_result("red", 0.0, GoToPositionActionResult())
     assert shown(part, context) == (False, None, False)
-
-
-def test_the_history_names_the_robot_whose_server_sent_the_result():
-    part, _ = made()
-    goal, result = GoToPositionActionGoal(), GoToPositionActionResult()
-    goal.goal_id.id = result.status.goal_id.id = "goal"
-    goal.goal.position.x = 1.0
-    result.status.status, result.result.message = GoalStatus.SUCCEEDED, "REACHED"
-    part._on_goal(0.0, goal)
-    part._on_result("blue", 0.0, result)
-    (ended,) = part._history.latest
-    assert (ended.robot, ended.state, ended.message, ended.goal) == ("blue", "SUCCEEDED", "REACHED", (1.0, 0.0))
 
 
 def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names():
