@@ -48,9 +48,9 @@ def documented():
 
 
 def exception(command):
-    """The key of EXCEPTIONS that says why a command is not run; whole words of it."""
+    """The key of EXCEPTIONS that says why a command is not run."""
     words = [word for word in command.split() if not re.match(r"[A-Z]\w*=", word)]
-    return next((begin for begin in EXCEPTIONS if words[: len(begin.split())] == begin.split()), None)
+    return next((begin for begin in EXCEPTIONS if " ".join(words).startswith(begin)), None)
 
 
 def environment(folder):
