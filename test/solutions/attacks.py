@@ -220,28 +220,6 @@ try:
 except OSError as error:
     print('refused', parked, error)
 """
-PARKED_BY_MANY = """
-import os, socket, time
-for _ in range(40):
-    if os.fork() == 0:
-        os.closerange(3, 256)
-        kept = []
-        try:
-            while True:
-                kept.append(socket.socketpair())
-                for one in kept[-1]:
-                    one.setblocking(False)
-                    try:
-                        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 2 ** 22)
-                        while True:
-                            one.send(bytes(2 ** 16))
-                    except BlockingIOError:
-                        pass
-        except OSError:
-            time.sleep(60.0)
-            os._exit(0)
-os.wait()
-"""
 FLOOD = """
 import threading
 import time

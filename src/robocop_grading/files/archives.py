@@ -161,6 +161,6 @@ def _path(name: str, prefix: str) -> str:
     path = PurePosixPath(name)
     if ".." in path.parts or path.is_absolute() or not path.parts or "\0" in name:
         raise SubmissionError(f"{name}: expected a path within the archive")
-    if len(path.parts) > tree.DEEPEST:
-        raise SubmissionError(f"expected at most {tree.DEEPEST} nested folders")
+    if len(path.parts) > tree.MAX_DEPTH:
+        raise SubmissionError(f"expected at most {tree.MAX_DEPTH} nested folders")
     return str(PurePosixPath(prefix, path))

@@ -18,18 +18,18 @@ from aro_robocop_goto_as.errors import HostingError
 
 MAX_SIZE = 1024**2  # bytes of a manifest, launch file or script
 GENERATED = ("build", "devel", "install", "logs", "__pycache__", "__MACOSX")  # folders that nobody has written
-DEEPEST = 100  # nested folders; packages and their builds have ten or so
+MAX_DEPTH = 100  # nested folders; packages and their builds have ten or so
 
 
 def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Tuple[Path, List[str], List[str]]]:
     """`top` and the folders below it, each with the names of folders and files in it, sorted.
 
     Links are files here, wherever they lead. A caller may remove names of folders to skip them. Folders that can't be
-    read count as empty. HostingError for more than DEEPEST nested folders.
+    read count as empty. HostingError for more than MAX_DEPTH nested folders.
     """
     for path, folders, files in os.walk(top):
-        if len(Path(path).relative_to(top).parts) > DEEPEST:
-            raise HostingError(f"{top}: expected at most {DEEPEST} nested folders")
+        if len(Path(path).relative_to(top).parts) > MAX_DEPTH:
+            raise HostingError(f"{top}: expected at most {MAX_DEPTH} nested folders")
         links = {name for name in folders if os.path.islink(os.path.join(path, name))}
         folders[:] = sorted({*folders} - links - {*leave_out})
         yield Path(path), folders, sorted([*files, *links])

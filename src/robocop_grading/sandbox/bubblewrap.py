@@ -19,8 +19,6 @@ from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, NoTimeError
 
-from .kernel_memory import OUTER_NETWORK, network_of
-
 ADDRESS_SPACE = 4 * 1024**3  # bytes of each process; numpy alone reserves more than one GB
 FILES = 256  # open ones of each process: what waits in its pipes and sockets is nobody's memory
 TASKS = 200  # processes and threads; a rospy node has some 30
@@ -52,8 +50,7 @@ class Sandbox:
     def probe_command(self, command: Sequence[str]) -> List[str]:
         """Command line that starts the probe in its own network and PID namespace; all else is shared."""
         namespaces = ["--die-with-parent", "--unshare-net", "--unshare-pid"]
-        network = ["--setenv", OUTER_NETWORK, str(network_of())]
-        return ["bwrap", *namespaces, *network, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
+        return ["bwrap", *namespaces, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
 
     def node_command(
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path

@@ -1,26 +1,22 @@
 """Builds a submission's package in the sandbox: a build runs code of its author."""
 
-import contextlib
 import os
 import shutil
 import subprocess
-import time
 from pathlib import Path
 from typing import IO, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError, NoTimeError
+from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.process import child
 
 from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from . import memory_group
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
-from .stillness import LOOK, Stillness
 
 MAX_SOURCE = 64 * 1024**2  # bytes of a package
 BUILD_TIME = 180.0  # [s] of processor time
-MAX_IDLE = 180.0  # [s, wall] for a command that waits for something that does not come
-NO_TIME = 900.0  # [s, wall]
+MAX_TIME = 900.0  # [s, wall]; a command that waits for something that does not come uses no processor time
 PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables passed on; the others may be private
 PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
 
@@ -37,8 +33,7 @@ def public(environment: Mapping[str, str]) -> Environment:
 def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], most: float = BUILD_TIME) -> Run:
     """Runs commands that may write to `folder` only.
 
-    GradingError when one exceeds its limit of processor time (`most` [s]), memory or disk, NoTimeError if the machine
-    has no time for it.
+    GradingError when one exceeds its limit of processor time (`most` [s]), memory or disk, or is not done in time.
     """
     if sandbox is None:
         return run_plain
@@ -52,7 +47,9 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], m
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
         guard = Guard(process.pid, folder, processor_time=most)
         try:
-            status = _wait(process, name)
+            status = process.wait(MAX_TIME)
+        except subprocess.TimeoutExpired as error:
+            raise GradingError(f"{name} was not done within {MAX_TIME:g} s") from error
         finally:
             child.end(process, None, 0.0)
             guard.stop()
@@ -62,17 +59,6 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], m
         return status
 
     return run
-
-
-def _wait(process: "child.Child[bytes]", name: str) -> int:
-    deadline, stillness = time.monotonic() + NO_TIME, Stillness(process.pid)
-    while True:
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            return process.wait(LOOK)
-        if stillness.look() > MAX_IDLE:
-            raise GradingError(f"{name} waits for something that does not come")
-        if time.monotonic() > deadline:
-            raise NoTimeError(f"{name} was not done within {NO_TIME:g} s")
 
 
 def build(

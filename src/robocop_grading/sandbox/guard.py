@@ -1,7 +1,8 @@
 """Kill a process tree that exceeds its limit of memory, processor time, processes or disk, and record why.
 
 The kernel's limits are per process. A limit for many of them needs a control group (memory_group.py), which not every
-system lets its users make.
+system lets its users make. What the kernel keeps for sockets, pipes and entries of folders is nobody's here; only a
+control group counts it.
 """
 
 import contextlib
@@ -17,7 +18,6 @@ from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
 
 from ..files import tree
-from . import kernel_memory
 
 MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
 MAX_DISK = 512 * 1024**2  # bytes that a build may write; the lab's takes 2 MB
@@ -93,12 +93,9 @@ def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:
     """Whether processes use more than `limit` bytes of memory together.
 
     Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
-    once, are only read when the resident sizes exceed the limit. The same holds for the memory of sockets.
+    once, are only read when the resident sizes exceed the limit.
     """
-    return all(
-        sum(_memory(process, exact) for process in processes) + kernel_memory.total(processes, exact) > limit
-        for exact in (False, True)
-    )
+    return all(sum(_memory(process, exact) for process in processes) > limit for exact in (False, True))
 
 
 def _memory(process: "psutil.Process", proportional: bool) -> int:
@@ -116,7 +113,7 @@ def _too_large(folder: Path, limit: int) -> str:
     try:
         return f"it wrote more than {limit / 1024**2:g} MB" if disk_usage(folder) > limit else ""
     except HostingError:
-        return f"it made more than {tree.DEEPEST} nested folders"
+        return f"it made more than {tree.MAX_DEPTH} nested folders"
 
 
 def disk_usage(folder: Path) -> int:

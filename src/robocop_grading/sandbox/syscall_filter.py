@@ -95,7 +95,8 @@ def rules() -> Iterator[Rule]:
     for level in OTHER_LEVELS:
         yield ALLOW, "setsockopt", Arg(1, MASKED_EQ, INT, level)
     for option in (*SOCKET_OPTIONS, *BUFFER_SIZES):
-        # The kernel does not refuse any size of a buffer either; here it keeps its default, by which guard.py counts.
+        # The kernel does not refuse any size of a buffer either; here it keeps its default, so that the number of
+        # sockets limits what they hold.
         action = ERRNO(0) if option in BUFFER_SIZES else ALLOW
         yield (
             action,

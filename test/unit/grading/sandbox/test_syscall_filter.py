@@ -9,7 +9,7 @@ import pytest
 from aro_robocop_goto_as.errors import GradingError
 from robocop_grading.sandbox.bubblewrap import open_sandbox
 
-PATIENCE = 120.0  # [s, wall]
+TIMEOUT = 120.0  # [s, wall]
 CALLS = """
 import ctypes, errno, os, platform, socket, sys
 libc = ctypes.CDLL(None, use_errno=True)
@@ -31,7 +31,7 @@ def run(sandbox, code):
     """Output of a Python program in the sandbox."""
     command = ["/usr/bin/python3", "-c", CALLS + textwrap.dedent(code)]
     inside = sandbox.probe_command(sandbox.node_command(command, {"HOME": "/tmp"}, (), Path("/tmp/home")))
-    done = subprocess.run(inside, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=PATIENCE)
+    done = subprocess.run(inside, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
     return done.stdout.strip()
 
 

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.errors import GradingError
 from robocop_grading.sandbox.bubblewrap import NAME, open_sandbox
 
 SHARE = Path(os.environ["ROBOCOP_SHARE"])
-PATIENCE = 600.0  # [s, wall]
+TIMEOUT = 600.0  # [s, wall]
 MODULE = re.compile(r"/usr/lib/python3/dist-packages/(\w+)(?:/__init__\.py|\.py|\.[\w-]+\.so)$", re.MULTILINE)
 # Imports each module in a process of its own, and prints as JSON which could not be imported, and why.
 IMPORTS = """
@@ -50,7 +50,7 @@ def inside():
 
 
 def output(command):
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=PATIENCE)
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=TIMEOUT)
     assert done.returncode == 0
     return done.stdout
 
@@ -63,7 +63,7 @@ def debian_modules():
     return sorted(set(MODULE.findall(files)) - {"__pycache__"})
 
 
-@pytest.mark.timeout(2 * PATIENCE)
+@pytest.mark.timeout(2 * TIMEOUT)
 def test_debian_modules_can_be_imported_inside_as_outside(inside):
     modules = debian_modules()
     assert {"matplotlib", "rospy", "numpy", "PIL"} <= set(modules)
@@ -80,7 +80,7 @@ def test_current_user_has_a_name_a_home_and_fonts(inside):
         "plt.title('fonts')\nplt.savefig('figure.png')\n"
         "print(os.path.exists('figure.png'), os.listdir('/etc/fonts') != [])\n"
     )
-    done = subprocess.run(inside(["/usr/bin/python3", "-c", code]), capture_output=True, text=True, timeout=PATIENCE)
+    done = subprocess.run(inside(["/usr/bin/python3", "-c", code]), capture_output=True, text=True, timeout=TIMEOUT)
     assert done.stdout.splitlines() == [f"{NAME} {NAME} /tmp/home {NAME} /tmp/home", "True True"], done.stderr
     assert done.stderr in ("", "Matplotlib is building the font cache; this may take a moment.\n")  # after 5 s
 
