@@ -27,7 +27,7 @@ FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
 MIDDLE = 0  # the seed with which every range stands for its middle
-LARGEST_SEED = 999_999
+MAX_SEED = 999_999
 DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
@@ -208,8 +208,8 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
 
     Seed 0 takes the middle of each range.
     """
-    if not MIDDLE <= seed <= LARGEST_SEED:
-        raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {LARGEST_SEED}")
+    if not MIDDLE <= seed <= MAX_SEED:
+        raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {MAX_SEED}")
     try:
         raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
     except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.errors import GradingError, RobocopError
 from .advice import advice, next_todo
 from .builds import workspace
 from .builds.launch_file import READER
-from .builds.package import MOST_NAMED, Package, find_package, started
+from .builds.package import MAX_NAMED, Package, find_package, started
 from .builds.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
@@ -162,7 +162,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
         names = [str(path.relative_to(copy)) for path in files_below(copy) if path.suffix == ".py"]
         raise GradingError(
             f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}, or started by the launch "
-            f"file; found: {', '.join(names[:MOST_NAMED]) or 'no Python script'}"
+            f"file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
         )
     notes = [*found.notes, *_ungraded_bridge(found.choices)]
     scripts = []

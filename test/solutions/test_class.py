@@ -19,7 +19,7 @@ from waiting import wait_for
 
 from robocop_grading.classroom.cluster import connected
 
-PATIENCE = 120.0  # [s, wall]
+TIMEOUT = 120.0  # [s, wall]
 BUSY = """
 import sys, time
 from distributed import Client
@@ -148,7 +148,7 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
     watch = start([*dask[:1], "-c", BUSY, address], stdout=subprocess.PIPE)
     wait_for(lambda: len(stamps(group)) >= count // 4, "some results")
     os.kill(workers[watch.stdout.readline().strip()].pid, signal.SIGKILL)
-    output, _ = grading.communicate(timeout=PATIENCE + 25.0 * count)
+    output, _ = grading.communicate(timeout=TIMEOUT + 25.0 * count)
     assert grading.returncode == 0, output
     expect_everybody_once(group, count, output)
     assert len(stamps(group)) == count
@@ -163,7 +163,7 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     wait_for(lambda: len(stamps(group)) >= 1, "a first result")
     with busy_processes():
         os.killpg(first.pid, signal.SIGINT)
-        output, _ = first.communicate(timeout=PATIENCE)
+        output, _ = first.communicate(timeout=TIMEOUT)
     assert (first.returncode, "Traceback" in output) == (130, False), output
     assert list(scratch.iterdir()) == []
     assert processes_mentioning(scratch) == []
@@ -173,7 +173,7 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     places = {name: os.stat(group.parent / "results" / name).st_ino for name in done}
 
     second = grade_class(start, group)
-    output, _ = second.communicate(timeout=PATIENCE + 25.0 * count)
+    output, _ = second.communicate(timeout=TIMEOUT + 25.0 * count)
     assert second.returncode == 0, output
     assert f"{count} handed in, {len(done)} of them already graded" in output
     expect_everybody_once(group, count, output)
@@ -188,7 +188,7 @@ def test_what_can_not_be_graded_has_a_row_with_the_reason_and_the_exit_status_te
         (folder / name).write_text("no archive")
     (tmp_path / "plan.yaml").write_text(PLAN)
     grading = grade_class(start, folder)
-    output, _ = grading.communicate(timeout=PATIENCE)
+    output, _ = grading.communicate(timeout=TIMEOUT)
     assert grading.returncode == 1, output
     assert "0 judged, 5 not gradable" in output
     reasons = {
@@ -216,7 +216,7 @@ def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceba
         assert any("scenarios: seed" in grading.stdout.readline() for _ in range(3))
         wait_for(lambda: len(processes_mentioning(scratch)) >= processes, f"{processes} processes of the grading")
         os.killpg(grading.pid, signal.SIGINT)
-        output, _ = grading.communicate(timeout=PATIENCE)
+        output, _ = grading.communicate(timeout=TIMEOUT)
     assert (grading.returncode, "Traceback" in output) == (130, False), output
     wait_for(lambda: processes_mentioning(scratch) == [], "all its processes ended")
     assert list(scratch.iterdir()) == []
@@ -225,14 +225,14 @@ def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceba
 @pytest.mark.slow
 def test_unreachable_scheduler_is_reported(group, start, key_of_cluster):
     grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1")
-    output, _ = grading.communicate(timeout=PATIENCE)
+    output, _ = grading.communicate(timeout=TIMEOUT)
     assert grading.returncode == 1
     assert "no dask scheduler answers at tls://127.0.0.1:1" in output
 
 
 def test_scheduler_without_tls_is_refused(group, start):
     grading = grade_class(start, group, "--scheduler", "tcp://127.0.0.1:1")
-    output, _ = grading.communicate(timeout=PATIENCE)
+    output, _ = grading.communicate(timeout=TIMEOUT)
     assert grading.returncode == 1
     assert "--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT" in output
 
@@ -267,8 +267,8 @@ def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run
             [*other, "/usr/bin/python3", "-c", code, address.split(":")[-1]],
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=TIMEOUT,
             cwd="/tmp",
         )
         assert done.returncode != 0 and refusal in done.stderr, done.stdout + done.stderr
-        assert client.submit(sum, [1, 2]).result(timeout=PATIENCE) == 3
+        assert client.submit(sum, [1, 2]).result(timeout=TIMEOUT) == 3

@@ -14,8 +14,8 @@ from ..files.tree import read_bytes
 from .workspace import Environment, Run, output_of
 
 READER = Path(__file__).resolve().with_name("roslaunch_reader.py")
-DEEPEST = 20  # nested lists and mappings of a parameter
-MOST_SHOWN = 200  # characters of a parameter or an error in a message
+MAX_DEPTH = 20  # nested lists and mappings of a parameter
+MAX_SHOWN = 200  # characters of a parameter or an error in a message
 TYPES = "expected a boolean, a 32-bit number, a string, or a list or mapping of these"
 MAX_OUTPUT = 200_000  # bytes of nodes and parameters
 VARIABLE = re.compile(r"[A-Za-z_]\w*")
@@ -76,19 +76,19 @@ def read(path: Path, top: Path, environment: Environment, run: Run, arguments: S
     try:
         values = yaml.load(output.decode(errors="replace"), _PlainLoader)
     except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that does not exist
-        raise HostingError(f"{name}: its parameters can't be read: {str(error)[:MOST_SHOWN]}") from error
+        raise HostingError(f"{name}: its parameters can't be read: {str(error)[:MAX_SHOWN]}") from error
     try:
         if "error" in values:
             raise HostingError(_failure(values, name, top))
         nodes = [_node(entry, top) for entry in values["nodes"]]
         return LaunchFile(nodes, _settable(values["parameters"], name), [f"{name}: {it}" for it in values["warnings"]])
     except (AttributeError, KeyError, TypeError) as error:  # not the reader's: a hand-in's code has printed it
-        raise HostingError(f"{name}: roslaunch can't read it: {error!r}"[:MOST_SHOWN]) from error
+        raise HostingError(f"{name}: roslaunch can't read it: {error!r}"[:MAX_SHOWN]) from error
 
 
 def _last_line(errors: str) -> str:
     lines = [line for line in re.sub("\x1b[^m]*m", "", errors).splitlines() if line.strip()]  # without colours
-    return (lines or ["no reason given"])[-1][:MOST_SHOWN]
+    return (lines or ["no reason given"])[-1][:MAX_SHOWN]
 
 
 def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
@@ -101,7 +101,7 @@ def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
     reason = re.sub(r"^(XmlParse|Load)?Exception: ", "", reason)
     reason = re.sub(r"^ResourceNotFound: (\S+)$", r"package \1 not found", reason)
     within = f" (in {_place(included[-1], 0, top)})" if included else ""
-    return f"{place}: roslaunch can't read it: {reason[:MOST_SHOWN]}{within}"
+    return f"{place}: roslaunch can't read it: {reason[:MAX_SHOWN]}{within}"
 
 
 def _place(file: str, line: int, top: Path) -> str:
@@ -116,7 +116,7 @@ def _node(values: Mapping[str, Any], top: Path) -> LaunchNode:
     environment: Dict[str, str] = {str(name): str(value) for name, value in values["environment"].items()}
     for variable, value in environment.items():
         if not VARIABLE.fullmatch(variable) or "\0" in value:
-            raise HostingError(f"{place}: <env name={variable[:MOST_SHOWN]!r}>: expected the name of a variable")
+            raise HostingError(f"{place}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
     is_own = top in Path(str(values["file"])).parents
     return LaunchNode(package, kind, name, place, namespace, arguments, environment, values["not_done"], is_own)
 
@@ -125,17 +125,17 @@ def _settable(parameters: Any, name: str) -> Mapping[str, Any]:
     """The parameters without the simulator's own; HostingError for one that can't be set."""
     for key, value in parameters.items():
         if not isinstance(key, str) or not _is_settable(value):
-            words = str(value)[:MOST_SHOWN]
-            raise HostingError(f"{name}: {str(key)[:MOST_SHOWN]}: {words} can't be a parameter: {TYPES}")
+            words = str(value)[:MAX_SHOWN]
+            raise HostingError(f"{name}: {str(key)[:MAX_SHOWN]}: {words} can't be a parameter: {TYPES}")
     return {key: value for key, value in parameters.items() if key != "/use_sim_time"}
 
 
 def _is_settable(value: Any, depth: int = 0) -> bool:
     """Whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
     if isinstance(value, list):
-        return depth < DEEPEST and all(_is_settable(it, depth + 1) for it in value)
+        return depth < MAX_DEPTH and all(_is_settable(it, depth + 1) for it in value)
     if isinstance(value, dict):
-        return depth < DEEPEST and all(isinstance(k, str) and _is_settable(v, depth + 1) for k, v in value.items())
+        return depth < MAX_DEPTH and all(isinstance(k, str) and _is_settable(v, depth + 1) for k, v in value.items())
     if isinstance(value, int):  # includes bool
         return -(2**31) <= value < 2**31
     return isinstance(value, (float, str))

@@ -17,7 +17,7 @@ from .workspace import Environment, Run
 
 LAUNCH_FILE = "robocop_goto_as.launch"
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
-MOST_NAMED = 10  # scripts in a message
+MAX_NAMED = 10  # scripts in a message
 SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", "aro_sim"}  # packages that nothing depends on
 SIMULATOR = re.compile(r"aro_sim|robocop_sim")
 GAZEBO = re.compile(r"gazebo(?!_msgs)")
@@ -97,7 +97,7 @@ def find_package(path: str, launch: str = "") -> Package:
         scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
         raise HostingError(
             f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
-            f"or one that makes an action server; found: {', '.join(scripts[:MOST_NAMED]) or 'no Python script'}"
+            f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
         )
     return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
 

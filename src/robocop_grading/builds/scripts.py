@@ -30,7 +30,7 @@ PYTHON3 = re.compile(r"(/usr)?/bin/(env python3|(env -S )?python3( .*)?)")
 FIRST_LINE = "#!/usr/bin/env python3"
 NOT_EXECUTABLE = "is not executable"
 BYTE_ORDER_MARK = "begins with a byte-order mark"
-MOST_LINES = 20  # from a script's top in which a #! line is looked for
+MAX_LINES = 20  # from a script's top in which a #! line is looked for
 IMPORT = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([\w., \t]+)", re.M)
 RELAY = re.compile(rb"^python_script = '([^'\n]+)'$", re.M)  # in what catkin_install_python makes
 
@@ -182,7 +182,7 @@ def obstacles(path: Path) -> Iterator[Tuple[str, str]]:
             yield "has Windows line endings (CRLF)", "save it with those of Unix"
     elif content.startswith(codecs.BOM_UTF8):
         yield BYTE_ORDER_MARK, "save it as UTF-8 without one"
-    elif any(line.startswith(b"#!") for line in rest.split(b"\n", MOST_LINES)):
+    elif any(line.startswith(b"#!") for line in rest.split(b"\n", MAX_LINES)):
         yield "has its #! line below other lines", "make it the first line"
     else:
         yield "has no #! line", f"make {FIRST_LINE} its first line"

@@ -25,8 +25,8 @@ COMPAT = ("aro_sim", "gazebo_msgs")
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
 LOG_LINES = 25  # of a failed build's log that are shown
-MOST_SHOWN = 4_000  # characters of them
-MOST_READ = 200_000  # bytes of a log's end
+MAX_SHOWN = 4_000  # characters of them
+MAX_READ = 200_000  # bytes of a log's end
 # By CMake, Python, GCC and make.
 FIRST_ERROR = re.compile(r"^(CMake Error|Traceback|.*\berror: |make.*\*\*\*)", re.MULTILINE)
 
@@ -66,7 +66,7 @@ def sourced(setup: Path, environment: Environment, run: Run = run_plain) -> Envi
     """The environment after bash has sourced a setup file."""
     status, output, errors = output_of(run, ["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
     if status != 0:
-        raise HostingError(f"{setup}: {errors.strip()[-MOST_SHOWN:]}")
+        raise HostingError(f"{setup}: {errors.strip()[-MAX_SHOWN:]}")
     pairs = [entry.partition("=") for entry in os.fsdecode(output).split("\0") if entry]
     return {name: value for name, _, value in pairs}
 
@@ -109,7 +109,7 @@ def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) 
             output,
             output,
         )
-        output.seek(max(0, output.seek(0, os.SEEK_END) - MOST_READ))
+        output.seek(max(0, output.seek(0, os.SEEK_END) - MAX_READ))
         text = output.read().decode(errors="replace") if status != 0 else ""
     if status != 0:
         raise HostingError(f"{names} can't be built:\n{error_of(text, folder)}\nfull log: {log}")
@@ -122,7 +122,7 @@ def error_of(log: str, folder: Path) -> str:
     error = FIRST_ERROR.search(log)
     lines = log[error.start() :].splitlines()[:LOG_LINES] if error else log.splitlines()[-LOG_LINES:]
     shown = "\n".join(lines)
-    return shown[:MOST_SHOWN] if error else shown[-MOST_SHOWN:]
+    return shown[:MAX_SHOWN] if error else shown[-MAX_SHOWN:]
 
 
 def build_once(

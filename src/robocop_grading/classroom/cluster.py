@@ -13,7 +13,7 @@ from distributed.security import Security
 
 from aro_robocop_goto_as.errors import GradingSetupError, UngradableError
 
-MOST_SHOWN = 500  # characters of an error
+MAX_SHOWN = 500  # characters of an error
 # Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,
 # if a garbage collection, to which dask has added a callback, comes in the middle of it (CPython issue 106883).
 WITHOUT_PROFILER = {"distributed.worker.profile.enabled": False}
@@ -44,6 +44,7 @@ def _local_cluster(workers: int) -> LocalCluster:
     return LocalCluster(
         n_workers=workers,
         threads_per_worker=1,
+        memory_limit=0,  # with many cores a worker takes more than its share, and would wait for ever
         host="127.0.0.1",
         protocol="tls",
         security=Security.temporary(),  # a key that nobody else on this machine has: its port executes anybody's code
@@ -65,5 +66,5 @@ def _problem(future: Future) -> str:
         return ""
     error = future.exception() if future.status == "error" else "the connection to the scheduler was lost"
     if isinstance(error, (str, UngradableError)):
-        return f"no grade: {error}"[:MOST_SHOWN]
-    return f"could not be graded: {type(error).__name__}: {error}"[:MOST_SHOWN]
+        return f"no grade: {error}"[:MAX_SHOWN]
+    return f"could not be graded: {type(error).__name__}: {error}"[:MAX_SHOWN]

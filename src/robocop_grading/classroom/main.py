@@ -22,7 +22,7 @@ from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED
 from ..files.scratch import scratch_folder
 from ..judge import points_in_words, printable_lines
-from ..plan import LARGEST_SEED, MIDDLE, Plan, load
+from ..plan import MAX_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
@@ -174,7 +174,7 @@ def chosen(again: Optional[Sequence[str]], hand_ins: Sequence[HandIn]) -> Set[st
 
 def class_seed(given: Optional[int], results: Path) -> int:
     """The given seed, else the one of the results so far, else a random one; 0 is a seed, too."""
-    seeds = (given, seed_of(results), random.randint(1, LARGEST_SEED))
+    seeds = (given, seed_of(results), random.randint(1, MAX_SEED))
     return next(seed for seed in seeds if seed is not None)
 
 

@@ -23,7 +23,7 @@ NOT_HANDED_IN = "not handed in"
 REFRESH = 5.0  # [s] while grading is in progress ...
 REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
 SHOWN = 200  # hand-ins until one asks for more
-MOST_CAUSES = 3
+MAX_CAUSES = 3
 SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: "–"}
 
 
@@ -191,4 +191,4 @@ def _most_frequent(causes: Mapping[str, int]) -> List[Tuple[str, int]]:
     for cause, count in causes.items():
         first, before = groups.get(alike(cause), (cause, 0))
         groups[alike(cause)] = first, before + count
-    return sorted(groups.values(), key=lambda group: -group[1])[:MOST_CAUSES]
+    return sorted(groups.values(), key=lambda group: -group[1])[:MAX_CAUSES]

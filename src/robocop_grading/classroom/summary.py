@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import List, Sequence, Tuple
 
 MAX_BARS = 10  # of the histogram, besides the one for full marks
-LONGEST_BAR = 40  # characters
+MAX_BAR = 40  # characters
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Summary:
         """All of it for a terminal."""
         highest = max([1, *(count for _, count in self.histogram)])
         bars = [
-            f"{label:>10} {count:4} {'#' * math.ceil(LONGEST_BAR * count / highest)}".rstrip()
+            f"{label:>10} {count:4} {'#' * math.ceil(MAX_BAR * count / highest)}".rstrip()
             for label, count in self.histogram
         ]
         return [self.counts, *([self.averages, *bars] if self.points else [])]

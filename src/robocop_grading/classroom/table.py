@@ -11,7 +11,7 @@ from .results import NOT_HANDED_IN, Result
 
 # A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-MOST_CELL = 2_000  # characters of a cell
+MAX_CELL = 2_000  # characters of a cell
 BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
 
 
@@ -55,5 +55,5 @@ def one_line(text: str) -> str:
 
 def _plain(text: str) -> str:
     """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
-    text = one_line(text)[:MOST_CELL].replace(";", ",")
+    text = one_line(text)[:MAX_CELL].replace(";", ",")
     return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text

@@ -20,7 +20,7 @@ from ..submission import prepare_submission
 from .hand_ins import packed
 from .results import Results
 
-MOST_PROBLEM = 4_000  # characters
+MAX_PROBLEM = 4_000  # characters
 
 
 def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
@@ -42,7 +42,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
             report.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
-            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MOST_PROBLEM]
+            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MAX_PROBLEM]
             write(Grade(shown(path), (), (problem, *notes)), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
 

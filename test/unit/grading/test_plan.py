@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
 from robocop_grading.packages import Packages
-from robocop_grading.plan import LARGEST_SEED, drawn, load, world_of
+from robocop_grading.plan import MAX_SEED, drawn, load, world_of
 
-SEEDS = st.integers(1, LARGEST_SEED)
+SEEDS = st.integers(1, MAX_SEED)
 NUMBERS = st.floats(-100.0, 100.0).map(lambda number: round(number, 3))
 
 
@@ -120,7 +120,7 @@ def test_empty_range_is_refused_with_its_place() -> None:
         drawn({"goal": ["2..1"]}, random.Random(1), "left")
 
 
-@pytest.mark.parametrize("seed", [1, 2, LARGEST_SEED])
+@pytest.mark.parametrize("seed", [1, 2, MAX_SEED])
 def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
     middle, chosen = load(PLAN), load(PLAN, seed)
     assert chosen == load(PLAN, seed)
@@ -128,7 +128,7 @@ def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(se
         assert (before.steps, before.obstacles) != (after.steps, after.obstacles), before.name
 
 
-@pytest.mark.parametrize("seed", [-1, LARGEST_SEED + 1])
+@pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
 def test_seed_out_of_bounds_is_refused(seed: int) -> None:
-    with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {LARGEST_SEED}"):
+    with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {MAX_SEED}"):
         load(PLAN, seed)

@@ -52,6 +52,8 @@ def test_node_has_all_that_roslaunch_resolves(tmp_path: Path) -> None:
         (f'{NODE}><env name="-S" value="x"/></node>', "line 2: <env name='-S'>: expected the name of a variable"),
         ("<nod>", "launch/x.launch: .*: mismatched tag: line 3"),
         ('<param name="day" type="yaml" value="2024-01-31"/>', "/day: 2024-01-31 can't be a parameter"),
+        ('<param name="a" type="yaml" value="[12345678901234]"/>', r"/a: \[12345678901234\] can't be a parameter"),
+        ('<param name="a" type="yaml" value="{1: 2}"/>', "/a: {1: 2} can't be a parameter"),
         ('<include file="$(dirname)/none.launch"/>', "line 2: .*No such file or directory.* .in launch/none.launch"),
     ],
 )

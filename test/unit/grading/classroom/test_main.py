@@ -14,7 +14,7 @@ from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.hand_ins import HandIn
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
-from robocop_grading.plan import LARGEST_SEED
+from robocop_grading.plan import MAX_SEED
 
 
 @pytest.mark.parametrize("used", [0, 7])
@@ -42,7 +42,7 @@ def test_gradings_of_a_new_class_at_the_same_time_share_a_seed(tmp_path):
 
 
 def test_new_class_gets_a_seed_that_draws(tmp_path):
-    assert 1 <= class_seed(None, tmp_path / "not there yet") <= LARGEST_SEED
+    assert 1 <= class_seed(None, tmp_path / "not there yet") <= MAX_SEED
 
 
 @pytest.fixture

@@ -166,10 +166,12 @@ def test_archives_one_in_another_are_unpacked_to_a_sensible_depth(tmp_path):
         {"hard": link("hard", "/etc/passwd", tarfile.LNKTYPE)},
     ],
 )
-def test_tar_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
+def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
     (tmp_path / "eve.tar").write_bytes(tarred(files))
-    with pytest.raises(SubmissionError):
-        packing.pack(tmp_path / "eve.tar")
+    (tmp_path / "eve.zip").write_bytes(zipped(dict.fromkeys(["x.py", "../evil.py"], b"")))
+    for name in ("eve.tar", "eve.zip"):
+        with pytest.raises(SubmissionError):
+            packing.pack(tmp_path / name)
 
 
 def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path):

@@ -9,10 +9,9 @@ import pytest
 from aro_robocop_goto_as.errors import HostingError
 from robocop_grading.files import tree
 from robocop_grading.files.tree import read_bytes
-from robocop_grading.sandbox.guard import Guard
 
 NESTED = "import os\nfor _ in range(1500):\n    os.mkdir('nested')\n    os.chdir('nested')\nopen('file', 'w').close()\n"
-PATIENCE = 60.0  # [s, wall]
+TIMEOUT = 60.0  # [s, wall]
 
 
 @pytest.fixture
@@ -20,7 +19,7 @@ def nested(tmp_path):
     """A folder with 1,500 nested ones, whose innermost path is longer than the system takes."""
     folder = tmp_path / "deep"
     folder.mkdir()
-    subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=PATIENCE)
+    subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=TIMEOUT)
     yield folder
     subprocess.run(["rm", "-rf", folder], check=True)
 
@@ -37,21 +36,8 @@ def test_deeply_nested_folders_are_removed(nested):
 
 def test_temporary_folder_is_removed_whatever_is_in_it(tmp_path):
     with tree.temporary_folder("made-", tmp_path) as folder:
-        subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=PATIENCE)
+        subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=TIMEOUT)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_guard_kills_a_process_that_nests_folders(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-c", f"{NESTED}\nimport time\ntime.sleep(600.0)"], start_new_session=True, cwd=tmp_path
-    )
-    guard = Guard(process.pid, tmp_path)
-    try:
-        assert process.wait(PATIENCE) < 0
-        assert guard.reason == "it made more than 100 nested folders"
-    finally:
-        guard.stop()
-        subprocess.run(["rm", "-rf", *tmp_path.iterdir()], check=True)
 
 
 def test_walk_lists_sorted_names_and_does_not_follow_links(tmp_path):
