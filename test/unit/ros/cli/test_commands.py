@@ -44,6 +44,11 @@ def test_ros_listens_on_loopback_by_default():
     assert dry_run("run")[1] == ["ROS_HOSTNAME=localhost"]
 
 
+def test_ros_listens_on_loopback_with_a_master_on_another_port_of_this_machine():
+    uri = "http://localhost:11399"
+    assert dry_run("run", ROS_MASTER_URI=uri)[1] == ["ROS_HOSTNAME=localhost", f"ROS_MASTER_URI={uri}"]
+
+
 @pytest.mark.parametrize(
     "name, value", [("ROS_MASTER_URI", "http://robot:11311"), ("ROS_IP", "192.0.2.1"), ("ROS_HOSTNAME", "robot")]
 )
