@@ -57,8 +57,8 @@ class System:
         """Start a process that is ended with this system by these signals; its output goes to NAME.log and NAME.err."""
         log, errors = (self.directory / f"{name}.{kind}" for kind in ("log", "err"))
         with open(log, "wb") as out, open(errors, "wb") as err:
-            options = {"stdout": out, "stderr": err, **options}
-            process = subprocess.Popen(list(map(str, command)), env=self.environment, **options)
+            options = {"stdout": out, "stderr": err, "env": self.environment, **options}
+            process = subprocess.Popen(list(map(str, command)), **options)
         process.text = lambda: log.read_text(errors="replace") + errors.read_text(errors="replace")
         self.running.append((process, signals))
         return process

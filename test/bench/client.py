@@ -55,10 +55,10 @@ def _compiled(directory: Path) -> Any:
 class Client:
     """Reads its connections, one for each topic, in a thread that runs within the `with` block."""
 
-    def __init__(self, topics: Mapping[str, int], directory: Path) -> None:
-        """`topics`: their rates [Hz]; none of them has a publisher yet."""
+    def __init__(self, topics: Mapping[str, int], directory: Path, uri: str) -> None:
+        """`topics`: their rates [Hz]; none of them has a publisher yet. `uri`: the master's."""
         self.links: Dict[str, Link] = {}  # by topic
-        self._rates, self._master = topics, rosgraph.Master(CALLER)
+        self._rates, self._master = topics, rosgraph.Master(CALLER, uri)
         self._links = (Link * MAX_FD)()  # by the sockets' file descriptors
         self._sockets: List[socket.socket] = []  # not closed before the end, so that no descriptor is reused
         self._epoll = select.epoll()

@@ -25,7 +25,7 @@ def constant_velocity(namespaces: List[str]) -> None:
     for publisher in publishers:
         publisher.publish(VELOCITY)
     print("ready", flush=True)
-    while not all(publisher.get_num_connections() for publisher in publishers):
+    while not (rospy.is_shutdown() or all(publisher.get_num_connections() for publisher in publishers)):
         rospy.rostime.wallsleep(POLL)
     print("running", flush=True)
     rospy.spin()

@@ -2,14 +2,18 @@
 
 import argparse
 import itertools
+import os
 import signal
 import sys
+import tempfile
 from pathlib import Path
 from typing import List, Sequence
 
+from systems import System
+
 from . import BenchError, cases, report
+from .checkouts import Checkout, other_checkout, this_checkout
 from .measure import simulate
-from .processes import Checkout, other_checkout, own_ros, this_checkout
 from .report import Measured, Row
 
 USUAL, QUICK = (5.0, 3), (1.5, 1)  # [s] a measurement, repeats
@@ -45,7 +49,9 @@ def _measure(rows: Sequence[Row], checkouts: Sequence[Checkout], seconds: float,
 
     A case that fails is not repeated.
     """
-    with own_ros() as directory:
+    own = {name: value for name, value in os.environ.items() if name != "ROS_NAMESPACE"}
+    with tempfile.TemporaryDirectory(prefix="robocop_bench_") as directory, System(Path(directory), own) as ros:
+        ros.start_master()
         for repeat, row in itertools.product(range(repeats), rows):
             for measured, checkout in list(zip(row, checkouts))[:: -1 if repeat % 2 else 1]:
                 if any(one.error for one in row):
@@ -53,7 +59,7 @@ def _measure(rows: Sequence[Row], checkouts: Sequence[Checkout], seconds: float,
                 name = measured.case.name
                 print(f"robocop bench: {name}, {repeat + 1} of {repeats}", measured.checkout, file=sys.stderr)
                 try:  # as fast as possible, then paced
-                    measured.add(*(simulate(measured.case, at, seconds, checkout, directory) for at in (0.0, 1.0)))
+                    measured.add(*(simulate(measured.case, at, seconds, checkout, ros) for at in (0.0, 1.0)))
                 except BenchError as error:
                     measured.error = str(error)
                     print(f"robocop bench: {measured.notes()[0]}", file=sys.stderr)

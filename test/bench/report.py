@@ -12,7 +12,6 @@ from typing import Dict, List, Optional, Sequence
 from .cases import ODOM_RATE, PHYSICS_RATES, SCAN_RATE, SCAN_SAMPLES, Case
 from .measure import Run
 
-BUSY = 0.5  # share of a processor from which on the client may limit the speed
 KEPT_UP = 0.95  # a lower share of the requested real-time factor is noted
 COLUMNS = {  # titles -> figures
     "factor": "factor",
@@ -55,9 +54,7 @@ class Measured:
     def notes(self) -> List[str]:
         """Remarks on the figures."""
         notes = [] if self.error is None else [f"failed: {self.error}"]
-        busiest, slowest = max(self.figures.get("client_busy", [0.0])), min(self.figures.get("paced_factor", [1.0]))
-        if busiest > BUSY:
-            notes.append(f"the client was busy for {busiest:.2f} of the time, so it may limit the factor")
+        slowest = min(self.figures.get("paced_factor", [1.0]))
         if slowest < KEPT_UP:
             notes.append(f"only {slowest:.2f} of the requested factor 1 reached")
         return [f"{self.case.name}{self.checkout and ', ' + self.checkout}: {note}" for note in notes]

@@ -15,7 +15,9 @@ def test_messages_are_counted_however_the_stream_is_split_and_missing_ones_are_l
     stamps = [number for number in range(20) if number not in left_out]
     headers = (struct.pack("<IIII", 112, 0, number // 10, number % 10 * SECOND // 10) for number in stamps)
     stream = b"".join(header + bytes(100) for header in headers)
-    with Client({"/scan": 10}, tmp_path) as client, socket.create_server(("127.0.0.1", 0)) as server:
+    with Client({"/scan": 10}, tmp_path, "http://localhost:1") as client, socket.create_server(
+        ("127.0.0.1", 0)
+    ) as server:
         with socket.create_connection(server.getsockname()) as sender:
             client._add("/scan", server.accept()[0])
             for start in range(0, len(stream), chunk):

@@ -53,11 +53,10 @@ def test_repeats_of_two_checkouts_are_compared_in_pairs():
     assert rows[2]["lost"] == "-"
 
 
-def test_busy_client_and_missed_factor_are_noted():
+def test_a_missed_factor_is_noted():
     result = Measured(Case("wheels", "50"))
     result.add(Run(1.2, 0.9, 1, 1.0, 10, 10, 0.51), Run(0.8, 1.1, 1, 1.0, 10, 10, 0.1))
     assert result.notes() == [
-        "wheels:50: the client was busy for 0.51 of the time, so it may limit the factor",
         "wheels:50: only 0.80 of the requested factor 1 reached",
     ]
     assert measured("wheels:1", [(9.0, 0.1)]).notes() == []
