@@ -36,7 +36,6 @@ from .sandbox.build import build, runner_in
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
-LAUNCH_TIME = 30.0  # [s] of processor time
 
 
 @dataclass(frozen=True)
@@ -157,7 +156,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
     underlay = lab_environment(share, state) if below else compat_environment(share, state)
     environment = build(package.sources, folder, underlay, below, sandbox)
     copy = folder / "src" / package.name
-    found = started(package, folder, environment, runner_in(sandbox, folder, [*below, READER], LAUNCH_TIME))
+    found = started(package, folder, environment, runner_in(sandbox, folder, [*below, READER]))
     if not found.choices:
         names = [str(path.relative_to(copy)) for path in files_below(copy) if path.suffix == ".py"]
         raise GradingError(

@@ -30,10 +30,10 @@ def public(environment: Mapping[str, str]) -> Environment:
     }
 
 
-def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], most: float = BUILD_TIME) -> Run:
+def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path]) -> Run:
     """Runs commands that may write to `folder` only.
 
-    GradingError when one exceeds its limit of processor time (`most` [s]), memory or disk, or is not done in time.
+    GradingError when one exceeds its limit of processor time, memory or disk, or is not done in time.
     """
     if sandbox is None:
         return run_plain
@@ -45,7 +45,7 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path], m
         change_owner(folder, user())
         inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
-        guard = Guard(process.pid, folder, processor_time=most)
+        guard = Guard(process.pid, folder, processor_time=BUILD_TIME)
         try:
             status = process.wait(MAX_TIME)
         except subprocess.TimeoutExpired as error:
