@@ -184,6 +184,12 @@ class _ScenarioEntry:
     pushes: Optional[list] = None
     odd_scan: bool = False
 
+    def conflicts(self) -> List[str]:
+        """What is wrong with its name or its script, in words."""
+        named = re.fullmatch(r"\w+", self.name) is not None
+        problems = [] if named else [f"name: expected letters, digits and _, got {self.name!r}"]
+        return problems + ([] if self.script else ["script: expected steps, got none"])
+
 
 @dataclass(frozen=True)
 class _Obstacles:
@@ -255,8 +261,6 @@ def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
 
 def _scenario(raw: Any, where: str, seed: int) -> Scenario:
     entry = _loaded(_ScenarioEntry, raw, where)
-    if not re.fullmatch(r"\w+", entry.name):
-        raise PlanError(f"{where}: name: expected letters, digits and _, got {entry.name!r}")
     where, numbers = f"{where}: {entry.name}", None if seed == MIDDLE else random.Random(f"{seed}/{entry.name}")
     # In this order, by which each seed has its numbers.
     obstacles = drawn(entry.obstacles or [], numbers, where)

@@ -76,6 +76,11 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
             "cancel: expected an earlier goal in the script",
         ),
         ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
+        (
+            "script:\n      - {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}",
+            "script: []",
+            "script: expected steps, got none",
+        ),
         ("  - [1.6..1.8, 0.2, -0.35, 1.0]", "  - [1.6..1.8, 0.2]", "far: pushes: expected 4 numbers"),
         ("packages:", "packages: {pypi: [--index-url=http://here]}", "expected the name of a package, got '--index"),
         ("packages:", "packages: {conda: [numpy]}", "packages: conda: unknown parameter"),
