@@ -105,3 +105,4 @@ def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch,
     for number in (signal.SIGTERM, signal.SIGINT):
         launched.process.send_signal(number)
     assert launched.wait_for_exit() == 0
+    assert "Traceback" not in launched.output

@@ -1,12 +1,11 @@
 """What is sent to the browsers when groups of shapes change."""
 
-from dataclasses import replace
 from typing import Any, List
 
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose3D
-from aro_robocop_goto_as.web.scene import BODY, BOX, LINE, MESH, POINTS, TEXT, PageScene, Shape
+from aro_robocop_goto_as.web.scene import BODY, BOX, PageScene, Shape
 
 AWAY = Pose3D((1.0, 0.0, 0.0))
 
@@ -62,31 +61,6 @@ def test_a_shape_is_moved_only_when_its_pose_changes(api: Api, scene: PageScene)
     assert not hasattr(api.added[0], "position")
     scene.show("world", {"a": (Shape(BOX), AWAY)})
     assert api.added[0].position == (1.0, 0.0, 0.0) and len(api.added) == 1
-
-
-TRIANGLE = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-
-
-@pytest.mark.parametrize(
-    "shape, change, sent",
-    [
-        (Shape(BOX), {"color": (1, 2, 3)}, "color"),
-        (Shape(MESH, points=TRIANGLE), {"opacity": 0.5}, "opacity"),
-        (Shape(TEXT, text="ready"), {"text": "moving"}, "text"),
-        (Shape(LINE, points=TRIANGLE), {"points": TRIANGLE * 2}, "points"),
-        (Shape(POINTS, points=TRIANGLE), {"points": TRIANGLE * 2}, "points"),
-    ],
-)
-def test_what_can_be_changed_in_place_is_not_drawn_anew(api: Api, scene: PageScene, shape, change, sent) -> None:
-    for new in (shape, replace(shape, **change)):
-        scene.show("world", {"a": (new, Pose3D())})
-    assert len(api.added) == 1 and hasattr(api.added[0], sent)
-
-
-def test_another_size_is_drawn_anew(api: Api, scene: PageScene) -> None:
-    for size in (1.0, 2.0):
-        scene.show("world", {"a": (Shape(BOX, (size, size, size)), Pose3D())})
-    assert api.nodes == [api.added[1].name]
 
 
 def test_the_parts_of_a_body_move_and_go_with_it(api: Api, scene: PageScene) -> None:
