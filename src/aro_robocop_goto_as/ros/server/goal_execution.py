@@ -16,7 +16,6 @@ from ...names import place
 from .inputs import Inputs
 
 MAX_JUMPS = 10  # of odometry, after each of which a goal begins anew, as after a reset; later ones are ignored
-MAX_GAP = 2.0  # control periods between two steps; in a longer gap the server could not drive
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,6 @@ class GoalExecution:
         self.twist = STANDSTILL  # to command in this control period
         self._inputs = inputs
         self._now = 0.0  # time of the newest control period
-        self._stalled = 0.0  # [s] in which no step ran; it does not count as lack of progress
         self._progress: Optional[Progress] = None
         self._errors: Optional[Errors] = None  # of the previous step
         self._jumps = 0
@@ -59,11 +57,10 @@ class GoalExecution:
             f"position x {self.goal.x} y {self.goal.y}: expected finite numbers in metres, at most {MAX_COORDINATE:g}",
         )
 
-    def begin_period(self, now: float, p: GotoParams) -> float:
+    def begin_period(self, now: float) -> float:
         """A control period begins; the time of the first one."""
         if self.started is None:
-            self.started = self._now = now
-        self._stalled += max(0.0, now - self._now - MAX_GAP / p.control_rate)
+            self.started = now
         self._now = now
         return self.started
 
@@ -78,15 +75,14 @@ class GoalExecution:
         if turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
             self._progress = None
         self._turning = turning
-        driven = self._now - self._stalled
-        self._progress = goto.track_progress(self._progress, errors, driven, p.stuck_distance, p.stuck_angle)
+        self._progress = goto.track_progress(self._progress, errors, self._now, p.stuck_distance, p.stuck_angle)
         self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)
         return decision
 
     def ending(self, decision: Decision, clearance: float, p: GotoParams) -> Optional[Ending]:
         """How the goal ends by the decision, without progress, or at its timeout; None to go on."""
         elapsed = self._elapsed()
-        idle = 0.0 if self._progress is None else self._now - self._stalled - self._progress.since
+        idle = 0.0 if self._progress is None else self._now - self._progress.since
         where = f"{decision.errors.position:.3f} m from the goal {self.where()} after {elapsed:.1f} s"
         if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)

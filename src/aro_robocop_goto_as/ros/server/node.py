@@ -94,7 +94,7 @@ class GotoNode:
         if self.is_in_lockstep():
             self.inputs.wait_for_tick(tick_ns)
         p, now = self.tuning.params, tick_ns / NANOSECONDS
-        started = execution.begin_period(now, p)
+        started = execution.begin_period(now)
         missing = self.inputs.missing(now, started, execution.accepted)
         if missing is not None:
             return Ending(*missing)
