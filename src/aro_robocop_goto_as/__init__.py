@@ -11,9 +11,10 @@ From a velocity command to odometry, scan, tf and clock:
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.observations       measures what is due and subscribed to
         sensors                   models of odometry, scanner, IMU and camera
-    ros.sim.node                  the loop: has the simulator advance, then publishes what it has measured
+    ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.sim.sensor_topics     at the start: packed messages, whose fields are bound to the rows of a robot
+        ros.sim.sensor_topics     at the start: a robot's topics
+        ros.sim.sensor_messages   their packed messages, whose fields are bound to the rows of a robot
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, camera).
@@ -46,7 +47,7 @@ From the system to a browser and back, by viser:
 From ./robocop COMMAND to the program that does the work:
 
     robocop                       the shell script: a state folder, a clean environment
-    ros.cli.commands              checks the arguments and chooses the program
+    ros.cli.commands              names the function of each command, which checks the arguments and chooses the program
         ros.cli.program           has the script install and build what that program needs, then becomes it
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
