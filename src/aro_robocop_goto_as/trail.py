@@ -9,7 +9,7 @@ SPACING = 0.05  # [m] between two points
 MAX_POINTS = 600  # points, 30 m
 HEIGHT = 0.012  # [m] above the floor
 # A robot that moves farther between two poses was placed there, as by a reset.
-MAX_SPEED, SLACK = 2.0, 0.05  # [m/s] above the speed of a TurtleBot; [m] for noise
+MAX_SPEED, MAX_NOISE = 2.0, 0.05  # [m/s] above the speed of a TurtleBot; [m] for noise
 
 
 class Trail:
@@ -29,7 +29,7 @@ class Trail:
         point, is_placed = (x, y, HEIGHT), False
         if self._newest is not None:
             before, position = self._newest
-            is_placed = time < before or math.dist(position, point) > SLACK + MAX_SPEED * (time - before)
+            is_placed = time < before or math.dist(position, point) > MAX_NOISE + MAX_SPEED * (time - before)
             if is_placed:
                 self.points = ()
         self._newest = (time, point)

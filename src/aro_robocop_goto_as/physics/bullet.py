@@ -17,7 +17,7 @@ from .quiet_pybullet import pybullet
 ROBOT_GROUP, WORLD_GROUP = 1, 2  # Bullet's collision filter bits; its rays are of group 1
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower motion with stopped wheels is solver creep
 REST_STEPS = 24  # consecutive steps below these speeds until the robot is parked
-WAKING = 1.0  # [m] between the centres, within which a moving obstacle keeps a robot awake
+WAKE_DISTANCE = 1.0  # [m] between the centres, within which a moving obstacle keeps a robot awake
 CENTRED = Pose3D()  # of a base_link whose centre of mass is its origin
 TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
 
@@ -227,7 +227,7 @@ class BulletEngine:
             pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self.client)
             for robot in self._robots:
                 (x, y, _), _ = pybullet.getBasePositionAndOrientation(robot.body, physicsClientId=self.client)
-                if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKING:
+                if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKE_DISTANCE:
                     self._unpark(robot)
 
     def _park_when_at_rest(self, robot: _Body) -> None:

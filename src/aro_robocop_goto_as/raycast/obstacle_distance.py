@@ -12,7 +12,7 @@ from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
 MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
 MAX_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
-NEAR = 0.5  # [m] an obstacle that is nearer is found among the segments within it along y: few, in a map with many
+REACH = 0.5  # [m] an obstacle that is nearer is found among the segments within it along y: few, in a map with many
 
 
 def body_heights(model: RobotModel) -> Tuple[float, ...]:
@@ -51,9 +51,9 @@ class ObstacleDistance:
 
     def nearest(self, x: float, y: float) -> Nearest:
         """The obstacle nearest to a point [m] in the world."""
-        near = np.flatnonzero((self._low <= y + NEAR) & (self._high >= y - NEAR))
+        near = np.flatnonzero((self._low <= y + REACH) & (self._high >= y - REACH))
         found = self._nearest(x, y, near)
-        return found if found.distance <= NEAR else self._nearest(x, y, np.arange(len(self._start)))
+        return found if found.distance <= REACH else self._nearest(x, y, np.arange(len(self._start)))
 
     def _nearest(self, x: float, y: float, rows: np.ndarray) -> Nearest:
         """The nearest of all circles and the segments in some rows, among them all with points at this y."""

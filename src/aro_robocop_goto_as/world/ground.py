@@ -12,11 +12,11 @@ import numpy as np
 from ..geometry import Pose2D, Pose3D, compose, inverse, rotation_matrix
 from .model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
 
-LOW = 0.2  # [m] above z = 0: the highest top of a slab that is ground
-LARGE = 3.0  # [m] the shortest side of a slab that is ground
-TILT = 1e-3  # [rad] that a slab may be tilted; then its highest point is the ground
+MAX_TOP = 0.2  # [m] above z = 0: the highest top of a slab that is ground
+MIN_SIDE = 3.0  # [m] the shortest side of a slab that is ground
+MAX_TILT = 1e-3  # [rad] that a slab may be tilted; then its highest point is the ground
 LEVEL = 1e-6  # [m] by which a top may be higher than the ground and still be part of it
-FILLED = 0.9  # of its rectangle: what the top of a mesh has to cover to be a slab
+MIN_FILLED = 0.9  # of its rectangle: what the top of a mesh has to cover to be a slab
 
 
 class _Slab(NamedTuple):
@@ -67,7 +67,7 @@ def levelled(world: World) -> World:
     the largest slab of a world that has nothing of the kind there. It is never below the z = 0 of the world's file,
     where the simulator has a floor of its own. Slabs that are higher than the ground are obstacles.
     """
-    slabs = [slab for slab in map(_slab, world.obstacles) if slab is not None and slab.top + world.ground <= LOW]
+    slabs = [slab for slab in map(_slab, world.obstacles) if slab is not None and slab.top + world.ground <= MAX_TOP]
     below = [slab for slab in slabs if slab.covers(world.spawn.x, world.spawn.y)]
     found = below or sorted(slabs, key=lambda slab: slab.length * slab.width)[-1:]
     ground = max([0.0, *(slab.top + world.ground for slab in found)])
@@ -95,10 +95,10 @@ def _slab(obstacle: Obstacle) -> Optional[_Slab]:
         return _slab_of_mesh(obstacle.pose, shape, height)
     if not isinstance(shape, (Box, Cylinder)) or obstacle.motion is not None:
         return None
-    if abs(float(rotation_matrix(obstacle.pose.orientation)[2, 2])) < math.cos(TILT):  # near -1: it is turned over
+    if abs(float(rotation_matrix(obstacle.pose.orientation)[2, 2])) < math.cos(MAX_TILT):  # near -1: it is turned over
         return None
     length, width = shape.size[:2] if isinstance(shape, Box) else (2.0 * shape.radius,) * 2
-    return _Slab(height, obstacle.pose.on_plane(), length, width) if min(length, width) >= LARGE else None
+    return _Slab(height, obstacle.pose.on_plane(), length, width) if min(length, width) >= MIN_SIDE else None
 
 
 def _slab_of_mesh(pose: Pose3D, mesh: Mesh, height: float) -> Optional[_Slab]:
@@ -107,11 +107,11 @@ def _slab_of_mesh(pose: Pose3D, mesh: Mesh, height: float) -> Optional[_Slab]:
     corners = mesh.corners if pose.is_upright() else mesh.corners @ rotation_matrix(pose.orientation).T
     low, high = corners[..., :2].min(axis=(0, 1)), corners[..., :2].max(axis=(0, 1))
     length, width = (high - low).tolist()
-    if min(length, width) < LARGE:
+    if min(length, width) < MIN_SIDE:
         return None
     lid = corners[(corners[..., 2] + pose.position[2] >= height - LEVEL).all(axis=1)][..., :2]
     (ax, ay), (bx, by) = (lid[:, 1] - lid[:, 0]).T, (lid[:, 2] - lid[:, 0]).T
-    if np.abs(ax * by - ay * bx).sum() / 2.0 < FILLED * length * width:
+    if np.abs(ax * by - ay * bx).sum() / 2.0 < MIN_FILLED * length * width:
         return None
     x, y = ((low + high) / 2.0).tolist()
     return _Slab(height, compose(axes, Pose2D(x, y)), length, width)

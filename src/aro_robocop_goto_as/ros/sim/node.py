@@ -22,7 +22,7 @@ from .status import StatusTopics
 from .step_topics import StepTopics
 from .world_topics import WorldTopics
 
-SHORT = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
+MAX_SLEEP = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
 
 
 class SimNode:
@@ -83,7 +83,7 @@ class SimNode:
         time, simulator = self._simulation.time_control, self._simulator
         self._run_jobs()
         wait = time.hold(simulator.steps)
-        if 0.0 < wait < SHORT:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
+        if 0.0 < wait < MAX_SLEEP:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
             self._simulation.jobs.sleep(wait)
             time.pacer.waited(wait)
             self._run_jobs()

@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import WorldError
 from ...geometry import Pose2D, Pose3D
 from ...reading import Element, file_of, parse_xml
-from ..ground import LOW
+from ..ground import MAX_TOP
 from ..model import Obstacle, World
 from ..scripted_motion import Motion
 from . import frames, uris, xml
@@ -76,10 +76,9 @@ def _spawn(world: Element) -> Optional[Pose2D]:
     if spawns[0].get("attached_to", "world") not in ("", "world"):
         raise xml.error(spawns[0], f"<frame name='{SPAWN_FRAME}'> is attached to a model; supported: to the world")
     pose = xml.pose_in_world(spawns[0])
-    if not 0.0 <= pose.position[2] <= LOW or not pose.is_upright():
-        raise xml.error(
-            spawns[0], f"'{SPAWN_FRAME}' is not on the ground; supported: <pose>x y z 0 0 yaw</pose>, z up to {LOW:g}"
-        )
+    if not 0.0 <= pose.position[2] <= MAX_TOP or not pose.is_upright():
+        supported = f"<pose>x y z 0 0 yaw</pose>, z up to {MAX_TOP:g}"
+        raise xml.error(spawns[0], f"'{SPAWN_FRAME}' is not on the ground; supported: {supported}")
     return pose.on_plane()
 
 
