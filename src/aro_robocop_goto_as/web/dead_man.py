@@ -28,8 +28,8 @@ class Drive:
 class DeadMan:
     """Who drives which robot; the newest request wins. All times in seconds of one monotonic clock."""
 
-    def __init__(self, patience: float = TIMEOUT) -> None:
-        self._patience = patience
+    def __init__(self, timeout: float = TIMEOUT) -> None:
+        self._timeout = timeout
         self._hold: Optional[_Hold] = None
         self._moving = ""
         self._is_moving = False
@@ -37,7 +37,7 @@ class DeadMan:
     def request(self, page: int, robot: str, twist: Twist2D, now: float) -> bool:
         """A page requests that the robot drive; returns whether nobody was driving it before."""
         begins = self._hold is None or self._hold.robot != robot or now >= self._hold.until
-        self._hold = _Hold(page, robot, twist, now + self._patience)
+        self._hold = _Hold(page, robot, twist, now + self._timeout)
         return begins
 
     def release(self, page: int) -> None:

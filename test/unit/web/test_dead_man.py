@@ -12,7 +12,7 @@ FORWARD = Twist2D(0.2, 0.0)
 
 
 def test_the_robot_drives_while_requests_are_renewed_and_is_stopped_once_when_they_end() -> None:
-    dead_man = DeadMan(patience=0.3)
+    dead_man = DeadMan(timeout=0.3)
     for now in (0.0, 0.1, 0.2):
         dead_man.request(1, "red", FORWARD, now)
         assert dead_man.command(now) == Drive("red", FORWARD)
@@ -57,14 +57,14 @@ def test_the_former_robot_is_stopped_before_the_next_one_drives() -> None:
 
 
 def test_only_the_first_request_begins_a_drive() -> None:
-    dead_man = DeadMan(patience=0.3)
+    dead_man = DeadMan(timeout=0.3)
     begins = [dead_man.request(1, "", FORWARD, now) for now in (0.0, 0.1, 0.2, 0.6)]
     assert begins == [True, False, False, True]
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 0.5), st.sampled_from(["request", "release", "stop", "tick"])), max_size=40))
-def test_no_command_but_zero_is_sent_later_than_the_patience_after_the_last_request(steps: "list") -> None:
-    dead_man, now, asked = DeadMan(patience=0.3), 0.0, -math.inf
+def test_no_command_but_zero_is_sent_later_than_the_timeout_after_the_last_request(steps: "list") -> None:
+    dead_man, now, asked = DeadMan(timeout=0.3), 0.0, -math.inf
     for wait, what in steps:
         now += wait
         if what == "request":

@@ -72,18 +72,18 @@ def _frame(robot: str, frame: str) -> str:
     return prefixed(robot, frame) if frame in ROBOT_FRAMES else frame
 
 
-def go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool] = lambda: False) -> int:
+def go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool] = lambda: False) -> int:
     """Transform the goal, send it to the server and wait for its end; returns the exit status.
 
     `ended`: whether the system has ended, so that its server will not come.
     """
     try:
-        return _go_to(args, patience, ended)
+        return _go_to(args, timeout, ended)
     finally:
         rospy.signal_shutdown("done")
 
 
-def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool]) -> int:
+def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) -> int:
     rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
     started = rospy.get_rostime()
     latest: List[Optional[Odometry]] = [None]
@@ -94,7 +94,7 @@ def _go_to(args: argparse.Namespace, patience: float, ended: Callable[[], bool])
     transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: latest[0])
     action = absolute_if_named(args.robot, ACTION)
     client = actionlib.SimpleActionClient(action, GoToPositionAction)
-    missing = _wait_or_explain(client, action, patience, ended)
+    missing = _wait_or_explain(client, action, timeout, ended)
     signals.reraise_if_interrupted()  # rospy may have swallowed it
     if missing:
         complain(missing)

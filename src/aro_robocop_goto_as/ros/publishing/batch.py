@@ -100,17 +100,17 @@ class Batch:
     def _finish(self) -> None:
         """Send the rest of what was not sent whole; a subscriber that is gone is disconnected."""
         lost: Set[int] = set()  # ids of connections
-        patient = True
+        may_wait = True
         for (topic, message, link), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
             if parcel.taken != message.size and id(link.connection) not in lost:
                 stood = link.stands_still
                 try:
-                    sent = link.finish(message.data.data, parcel.taken, patient)
+                    sent = link.finish(message.data.data, parcel.taken, may_wait)
                 except OSError:  # as rospy: this subscriber is lost, and only this one
                     lost.add(id(link.connection))
                     disconnect(topic, link.connection)
                 else:
-                    patient = patient and (sent or stood)
+                    may_wait = may_wait and (sent or stood)
 
     def count(self) -> None:
         """Update rospy's statistics of these topics and connections."""

@@ -44,20 +44,20 @@ class SubscriberLink:
 
     def write(self, data: bytes) -> None:
         """Send a message, or miss it; OSError if the connection is lost."""
-        if self.finish(memoryview(data), 0, patient=True):
+        if self.finish(memoryview(data), 0, may_wait=True):
             count_sent(self.connection, 1, len(data))
 
-    def finish(self, message: memoryview, taken: int, patient: bool) -> bool:
+    def finish(self, message: memoryview, taken: int, may_wait: bool) -> bool:
         """Send what is left of a message of which `taken` bytes were sent, or -errno; return whether all was sent.
 
-        OSError if the connection is lost. Without patience, a subscriber that takes nothing at once is not waited for.
+        OSError if the connection is lost. Unless it may wait, a subscriber that takes nothing at once is skipped.
         """
         if taken < 0 and taken not in WOULD_BLOCK:
             raise OSError(-taken, "send")
         left = message[max(0, taken) :]
         if self.push_rest():
             took = self._take(left, socket.MSG_DONTWAIT)
-            left, waits = left[took:], took > 0 or (patient and not self.stands_still)
+            left, waits = left[took:], took > 0 or (may_wait and not self.stands_still)
             while left and waits:
                 took = self._take(left)
                 left, waits = left[took:], took > 0
