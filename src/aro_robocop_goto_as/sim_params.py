@@ -16,20 +16,8 @@ from .sensors.camera import CameraParams
 from .sensors.imu import ImuParams
 from .sensors.odometry import OdometryParams
 from .sensors.scan_profiles import ScanParams
+from .simulation import rates as due
 from .simulation.lockstep import LockstepParams
-from .simulation.rates import (
-    BUMPER,
-    CAMERA,
-    CLOCK,
-    CONTROL,
-    GROUND_TRUTH,
-    IMU,
-    JOINTS,
-    ODOM,
-    SCAN,
-    TF,
-    Rates,
-)
 from .simulation.time_control import TimeParams
 
 
@@ -91,7 +79,7 @@ class SimParams:
     world: WorldParams = group(WorldParams)
     robots: RobotParams = group(RobotParams)
     engine: EngineParams = group(EngineParams)
-    rates: Rates = group(Rates)
+    rates: due.Rates = group(due.Rates)
     time: TimeParams = group(TimeParams)
     lockstep: LockstepParams = group(LockstepParams)
     limits: LimitParams = group(LimitParams)
@@ -111,16 +99,16 @@ class SimParams:
         """How often each sensor and tick is due [Hz], in the order in which they are measured; 0 = never."""
         rates, odom_rate = self.rates, self.odometry.odom_rate
         return {
-            CLOCK: rates.clock_rate,
-            CONTROL: rates.control_rate,
-            GROUND_TRUTH: rates.ground_truth_rate,
-            IMU: self.imu.imu_rate,
-            JOINTS: rates.joint_state_rate,
-            ODOM: odom_rate,
-            SCAN: self.scan.rate,
-            BUMPER: rates.bumper_rate,
-            CAMERA: self.camera.camera_rate,
-            TF: odom_rate,
+            due.CLOCK: rates.clock_rate,
+            due.CONTROL: rates.control_rate,
+            due.GROUND_TRUTH: rates.ground_truth_rate,
+            due.IMU: self.imu.imu_rate,
+            due.JOINTS: rates.joint_state_rate,
+            due.ODOM: odom_rate,
+            due.SCAN: self.scan.rate,
+            due.BUMPER: rates.bumper_rate,
+            due.CAMERA: self.camera.camera_rate,
+            due.TF: odom_rate,
         }
 
     def conflicts(self) -> List[str]:

@@ -17,15 +17,7 @@ from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.packed import PackedMessage, counter
 from ..publishing.publisher import publisher
-from .sensor_messages import (
-    NO_VARIANCES,
-    ODOM_VARIANCES,
-    TRUTH_VARIANCES,
-    packed_imu,
-    packed_joint_state,
-    packed_odometry,
-    packed_scan,
-)
+from . import sensor_messages as messages
 
 
 class SensorTopics:
@@ -58,14 +50,14 @@ class SensorTopics:
 
             frame = prefixed(name, CAMERA_FRAME)
             self.topics[CAMERA] = CameraTopics(prefixed(name, ""), camera, frame, on_change)
-        variances = NO_VARIANCES if real else ODOM_VARIANCES
+        variances = messages.NO_VARIANCES if real else messages.ODOM_VARIANCES
         poses, twists, footprint = odometry.poses[index], odometry.twists[index], self.footprint_frame
         self._packed = {
-            ODOM: packed_odometry(self.odom_frame, footprint, variances, poses, twists),
-            JOINTS: packed_joint_state(observed.joint_angles[index], truth.wheel_speeds[index]),
-            IMU: packed_imu(self._imu_frame, p.imu, real, observed.imus[index]),
-            GROUND_TRUTH: packed_odometry(
-                p.frames.world_frame, footprint, TRUTH_VARIANCES, truth.poses[index], truth.twists[index]
+            ODOM: messages.packed_odometry(self.odom_frame, footprint, variances, poses, twists),
+            JOINTS: messages.packed_joint_state(observed.joint_angles[index], truth.wheel_speeds[index]),
+            IMU: messages.packed_imu(self._imu_frame, p.imu, real, observed.imus[index]),
+            GROUND_TRUTH: messages.packed_odometry(
+                p.frames.world_frame, footprint, messages.TRUTH_VARIANCES, truth.poses[index], truth.twists[index]
             ),
         }
 
@@ -80,7 +72,7 @@ class SensorTopics:
         if beams not in self._scans:
             spec = self._simulator.lidar.spec
             spec = spec if beams == spec.samples else spec.with_samples(beams)
-            self._scans[beams] = packed_scan(spec, self._scan_frame, ranges, self._scan_number)
+            self._scans[beams] = messages.packed_scan(spec, self._scan_frame, ranges, self._scan_number)
         return self._scans[beams]
 
     def publish(self, sensor: str) -> None:
