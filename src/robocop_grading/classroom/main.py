@@ -15,7 +15,6 @@ from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
-from aro_robocop_goto_as.process.child_errors import send_child_errors_to
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
 from ..builds.workspace import exclusive, places
@@ -26,6 +25,7 @@ from ..plan import MAX_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
+from .child_errors import send_child_errors_to
 from .hand_ins import HandIn, collect
 from .results import Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
