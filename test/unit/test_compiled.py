@@ -83,15 +83,31 @@ def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
     return folder
 
 
+# pytest with the libraries of the folder that is its first argument
+PROGRAM = """
+import os, sys
+import pytest
+from aro_robocop_goto_as import compiled
+folder, *arguments = sys.argv[1:]
+compiled.find = lambda name, folders=None: os.path.join(folder, compiled.file_name(name))
+sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arguments]))
+"""
+TESTS = (
+    *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "raycast/test_movers.py", "sensors/test_lidar.py"),
+    *("sensors/test_odometry.py", "ros/publishing/test_batch.py", "ros/sim/test_sensor_messages.py"),
+)
+
+
 @pytest.mark.slow
-def test_sanitizers_report_nothing(sanitized: str) -> None:
+def test_sanitizers_report_nothing_in_the_tests_of_what_is_compiled(sanitized: str) -> None:
     runtime = subprocess.run(["cc", "-print-file-name=libasan.so"], check=True, capture_output=True, text=True).stdout
+    tests = [os.path.join(os.path.dirname(__file__), test) for test in TESTS]
     done = subprocess.run(
-        [sys.executable, os.path.join(os.path.dirname(__file__), "under_sanitizers.py"), sanitized],
+        [sys.executable, "-c", PROGRAM, sanitized, *tests],
         env={**os.environ, "LD_PRELOAD": runtime.strip(), "ASAN_OPTIONS": "detect_leaks=0", "PYTHONMALLOC": "malloc"},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        timeout=240,
+        timeout=280,
     )
-    assert (done.returncode, done.stdout) == (0, "sound\n")
+    assert done.returncode == 0, done.stdout
