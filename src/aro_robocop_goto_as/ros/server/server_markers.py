@@ -12,8 +12,8 @@ from ...geometry import Vector3
 from ...goto import Outcome
 from ...goto_params import GotoParams
 from ...simulation.schedule import NANOSECONDS
-from ...trail import Trail
 from .. import markers
+from ..trail import Trail
 from .goal_execution import GoalExecution
 from .inputs import Inputs
 from .tuning import Tuning

@@ -11,9 +11,9 @@ from sensor_msgs.msg import Image
 
 from ...geometry import Pose3D
 from ...names import absolute
-from ...trail import Trail
 from ...web.scene import FRAME, LINE, Group, Shape
 from ...web.state import PageState
+from ..trail import Trail
 from .part import Context, Inbox, Part
 
 CAMERA = "camera/rgb/image_raw"

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from aro_robocop_goto_as import trail
+from aro_robocop_goto_as.ros import trail
 
 
 def driven(*places):

@@ -1,9 +1,9 @@
-"""Where a robot has been: a polyline with a limited number of points."""
+"""Where a robot has been, as RViz and the page show it: a polyline with a limited number of points."""
 
 import math
 from typing import Optional, Tuple
 
-from .geometry import Vector3
+from ..geometry import Vector3
 
 SPACING = 0.05  # [m] between two points
 MAX_POINTS = 600  # points, 30 m
