@@ -131,7 +131,7 @@ def _settable(parameters: Any, name: str) -> Mapping[str, Any]:
 
 
 def _is_settable(value: Any, depth: int = 0) -> bool:
-    """Whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
+    """Return whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
     if isinstance(value, list):
         return depth < MAX_DEPTH and all(_is_settable(it, depth + 1) for it in value)
     if isinstance(value, dict):

@@ -40,7 +40,7 @@ class Package:
 
     @property
     def starts_simulator(self) -> bool:
-        """Whether its launch file starts the lab's simulator, itself or by including others of the package."""
+        """Return whether its launch file starts the lab's simulator, itself or by including others of the package."""
         return self._starts(SIMULATOR)
 
     @property

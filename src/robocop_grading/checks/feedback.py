@@ -36,7 +36,7 @@ CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
 MAX_DIFFERENCE = 0.2  # [m], [rad] that counts of a difference
 STEADY = 0.005  # [m], [rad] smaller changes of an error are none
 SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
-SHORTEST = 1.0  # [s] shorter goals say nothing about a rate
+MIN_GOAL_TIME = 1.0  # [s] shorter goals say nothing about a rate
 # Kinds of failures.
 WRONG_POSITION = "of the position"
 UNTRUE = "untrue"
@@ -48,7 +48,7 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
     judged = False
     for goal in record.goals:
         end = min(active_until(record, goal), _arrival(record, goal))
-        if end - goal.time < SHORTEST:
+        if end - goal.time < MIN_GOAL_TIME:
             continue
         judged = True
         count = sum(message.id == goal.id and message.time <= end for message in record.feedback)

@@ -42,7 +42,7 @@ ENOUGH = 4  # fewer commands are not judged
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
 LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
 LARGE_TURN = 0.5  # [rad] of a robot at the goal
-STILL = 1e-3  # [m/s], [rad/s] slower commands are none
+MIN_SPEED = 1e-3  # [m/s], [rad/s] slower commands are none
 AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
 LONG_TURN = "a long turn"
 TURN = f"{HEADING_TOLERANCE:g} rad"
@@ -172,9 +172,9 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
     for goal in record.goals:
         aligned = _situations(record, goal, 0.0, limits.straight_within)
         nearly = _situations(record, goal, 0.0, limits.turn_beyond)
-        moving = [it for it in nearly if abs(it.command.v) > STILL]
+        moving = [it for it in nearly if abs(it.command.v) > MIN_SPEED]
         driving = [it for it in moving if abs(it.command.v) > limits.driving] or moving
-        idle = [it for it in nearly if abs(it.command.v) <= STILL and abs(it.command.w) <= STILL]
+        idle = [it for it in nearly if abs(it.command.v) <= MIN_SPEED and abs(it.command.w) <= MIN_SPEED]
         if max(len(aligned), len(driving), len(idle) - LONG_IDLE) < ENOUGH:
             continue
         judged = True
@@ -246,7 +246,7 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
 def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> Tuple[Any, ...]:
     """What the robot does meanwhile, and what the server has reported: a text's name and its values."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
-    drives = any(abs(command.v) > STILL for command in record.commands if begin <= command.time < end)
+    drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
         return "turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS
