@@ -1,20 +1,27 @@
 """The grader: runs a student's go-to server and bridge and awards points with reasons.
 
-Data flows in this order; only session/ and agent/ use ROS:
+From a hand-in to its grade:
 
-    files/            archives, and folders with archives -> a folder of what was handed in
-    submission        path -> the scripts to grade (builds/), built in a sandbox (sandbox/)
-    plan              config/grading.yaml -> scenarios, limits, points
-    session/          runs the scenarios with the hand-in's node, in the ordinary simulation -> records
-    agent/            in the node's process: keeps it in simulated time, and says when its turn is over
-    record            the recording of one scenario
-    checks/           record -> verdict, one function for each contract of the handout
-    judge             records + plan -> grade
-    report/           grade -> report.html, report.json, junit.xml, summary.md, classroom.json
-    runner, grader    one part, and all of this for one submission
-    cli               robocop grade
-    classroom/        robocop grade-class: many submissions on dask workers
-    sim_with          robocop sim --with: the same builds, started beside the simulator
+    archive, folder, file
+      | files/        unpacked; what was handed in
+      | submission    the scripts to grade (builds/), built in a sandbox (sandbox/)
+      v
+    runner            starts a session for each part, in the sandbox's network
+      |
+    session/          has the simulation: stage (robot, time), topics (sent and heard), server or bridge (scenarios)
+      |       ^
+      | GO    | MESSAGE ... DONE      one socket to the node's process: until when, messages; what it has published
+      v       |
+    agent/            in that process: channel (turns), scheduler (one thread at a time, simulated time),
+                      connections (rospy's topics and services, and the master, without a network)
+      |
+      | record        of each scenario: samples of the truth, and everything that came from the node
+      v
+    judge             records + plan (config/grading.yaml) -> grade, by checks/, one function for each contract
+      | report/       report.html, report.json, junit.xml, summary.md, classroom.json
+      v
+    grader            all of this for one submission: cli (robocop grade), classroom/ (robocop grade-class)
 
-handout holds the handout's names and figures, and the tolerances around them.
+handout holds the handout's names and figures, and the tolerances around them. sim_with is robocop sim --with: the same
+builds, started beside the simulator. Only session/ and agent/ use ROS.
 """

@@ -174,11 +174,17 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         checks += _with_reasons(own, by_name)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     for part, by_name in records.items():
-        said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits)]
+        said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits), *_programs(by_name)]
         if any(check.outcome is not Outcome.PASSED for check in checks):
             said += [*_unpublished(by_name), *_wrong_types(by_name, checks)]
         found += [f"{part}: {it}" for it in dict.fromkeys(said)]
     return Grade(name, tuple(checks), tuple(found))
+
+
+def _programs(records: Mapping[str, Record]) -> List[str]:
+    """What to say of programs of ROS that the node starts."""
+    programs = sorted({program for record in records.values() for program in record.programs})
+    return [text("programs_of_ros", ", ".join(programs))] if programs else []
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:

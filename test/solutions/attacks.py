@@ -260,28 +260,61 @@ import os
 threading.Timer(1.0, strike).start()
 """
 LIE = """
-import os, sys, time
+import os, struct, sys
 channel, scheduler = sys.modules['robocop_agent.channel'], sys.modules['robocop_agent.scheduler']
-class Json:
-    dumps = staticmethod(lambda _: text)
-def write(answer):
-    channel.Channel._write = lambda self, data: os.write(self._descriptor, answer(data))
+wire, write = sys.modules['robocop_agent.wire'], channel.Channel._write
+def replace(replaced, lie):
+    def written(self, kind, body):
+        if kind == replaced:
+            return lie(self, body)
+        write(self, kind, body)
+    channel.Channel._write = written
 """
 UNREADABLE = "answer to the grader can't be read"
+STILL = "the node's time did not go on"
 LIES = {  # code after LIE, and what the report says
-    "silence": ("def answer(data):\n    while True: scheduler.sleep(0.01)\nwrite(answer)", "it stopped answering"),
-    "two_threads_silence": (
-        "def answer(data):\n"
-        "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
-        "    while True: scheduler.sleep(0.01)\nwrite(answer)",
+    "silence": (
+        "def lie(self, body):\n    while True: scheduler.sleep(0.01)\nreplace(wire.DONE, lie)",
         "it stopped answering",
     ),
-    "nested": ("text = '[' * 400_000\nchannel.json = Json", UNREADABLE),
-    "malformed": ('text = \'{"node": 3, "published": [[[]]], "subscribed": 7}\'\nchannel.json = Json', UNREADABLE),
-    "no_time": ("write(lambda _: b'0 0 0\\n')", "the node's time did not go on"),
-    "counts": (
-        "true = channel.Channel._sent\n"
-        "channel.Channel._sent = lambda self: [it * 10**9 if n % 3 == 2 else it for n, it in enumerate(true(self))]",
-        "",  # it is graded: what does not come is waited for once for each connection
+    "two_threads_silence": (
+        "def lie(self, body):\n"
+        "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
+        "    while True: scheduler.sleep(0.01)\nreplace(wire.DONE, lie)",
+        "it stopped answering",
+    ),
+    "half_a_frame": (
+        "replace(wire.DONE, lambda self, body: os.write(self._descriptor, wire.frame(wire.DONE, body)[:-1]))",
+        "it stopped answering",
+    ),
+    "nested": (
+        "replace(wire.TOPICS, lambda self, _: write(self, wire.TOPICS, b'[' * 400_000))",
+        "topics can't be read",
+    ),
+    "malformed": (
+        'replace(wire.TOPICS, lambda self, _: write(self, wire.TOPICS, b\'{"published": [[[]]], "subscribed": 7}\'))',
+        "topics can't be read",
+    ),
+    "too_long": (
+        "replace(wire.DONE, lambda self, _: os.write(self._descriptor, wire.HEAD.pack(2**31, wire.DONE)))",
+        UNREADABLE,
+    ),
+    "no_numbers": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, b'done'))", UNREADABLE),
+    "unknown_kind": ("replace(wire.DONE, lambda self, body: write(self, 77, body))", UNREADABLE),
+    "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.ANSWER.pack(0, 0, False)))", STILL),
+    "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
+    # These are graded: nothing of it counts, or only as a topic that nobody hears.
+    "early": (
+        "replace(wire.DONE, lambda self, b: write(self, wire.DONE, b[:8] + struct.pack('<q', -2**62) + b[16:]))",
+        "",
+    ),
+    "other_topics": (
+        "def lie(self, body):\n    for it in (wire.named('/a', body), body): write(self, wire.MESSAGE, it)\n"
+        "replace(wire.MESSAGE, lie)",
+        "",
+    ),
+    "rubbish": (
+        "replace(wire.MESSAGE, lambda self, body: write(self, wire.MESSAGE, body[:2] + body[2:][::-1]))",
+        UNREADABLE,
     ),
 }

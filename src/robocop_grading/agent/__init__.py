@@ -1,37 +1,39 @@
-"""Runs inside the hand-in's process: its threads live in simulated time, and the grader learns when they all wait.
+"""Runs inside the hand-in's process: its threads live in simulated time, and its topics are on one wire to the grader.
 
     python agent CHANNEL SCRIPT [ARGUMENT...]
 
     scheduler    which thread runs, and for what the others wait; simulated time
-    readers      threads that wait for files and sockets, and what is on its way to them
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
-    ros          rospy's time; calls to the grader's own ports, whose answers come without simulated time
+    ros          rospy's time
+    connections  rospy's topics and services, and the ROS master, without the network
+    wire         what the grader and the agent say to each other
     channel      the grader's requests to go on until a simulated time, and the answers
 
-It imports nothing but the standard library, so that it runs in any environment that the hand-in was built in. A hand-in
-that deceives it harms only itself: points come from what the grader sees on topics.
+It imports nothing but the standard library and ROS's own, so that it runs in any environment that the hand-in was built
+in. A hand-in that deceives it harms only itself: points come from what the grader sees on topics.
 """
-
-import sys
-from typing import Set
 
 SWITCH = 5e-4  # [s] after which a busy loop lets another thread run, such as the one that answers the grader
 
 
-def install(descriptor: int, clock_ns: int, ports: Set[int]) -> None:
+def install(descriptor: int, clock_ns: int) -> None:
     """Take over the process's time before anything of the hand-in runs, and start to answer the grader.
 
-    `clock_ns` is what /clock shows, `ports` are those of the grader's master and node.
+    `clock_ns` is what /clock shows.
     """
-    from . import channel, clock, files, locks, readers, ros, scheduler, threads
+    import sys
+
+    from . import channel, clock, connections, files, locks, ros, threads
+    from .scheduler import start_new_thread
 
     sys.setswitchinterval(SWITCH)
     locks.install()
     clock.install()
     files.install()
-    readers.grader_ports.update(ports)
     threads.register_main()
     threads.install()
-    ros.install(clock_ns, ports)
-    scheduler.start_new_thread(channel.Channel(descriptor, ports).serve, ())
+    answers = channel.Channel(descriptor, clock_ns)
+    connections.install(answers.grader)
+    ros.install(answers.clock)
+    start_new_thread(answers.serve, ())

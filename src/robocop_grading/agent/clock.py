@@ -5,7 +5,7 @@ import functools
 import time
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from . import scheduler
+from .scheduler import scheduler
 
 _real = {
     name: getattr(time, name) for name in ("time_ns", "monotonic_ns", "sleep", "localtime", "gmtime", "clock_gettime")

@@ -1,76 +1,136 @@
-"""Waiting for sockets and other files: recv, accept, select, poll and epoll tell the scheduler, and count bytes."""
+"""Waiting for sockets and other files of the node's own: recv, accept, select, poll and epoll tell the scheduler.
+
+The thread that answers the grader polls for all of them, and wakes those whose files are ready, in the order in which
+they began to wait.
+"""
 
 import _thread
+import ctypes
+import errno
 import functools
 import select
 import selectors
 import socket
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from . import readers, scheduler
-from .readers import Traffic
-from .scheduler import Files
+from .scheduler import SLACK, Files, Waiter, scheduler
+
+_system_poll, _system_epoll, _system_select = select.poll, select.epoll, select.select
+_reading: Dict[int, Waiter] = {}  # threads that wait
 
 
-def traffic_of(connection: socket.socket) -> Traffic:
-    """The counts of a socket."""
-    file = connection.fileno()
-    traffic = readers.received.get(file)
-    if traffic is None or traffic.link is None:
-        link = None
-        if connection.family in (socket.AF_INET, socket.AF_INET6) and connection.type == socket.SOCK_STREAM:
-            try:
-                link = connection.getsockname()[1], connection.getpeername()[1]
-            except OSError:  # it is not connected yet
-                pass
-        if traffic is None:
-            traffic = readers.received[file] = Traffic(link)
-        if link is not None:
-            readers.expected.pop(link, None)  # of an earlier connection with the same ports
-        traffic.link = link
-    return traffic
+class _PollEntry(ctypes.Structure):
+    """`struct pollfd` of poll(2)."""
+
+    _fields_ = [("fd", ctypes.c_int), ("events", ctypes.c_short), ("revents", ctypes.c_short)]
 
 
-def _forget(connection: socket.socket) -> None:
-    """The socket is closed, but the grader still has to read what was sent."""
-    traffic = readers.received.pop(connection.fileno(), None)
-    if traffic is not None:
-        readers.closed.append(traffic)
+_poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not release the interpreter's lock
+
+
+def _ready(files: Files) -> List[int]:
+    """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
+    entries = (_PollEntry * len(files))(*(_PollEntry(file, events) for file, events in files))
+    while _poll_with_gil(entries, len(files), 0) < 0:
+        if ctypes.get_errno() != errno.EINTR:  # a signal
+            raise OSError(ctypes.get_errno(), "poll() of the descriptors that threads wait for")
+    return [entry.revents for entry in entries]
+
+
+def _poll(files: Files, timeout: Optional[float]) -> bool:
+    poller = _system_poll()
+    for file, events in files:
+        poller.register(file, events)
+    return bool(poller.poll(None if timeout is None else timeout * 1e3))
+
+
+def wait(files: Files, timeout: Optional[float] = None, receives: bool = False) -> bool:
+    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before.
+
+    With `receives`, as for recv() and accept(), this also ends when another thread closes the only one.
+    """
+    if any(_ready(files)) or any(file < 0 for file, _ in files):  # a closed one fails at once
+        return True
+    if not scheduler.active:
+        return _poll(files, timeout)
+    if timeout is not None and timeout <= 0.0:
+        return False
+    me, until_ns = _thread.get_ident(), scheduler.deadline(timeout)
+    while True:
+        waiter = Waiter(me, files, receives)
+        with scheduler.guard:
+            _reading[me] = waiter
+            scheduler.park(waiter, until_ns)
+        try:
+            scheduler.wait(waiter)
+        finally:
+            _reading.pop(me, None)
+        # Another thread may have read it meanwhile, or closed it and opened another file of this number.
+        if not waiter.granted or not waiter.files or any(_ready(files)):
+            return waiter.granted
+
+
+def _close(file: int) -> None:
+    """End the waits of threads that receive from a file that is about to be closed.
+
+    Linux ends them at shutdown(), but they have their turns when its caller has closed the file, too.
+    """
+    with scheduler.guard:
+        for waiter in _reading.values():
+            if waiter.receives and not waiter.awake and waiter.files[0][0] == file:
+                waiter.files, waiter.granted = [], True
+                scheduler.wake(waiter)
+
+
+# -- for the thread that answers the grader --
+
+
+def wait_for_more(timeout: float) -> None:
+    """Wait for files that threads wait for, for `timeout` [s, wall] at most."""
+    with scheduler.guard:
+        files = _wanted()
+    _poll(files, timeout)
+
+
+def wake() -> bool:
+    """Wake the threads whose files are ready; whether there are any."""
+    with scheduler.guard:
+        files = _wanted()
+        ready = {
+            file for (file, _), events in zip(files, _ready(files)) if events not in (0, select.POLLNVAL)
+        }  # a closed one wakes nobody
+        if ready:
+            for waiter in tuple(_reading.values()):
+                if not waiter.awake and any(file in ready for file, _ in waiter.files):
+                    waiter.granted = True
+                    scheduler.wake(waiter)
+        return bool(ready)
+
+
+def _wanted() -> Files:
+    return [file for waiter in _reading.values() if not waiter.awake for file in waiter.files]
+
+
+# -- Python's ways to wait for files --
 
 
 def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
     if timeout != 0 and not flags & socket.MSG_DONTWAIT:
-        if not readers.poll([(connection.fileno(), select.POLLIN)], timeout, receives=True):
+        if not wait([(connection.fileno(), select.POLLIN)], timeout, receives=True):
             raise socket.timeout("timed out")
 
 
-def _receiving(method: Callable[..., Any], size: Callable[[Any], int], flags_at: int) -> Callable[..., Any]:
+def _receiving(method: Callable[..., Any], flags_at: int) -> Callable[..., Any]:
     """A method that receives, which waits by way of the scheduler."""
 
     @functools.wraps(method)
     def receive(connection: socket.socket, *arguments: Any) -> Any:
-        flags = arguments[flags_at] if len(arguments) > flags_at else 0
-        traffic = traffic_of(connection)
-        _await(connection, flags)
-        result = method(connection, *arguments)
-        if not flags & socket.MSG_PEEK:
-            traffic.received += size(result)
-        return result
+        _await(connection, arguments[flags_at] if len(arguments) > flags_at else 0)
+        return method(connection, *arguments)
 
     return receive
-
-
-def _sending(method: Callable[..., Any]) -> Callable[..., Any]:
-    @functools.wraps(method)
-    def send(connection: socket.socket, data: Any, *arguments: Any) -> Any:
-        traffic = traffic_of(connection)
-        result = method(connection, data, *arguments)
-        traffic.sent += memoryview(data).nbytes if result is None else result
-        return result
-
-    return send
 
 
 def _when_ready(look: Callable[[], Any], files: Files, timeout: Optional[float]) -> Any:
@@ -78,7 +138,7 @@ def _when_ready(look: Callable[[], Any], files: Files, timeout: Optional[float])
     ready = look()
     if timeout == 0 or any(ready):
         return ready
-    readers.poll(files, None if timeout is None or timeout < 0 else timeout)
+    wait(files, None if timeout is None or timeout < 0 else timeout)
     return look()
 
 
@@ -90,7 +150,7 @@ class Poll:
     """select.poll()."""
 
     def __init__(self) -> None:
-        self._poll = readers.select_poll()
+        self._poll = _system_poll()
         self._files: Dict[int, int] = {}
         self._empty_ns = -1  # simulated time at which nothing was ready
 
@@ -112,9 +172,8 @@ class Poll:
         multiprocessing's Connection.poll() and Queue.empty() look again until the clock is later than at first.
         """
         seconds = None if timeout is None else timeout / 1e3
-        again = self._empty_ns == scheduler.now_ns and _thread.get_ident() not in scheduler.calling
-        if seconds == 0 and again:
-            seconds = scheduler.SLACK / 1e9
+        if seconds == 0 and self._empty_ns == scheduler.now_ns:
+            seconds = SLACK / 1e9
         ready = list(_when_ready(lambda: self._poll.poll(0), list(self._files.items()), seconds))
         self._empty_ns = -1 if ready else scheduler.now_ns
         return ready
@@ -124,7 +183,7 @@ class Epoll:
     """select.epoll()."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        self._epoll = _epoll(*arguments, **options)
+        self._epoll = _system_epoll(*arguments, **options)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._epoll, name)
@@ -141,9 +200,6 @@ class Epoll:
         return list(_when_ready(lambda: self._epoll.poll(0, maxevents), files, timeout))
 
 
-_epoll, _select = select.epoll, select.select
-
-
 def simulated_select(
     reads: Any, writes: Any, errors: Any, timeout: Optional[float] = None
 ) -> Tuple[List[Any], List[Any], List[Any]]:
@@ -154,7 +210,7 @@ def simulated_select(
         for file in map(_descriptor, files):
             wanted[file] = wanted.get(file, 0) | events
     ready: Tuple[List[Any], List[Any], List[Any]] = _when_ready(
-        lambda: _select(*given, 0), list(wanted.items()), timeout
+        lambda: _system_select(*given, 0), list(wanted.items()), timeout
     )
     return ready
 
@@ -162,47 +218,21 @@ def simulated_select(
 def install() -> None:
     """Have everything wait this way, also modules that have been imported already."""
     cls: Any = socket.socket
-    cls.recv = _receiving(cls.recv, len, 1)
-    cls.recv_into = _receiving(cls.recv_into, int, 2)
-    cls.recvfrom = _receiving(cls.recvfrom, lambda result: len(result[0]), 1)
-    cls.recvmsg = _receiving(cls.recvmsg, lambda result: len(result[0]), 2)
-    cls.send, cls.sendall = _sending(cls.send), _sending(cls.sendall)
-    accept, close, init, connect, listen = cls.accept, cls._real_close, cls.__init__, cls.connect, cls.listen
+    for name, flags_at in (("recv", 1), ("recv_into", 2), ("recvfrom", 1), ("recvmsg", 2)):
+        setattr(cls, name, _receiving(getattr(cls, name), flags_at))
+    accept, close = cls.accept, cls._real_close
 
     @functools.wraps(accept)
     def accept_when_ready(listening: socket.socket) -> Any:
         _await(listening)
-        accepted, address = accept(listening)
-        link = traffic_of(accepted).link
-        if link is not None:
-            readers.accept(link)
-        return accepted, address
-
-    @functools.wraps(connect)
-    def connect_and_count(connecting: socket.socket, *arguments: Any) -> None:
-        connect(connecting, *arguments)
-        traffic = traffic_of(connecting)
-        traffic.accepted = any(it.link == (traffic.link or ())[::-1] for it in tuple(readers.received.values()))
-
-    @functools.wraps(listen)
-    def listen_and_count(listening: socket.socket, *arguments: Any) -> None:
-        listen(listening, *arguments)
-        if listening.family in (socket.AF_INET, socket.AF_INET6):
-            readers.received[listening.fileno()] = Traffic((listening.getsockname()[1], 0))
+        return accept(listening)
 
     @functools.wraps(close)
-    def forget_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
-        _forget(closed)
-        readers.close(closed.fileno())
+    def end_waits_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
+        _close(closed.fileno())
         close(closed, *arguments, **options)
 
-    @functools.wraps(init)
-    def forget_and_init(opened: socket.socket, *arguments: Any, **options: Any) -> None:
-        init(opened, *arguments, **options)
-        _forget(opened)  # of an earlier one that was collected as garbage
-
-    cls.accept, cls._real_close, cls.__init__ = accept_when_ready, forget_and_close, forget_and_init
-    cls.connect, cls.listen = connect_and_count, listen_and_count
+    cls.accept, cls._real_close = accept_when_ready, end_waits_and_close
     module: Any = select
     module.poll, module.epoll, module.select = Poll, Epoll, simulated_select
     known: Any = selectors

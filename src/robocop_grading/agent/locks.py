@@ -4,15 +4,14 @@ import threading
 from collections import deque
 from typing import Any, Deque
 
-from . import scheduler
-from .scheduler import Waiter
+from .scheduler import Waiter, allocate_lock, scheduler
 
 
 class Lock:
     """threading.Lock, with timeouts in simulated time."""
 
     def __init__(self) -> None:
-        self._lock: Any = scheduler.allocate_lock()
+        self._lock: Any = allocate_lock()
         self._waiters: Deque[Waiter] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -54,7 +53,7 @@ class Lock:
         self.release()
 
     def _at_fork_reinit(self) -> None:
-        self._lock = scheduler.allocate_lock()
+        self._lock = allocate_lock()
         self._waiters = deque()
 
 

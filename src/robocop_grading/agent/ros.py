@@ -1,193 +1,137 @@
-"""rospy's time, and its calls to the grader (its master, its topics, its services): answered without simulated time."""
+"""rospy's time: /clock, sleeps until a time on it, and waits for a message."""
 
 import _thread
 import contextlib
 import functools
-import heapq
-import itertools
 import math
 import queue
+import struct
 import sys
-import threading
 import time
-import xmlrpc.client
-from typing import Any, Callable, Dict, List, Set, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
-from . import clock, scheduler
+from . import clock
+from .scheduler import NEVER, scheduler
 
 KEPT = {("/odom", "nav_msgs/Odometry"), ("/scan", "sensor_msgs/LaserScan")}
 LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
 SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
 MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how long more take [s]: 1 ms each
-_kept: Dict[Tuple[str, Any], "_Subscription"] = {}
-clock_ns = 0  # [ns] as on /clock
-_sleepers: List[Tuple[int, int, scheduler.Waiter]] = []  # by the time on /clock [ns] at which they wake up
-_numbers = itertools.count()
-_notifies = False  # a thread waits to notify the others of the clock
+CLOCK_MESSAGE = struct.Struct("<III")  # length, secs, nsecs
 
 
-def _calls(cls: Any, name: str, is_call: Callable[..., bool]) -> None:
-    method = getattr(cls, name)
+class Clock:
+    """What /clock shows, and who waits for it."""
 
-    @functools.wraps(method)
-    def call(*arguments: Any, **options: Any) -> Any:
-        if not is_call(*arguments):
-            return method(*arguments, **options)
-        with scheduler.call():
-            return method(*arguments, **options)
+    def __init__(self, now_ns: int, publish: Callable[[bytes], object]) -> None:
+        """`publish` sends a message on /clock, for nodes that subscribe to it themselves."""
+        self.now_ns, self._publish = now_ns, publish
+        self._notifies = False  # a thread waits to notify the others
+        self._tell()
 
-    setattr(cls, name, call)
+    def _tell(self) -> None:
+        self._publish(CLOCK_MESSAGE.pack(8, *divmod(self.now_ns, 10**9)))
+
+    def set(self, now_ns: int) -> bool:
+        """Let rospy's time go on, if it is simulated time; whether that has woken a thread."""
+        self.now_ns, turns, notifies = now_ns, scheduler.turns, False
+        with scheduler.work():
+            if not sys.modules["rospy.rostime"].is_wallclock():
+                notifies = self.show()
+            self._tell()
+        return notifies or scheduler.turns != turns
+
+    def show(self) -> bool:
+        """Set rospy's time and wake who waits for that; whether a thread does the latter."""
+        import rospy
+
+        rospy.rostime._rostime_current = rospy.Time(0, self.now_ns)
+        condition = rospy.rostime.get_rostime_cond()
+        if condition.acquire(False):
+            condition.notify_all()
+            condition.release()
+        elif not self._notifies:  # a thread holds it, perhaps while it waits for a time, which must go on
+            self._notifies = True
+            _thread.start_new_thread(self._notify, (condition,))  # does not wait for its begin, as Thread.start() does
+        return self._notifies
+
+    def _notify(self, condition: Any) -> None:
+        with condition:
+            self._notifies = False
+            condition.notify_all()
+
+    def sleep(self, length_ns: int) -> None:
+        """Have the calling thread wake up at the first tick at the end of its own sleep only, not at each one."""
+        import rospy
+
+        until_ns, waiter = self.now_ns + length_ns, scheduler.this_thread()
+        with scheduler.guard:
+            sleeps = until_ns > self.now_ns and not rospy.is_shutdown()
+            if sleeps:
+                scheduler.by_clock.add(until_ns, waiter)
+                scheduler.leave()
+        if sleeps:
+            scheduler.wait(waiter)
+
+    def sleeper_is_due(self) -> bool:
+        """Return whether a thread's sleep by /clock is over."""
+        with scheduler.guard:
+            first_ns = scheduler.by_clock.first()
+        if first_ns == NEVER:
+            return False
+        rospy = sys.modules["rospy"]
+        return bool(first_ns <= self.now_ns or rospy.is_shutdown() or rospy.rostime.is_wallclock())
+
+    def wake_sleeper(self) -> None:
+        """Wake the thread whose sleep is over first."""
+        with scheduler.guard:
+            scheduler.wake(scheduler.by_clock.pop())
 
 
-def install(now_ns: int, ports: Set[int]) -> None:
-    """`now_ns`: the time on /clock; `ports` are those of the grader's master and node."""
-    global clock_ns
-    clock_ns = now_ns
-
-    def is_grader(_transport: Any, host: Any, *_: Any) -> bool:
-        return isinstance(host, str) and host.rpartition(":")[2] in names
-
-    names = set(map(str, ports))
-    _calls(xmlrpc.client.Transport, "request", is_grader)
+def install(shown: Clock) -> None:
+    """Have rospy's time be what is shown."""
     import rospy
     from rospy.impl import simtime
-    from rospy.impl.tcpros_base import TCPROSTransport
-    from rospy.impl.tcpros_service import TCPROSServiceClient
 
-    def answers(transport: Any) -> bool:
-        return isinstance(transport.protocol, TCPROSServiceClient) and transport.dest_address[1] in ports
-
-    _calls(TCPROSTransport, "connect", lambda _transport, _host, port, *_: port in ports)
-    _calls(TCPROSTransport, "receive_once", answers)
-    # A topic with a queue would have a thread for each subscriber, and drop messages if that is not scheduled in time.
-    rospy.topics.QueuedConnection = lambda connection, _size: connection
-    simtime.init_simtime = _init_simtime(simtime)
-    rospy.Subscriber.__init__ = _clock_first(rospy.Subscriber.__init__)
+    simtime.init_simtime = _init_simtime(simtime, shown)
     for module in (rospy, rospy.client):
         module.wait_for_message = wait_for_message
     for module in (rospy, rospy.timer):
-        module.sleep = _sleeping(rospy.timer.sleep)
+        module.sleep = _sleeping(rospy.timer.sleep, shown)
     for module in (rospy, rospy.rostime):
         module.get_rostime = _then(rospy.rostime.get_rostime, clock.looked)
     rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
 
 
-def _init_simtime(simtime: Any) -> Callable[[], bool]:
-    """rospy's function, without a subscription to /clock: set_clock() does what its messages do, for less work."""
+def _init_simtime(simtime: Any, shown: Clock) -> Callable[[], bool]:
+    """rospy's function, without a subscription to /clock: set() does what its messages do, for less work."""
     subscribe = simtime.init_simtime
 
     def init_simtime() -> bool:
         if not scheduler.active or not simtime._is_use_simtime():
             return bool(subscribe())
-        _show_clock()
+        shown.show()
         simtime.rospy.rostime.set_rostime_initialized(True)
         return True
 
     return init_simtime
 
 
-def _clock_first(subscribe: Any) -> Any:
-    """Of a node that subscribes to /clock itself: rospy's time is set before its callback runs, as rospy does it."""
-
-    @functools.wraps(subscribe)
-    def call(self: Any, name: str, *arguments: Any, **options: Any) -> None:
-        import rospy
-        from rosgraph_msgs.msg import Clock
-
-        clock = "/clock"
-        if (
-            scheduler.active
-            and rospy.resolve_name(name) == clock
-            and clock not in rospy.topics.get_topic_manager().subs
-        ):
-            subscribe(
-                object.__new__(rospy.Subscriber), clock, Clock, lambda message: _hear_clock(message.clock.to_nsec())
-            )
-        subscribe(self, name, *arguments, **options)
-
-    return call
-
-
-def _sleeping(sleep: Any) -> Any:
-    """rospy's function, but each thread wakes up at the end of its own sleep only, not at each tick of /clock."""
+def _sleeping(sleep: Any, shown: Clock) -> Any:
+    """rospy's function, by the clock that is shown."""
 
     @functools.wraps(sleep)
     def call(duration: Any) -> None:
         import genpy
         import rospy
 
-        started_ns, seconds = clock_ns, duration
-        if not isinstance(duration, genpy.Duration):
-            duration = genpy.Duration.from_sec(duration)
-        length_ns = duration.to_nsec()
-        if not scheduler.active or rospy.rostime.is_wallclock() or not started_ns or length_ns <= 0:
-            sleep(seconds)
-            return
-        waiter = scheduler.this_thread()
-        with scheduler.guard:
-            sleeps = started_ns + length_ns > clock_ns and not rospy.is_shutdown()
-            if sleeps:
-                heapq.heappush(_sleepers, (started_ns + length_ns, next(_numbers), waiter))
-                scheduler.leave()
-        if sleeps:
-            scheduler.wait(waiter)
-        sleep(genpy.Duration())  # raises what it has to
+        length = duration if isinstance(duration, genpy.Duration) else genpy.Duration.from_sec(duration)
+        if scheduler.active and not rospy.rostime.is_wallclock() and shown.now_ns and length.to_nsec() > 0:
+            shown.sleep(length.to_nsec())
+            duration = genpy.Duration()
+        sleep(duration)  # raises what it has to
 
     return call
-
-
-def sleeper_is_due() -> bool:
-    """Whether a thread's sleep by /clock is over."""
-    rospy = sys.modules.get("rospy")
-    if not _sleepers or rospy is None:
-        return False
-    return bool(_sleepers[0][0] <= clock_ns or rospy.is_shutdown() or rospy.rostime.is_wallclock())
-
-
-def wake_sleeper() -> None:
-    """Wake the thread whose sleep is over first."""
-    with scheduler.guard:
-        waiter = heapq.heappop(_sleepers)[2]
-        if not waiter.awake:  # by a signal
-            scheduler.wake(waiter)
-
-
-def set_clock(now_ns: int) -> bool:
-    """Let rospy's time go on to `now_ns`, if it is simulated time; whether that has woken a thread."""
-    global clock_ns
-    clock_ns, turns, notifies = now_ns, scheduler.turns, False
-    if not sys.modules["rospy.rostime"].is_wallclock():
-        with scheduler.work():
-            notifies = _show_clock()
-    return notifies or scheduler.turns != turns
-
-
-def _hear_clock(now_ns: int) -> None:
-    if now_ns > clock_ns:  # to a busy node, a message may be late
-        set_clock(now_ns)
-
-
-def _show_clock() -> bool:
-    """Set rospy's time and wake who waits for that; whether a thread does the latter."""
-    import rospy
-
-    global _notifies
-    rospy.rostime._rostime_current = rospy.Time(0, clock_ns)
-    condition = rospy.rostime.get_rostime_cond()
-    if condition.acquire(False):
-        condition.notify_all()
-        condition.release()
-    elif not _notifies:  # a thread holds it, perhaps while it waits for a time, which must go on
-        _notifies = True
-        _thread.start_new_thread(_notify, (condition,))  # does not wait for its begin, as Thread.start() does
-    return _notifies
-
-
-def _notify(condition: threading.Condition) -> None:
-    global _notifies
-    with condition:
-        _notifies = False
-        condition.notify_all()
 
 
 def _then(function: Any, afterwards: Callable[[], None]) -> Any:
@@ -231,6 +175,9 @@ class _Subscription:
         return None
 
 
+_kept: Dict[Tuple[str, Any], _Subscription] = {}
+
+
 def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
     """rospy's function, but it is woken up by the message, and stays subscribed to what the robot always sends.
 
@@ -257,32 +204,3 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
     if message is None:
         raise rospy.ROSException(f"timeout exceeded while waiting for message on topic {topic}")
     return message
-
-
-def topics(ports: Set[int]) -> Dict[str, Any]:
-    """What the node publishes, and what it subscribes to, by type, with the ports of its connections to the grader.
-
-    Without rospy's locks, which a waiting thread may hold.
-    """
-    from rospy.names import get_caller_id
-    from rospy.topics import get_topic_manager
-
-    manager = get_topic_manager()
-    published = [[name, topic.data_class._md5sum, topic.data_class._type] for name, topic in list(manager.pubs.items())]
-    subscribed = [
-        [
-            name,
-            topic.data_class._md5sum,
-            topic.data_class._type,
-            [_port(link) for link in topic.connections if (link.dest_address or (0, 0))[1] in ports],
-        ]
-        for name, topic in list(manager.subs.items())
-    ]
-    return {"node": get_caller_id(), "published": published, "subscribed": subscribed}
-
-
-def _port(link: Any) -> int:
-    try:
-        return int(link.socket.getsockname()[1])
-    except (AttributeError, OSError):  # it is being connected, or closed
-        return 0

@@ -15,10 +15,11 @@ import sys
 import time
 from typing import Dict, Iterator, List, Optional, Set
 
-from . import scheduler
+from .scheduler import scheduler
 from .threads import native_ids
 
 STARTS = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")  # audit events
+ROS_PROGRAM = re.compile(r"\b(?:ros(?:bag|launch|node|param|run|service|topic)|roscore)\b")
 TICK = os.sysconf("SC_CLK_TCK")
 ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
 WINDOW = 1.0  # [s, wall]
@@ -33,7 +34,7 @@ def all_asleep() -> Optional[Set[int]]:
     global _asleep, _window
     with scheduler.guard:
         threads = set(scheduler.running)
-        if scheduler.starting or threads & scheduler.calling.keys():
+        if scheduler.starting or threads & scheduler.calling:
             return None
     found = {thread: _sleep_of(native_ids.get(thread, 0)) for thread in threads}
     same = {thread for thread, switches in found.items() if switches and _asleep.get(thread) == switches}
@@ -98,11 +99,13 @@ class Others:
         self.exist = False  # whether it has ever started one
         self.work = False  # whether one of them works, or waits for the processor, at the last look
         self.processor_time = 0.0  # [s] of those that live
+        self.of_ros: Set[str] = set()  # programs of ROS, which find no master
         sys.addaudithook(self._notice)
 
-    def _notice(self, event: str, _arguments: object) -> None:
+    def _notice(self, event: str, arguments: object) -> None:
         if event in STARTS:
             self.exist = True
+            self.of_ros.update(ROS_PROGRAM.findall(repr(arguments)))
 
     def look(self) -> None:
         """Look at them, if there are any."""

@@ -5,13 +5,14 @@ import functools
 import threading
 from typing import Any, Dict, Optional
 
-from . import scheduler
 from .locks import Lock
+from .scheduler import Waiter, scheduler
+from .scheduler import start_new_thread as start_unknown_thread
 
 native_ids: Dict[int, int] = {}  # of the threads that exist, by their identity
 
 
-def _begin(waiter: scheduler.Waiter) -> None:
+def _begin(waiter: Waiter) -> None:
     native_ids[_thread.get_ident()] = threading.get_native_id()
     scheduler.begin(waiter)
 
@@ -83,7 +84,7 @@ def install() -> None:
     @functools.wraps(_thread.start_new_thread)
     def start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
         if not scheduler.active:
-            return scheduler.start_new_thread(function, arguments, options)
+            return start_unknown_thread(function, arguments, options)
         turn = scheduler.new_thread()
 
         def counted() -> None:
@@ -94,7 +95,7 @@ def install() -> None:
                 _end()
 
         try:
-            return scheduler.start_new_thread(counted, ())
+            return start_unknown_thread(counted, ())
         except RuntimeError:  # no more threads
             scheduler.no_thread(turn)
             raise

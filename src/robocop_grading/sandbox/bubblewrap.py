@@ -1,10 +1,9 @@
 """bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
 
-The probe runs in its own network namespace, loopback only, with a ROS master in it. The submission runs in that same
-network, but with its own processes and files, as a user who owns nothing: it sees neither the grader's processes,
-records and points nor other submissions. A build runs the submission's code, so it is done in the sandbox too. The
-limits set here are the kernel's, per process or user; guard.py limits the memory of all processes together, and
-runner.py the wall time.
+The probe runs in its own network namespace, loopback only. The submission runs in another one, with its own processes
+and files, as a user who owns nothing: it sees neither the grader's processes, records and points nor other submissions.
+A build runs the submission's code, so it is done in the sandbox too. The limits set here are the kernel's, per process
+or user; guard.py limits the memory of all processes together, and runner.py the wall time.
 """
 
 import importlib.util
@@ -56,7 +55,7 @@ class Sandbox:
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path
     ) -> List[str]:
         """Command line of a node: reads the system and its own files, writes to a small home in memory."""
-        return self._inside(command, environment, self.cpu_time, reads, home, _writable(str(home)))
+        return self._inside(command, environment, self.cpu_time, reads, home, ["--unshare-net", *_writable(str(home))])
 
     def build_command(
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path

@@ -1,8 +1,6 @@
 """The programs that show a watched run: RViz or the web page, and robot_state_publisher for the robot's links.
 
-They are children of the probe, as only the probe's network has the ROS master. What they subscribe to besides /scan and
-/odom, and what they publish, is below /robocop_watch: a submission that looks up the lidar's frame in TF, which is not
-there, has to fail whether or not it is watched; one that waits for a subscriber of its topics must not find the page.
+They are children of the probe, as only the probe's network has the ROS master, which the submission can't reach.
 """
 
 import os
@@ -12,38 +10,11 @@ from typing import List, Optional, Sequence
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.web.access import SOCKET_VARIABLE
 
-from ..handout import ACTION
 from ..sandbox.guard import Guard
 from ..viewer import Viewer
 
-NAMESPACE = "/robocop_watch"
-SCENE = f"{NAMESPACE}/scene"
-
-
-def shown(name: str) -> str:
-    """The name below NAMESPACE for /NAME; of one level, or an action's topics would look like another action server."""
-    return f"{NAMESPACE}/{name[1:].replace('/', '_')}"
-
-
-def is_shown(name: str) -> bool:
-    """Whether a topic or a node serves only to show the run."""
-    return name.startswith(f"{NAMESPACE}/")
-
-
-# Topics and parameters by the name that a node uses -> by which name it finds them.
-RENAMED = {
-    name: shown(name)
-    for name in (
-        *("/tf", "/tf_static", "/rosout", "/cmd_vel"),
-        *(f"{ACTION}/{name}" for name in ("goal", "status", "feedback", "result")),
-        *("/robocop_sim/status", "/map", "/camera/rgb/image_raw", "/aro_robocop_goto_as_node/markers"),
-        *("/robocop_rviz_goto_ac_node/status", "/robot_description"),
-    )
-}
-RENAMED["/robocop_sim/world"] = SCENE
 LOG_LINES = 5
-# bytes; it takes some 100 MB. Browsers and what a submission publishes for it must not use up the grader's limit, which
-# ends the run.
+# bytes; it takes some 100 MB. Browsers must not use up the grader's limit, which ends the run.
 PAGE_MEMORY = 512 * 1024**2
 
 
@@ -72,10 +43,9 @@ class Display:
 
     def _start(self, command: Sequence[str], name: str) -> None:
         """Start a node in the probe's session, which the grader ends as a whole."""
-        renamed = [f"{old}:={new}" for old, new in RENAMED.items()]
         with open(self._log, "ab") as log:
             process = child.start(
-                [*command, *renamed, f"__ns:={NAMESPACE}", f"__name:={name}"],
+                [*command, f"__name:={name}"],
                 environment={**os.environ, SOCKET_VARIABLE: str(self._viewer.page_socket)},
                 stdout=log,
                 stderr=log,

@@ -1,20 +1,15 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that arrives from it."""
 
-import os
 from collections import defaultdict
 from typing import Any, Callable, DefaultDict, Dict, List, Set
-from urllib.parse import urlparse
 
-import rosgraph
-import rospy
 from actionlib_msgs.msg import GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
 from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Log
 
-from aro_robocop_goto_as.errors import GraderLostError
 from aro_robocop_goto_as.geometry import STANDSTILL
-from aro_robocop_goto_as.ros import convert, graph
+from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
 from ..handout import ACTION
@@ -23,32 +18,35 @@ from ..runner import Job
 from ..sandbox import memory_group
 from ..sandbox.guard import exceeded_memory
 from . import progress
-from .display import is_shown
 from .node import Node
-from .ros_internals import shutdown_has_begun
+from .services import Services
 from .stage import Stage
+from .topics import NodeTopic
 
 TICK = 0.1  # [s]
 MAX_ENTRIES = 50  # of each kind at one tick, and
 MAX_LINES = 20_000  # in one record, as a traceback comes at once
-NODE_LOST = "the grader's ROS node was shut down while the submission ran"
+ROS_PARAMETERS = {
+    "/use_sim_time": True,
+    # rospy asks the master for it with every line it logs, unless it is set.
+    "/rosout_disable_topics_generation": True,
+}
 
 
 class Run:
     """A job while it is done: the current scenario's record so far, and which goals are known and have ended."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
-        self.job, self.plan, self.stage = job, job.plan, stage
+        self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
+        self.services = Services(stage.simulation)
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
-        self.subscribers = {  # by topic
-            "/cmd_vel": stage.listen("/cmd_vel", Twist, self._on_command),
-            "/rosout": stage.listen("/rosout", Log, self._on_log),
-        }
+        self.topics.listen("/cmd_vel", Twist, self._on_command)
+        self.topics.listen("/rosout", Log, self._on_log)
 
     def scenarios(self) -> None:
         """Run those that the plan's checks examine."""
@@ -72,12 +70,17 @@ class Run:
     def finish(self, name: str, **more: Any) -> Record:
         """Write the scenario's record, and return it."""
         self.stage.bag.close()
-        if not rosgraph.is_master_online():
-            raise GraderLostError("the ROS master was ended while the submission ran")
         parts: Dict[str, Any] = {part: tuple(entries) for part, entries in self.parts.items()}
-        node = self.stage.node
-        others = tuple(node.other_types()) if node is not None else ()
-        record = Record(name, self.job.part, marks=self.marks, other_types=others, **parts, **more)
+        others = self.topics.other_types() if self.stage.node is not None else ()
+        record = Record(
+            name,
+            self.job.part,
+            marks=self.marks,
+            other_types=others,
+            programs=tuple(sorted(self.topics.programs)),
+            **parts,
+            **more,
+        )
         rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 
@@ -86,10 +89,22 @@ class Run:
         if len(self.parts[part]) - self._before[part] < MAX_ENTRIES:
             self.parts[part].append(entry)
 
-    def names(self, others: Dict[str, str]) -> Dict[str, Any]:
-        """What a record says of action servers (name -> type) and of topics that the node waits for in vain."""
-        unpublished = tuple(topic for topic in graph.unpublished_topics() if not is_shown(topic))
-        return {"servers": tuple(others), "types": tuple(others.values()), "unpublished": unpublished}
+    def names(self, suffix: str) -> Dict[str, Any]:
+        """What a record says of the node's action servers or clients, and of topics that it waits for in vain.
+
+        `suffix`: of a topic that they publish, such as /result.
+        """
+        kind = f"Action{suffix[1:].capitalize()}"
+        found: Dict[str, NodeTopic] = {
+            name: topic
+            for name, topic in sorted(self.topics.published.items())
+            if name.endswith(suffix) and topic.type.endswith(kind)
+        }
+        return {
+            "servers": tuple(name[: -len(suffix)] for name in found),
+            "types": tuple(topic.type[: 6 - len(kind)] for topic in found.values()),
+            "unpublished": tuple(self.topics.unpublished()),
+        }
 
     # -- the node --
 
@@ -101,9 +116,9 @@ class Run:
             self.job.environment,
             self.job.folder,
             self._on_line,
-            self.stage.answer_calls,
-            self.stage.run_jobs,
-            int(urlparse(os.environ["ROS_MASTER_URI"]).port or 0),
+            self.topics,
+            self.services,
+            {**ROS_PARAMETERS, **self.job.parameters},
             self.stage.sim.stamp_ns,
             self.stage.clock_ns,
         )
@@ -135,8 +150,6 @@ class Run:
 
     def tick(self, real_time: bool = True) -> None:
         """One control tick; a watched run is shown at real time."""
-        if shutdown_has_begun():
-            raise GraderLostError(NODE_LOST)
         for part, entries in self.parts.items():
             self._before[part] = len(entries)
         sample = self.stage.tick(real_time)
@@ -167,7 +180,7 @@ class Run:
             ("result", GoToPositionActionResult, self._on_result),
             ("status", GoalStatusArray, self._on_status),
         ):
-            self.subscribers[f"{ACTION}/{name}"] = self.stage.listen(f"{ACTION}/{name}", kind, handler)
+            self.topics.listen(f"{ACTION}/{name}", kind, handler)
 
     def _on_command(self, message: Twist) -> None:
         twist = convert.from_twist_msg(message)
@@ -193,9 +206,8 @@ class Run:
                 self.add("statuses", rec.Status(self.stage.now, entry.goal_id.id, entry.status))
 
     def _on_log(self, message: Log) -> None:
-        if message.name != rospy.get_name():
-            level = "ERROR" if message.level >= Log.ERROR else "WARN" if message.level >= Log.WARN else "INFO"
-            self._on_line(f"[{level}] {message.msg}")
+        level = "ERROR" if message.level >= Log.ERROR else "WARN" if message.level >= Log.WARN else "INFO"
+        self._on_line(f"[{level}] {message.msg}")
 
     def _on_line(self, text: str) -> None:
         lines = self.parts["lines"]

@@ -2,36 +2,25 @@
 
 import io
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Optional, Sequence
 
 import rosbag
 import rospy
-from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from aro_robocop_goto_as.ros import convert
-from aro_robocop_goto_as.ros.publishing.batch import Batch
-from aro_robocop_goto_as.ros.sim.sensor_messages import (
-    NO_VARIANCES,
-    packed_clock,
-    packed_odometry,
-    packed_scan,
-    packed_transforms,
-)
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import FrameNames
-from aro_robocop_goto_as.simulation.observations import Observations
-from aro_robocop_goto_as.simulation.rates import CLOCK, ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
+from ..agent import wire
 from ..handout import ACTION
 from ..plan import FARTHEST
-from . import ros_internals
+from .step_messages import StepMessage
+from .topics import header
 
 MOST_BAG = 32 * 1024**2  # bytes
 MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
@@ -69,19 +58,6 @@ class ScenarioBag:
         self._robot = robot
         self._frames = frames
         self._bag: Optional[rosbag.Bag] = None
-        seen, footprint = sim.observed, robot.footprint_frame
-        odometry, truth = (seen.odometry.poses[0], seen.odometry.twists[0]), (seen.fleet.poses[0], seen.fleet.twists[0])
-        scan = packed_scan(sim.lidar.spec, frames.scan_frame, seen.scans[0], None)
-        odom = packed_odometry(robot.odom_frame, footprint, NO_VARIANCES, *odometry)
-        ground_truth_odom = packed_odometry(frames.world_frame, footprint, NO_VARIANCES, *truth)
-        self._of_steps = [  # what is written of a step on which one of these is due
-            (SCAN, "/scan", LaserScan, scan),
-            (TF, "/tf", TFMessage, packed_transforms(robot.transforms())),
-            (ODOM, "/odom", Odometry, odom),
-            (ODOM, "/ground_truth_odom", Odometry, ground_truth_odom),
-            (CLOCK, "/clock", Clock, packed_clock()),
-        ]
-        self._batch = Batch([], filled=[message for *_, message in self._of_steps])
 
     def open(self, path: Path) -> None:
         """Begin a bag."""
@@ -102,7 +78,9 @@ class ScenarioBag:
 
     def _write(self, topic: str, message: Any, stamp: rospy.Time, raw: bool = False) -> None:
         if self._bag is not None and self._file.tell() < MOST_BAG:
-            self._bag.write(topic, message, stamp, raw, latched(topic, message) if topic in LASTING else None)
+            self._bag.write(
+                topic, message, stamp, raw, header(message, topic=topic, latching="1") if topic in LASTING else None
+            )
 
     def write_static_frames(self, site: Pose2D) -> None:
         """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
@@ -124,17 +102,9 @@ class ScenarioBag:
         self.write("/robocop_sim/world", MarkerArray(near))
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))
 
-    def write_step(self, seen: Observations) -> None:
-        """Measurements as the submission gets them, and the truth."""
-        if self._bag is None:
-            return
-        self._batch.send(seen.stamp_ns)
-        for sensor, topic, kind, message in self._of_steps:
-            if sensor in seen.due.names:
-                self._write(topic, ros_internals.raw(kind, message.body()), convert.to_time(seen.stamp_ns), raw=True)
-
-
-def latched(topic: str, message: Any) -> Dict[str, str]:
-    """The header that a latching publisher's connection has in a bag."""
-    kind = {"type": message._type, "md5sum": message._md5sum, "message_definition": message._full_text}
-    return {"topic": topic, "latching": "1", **kind}
+    def write_step(self, stamp_ns: int, messages: Sequence[StepMessage]) -> None:
+        """Measurements as the submission gets them, and the truth; what a replay does not show is left out."""
+        for topic, kind, data in messages:
+            if topic not in ("/imu", "/bumper", "/joint_states"):
+                raw = kind._type, data[wire.LENGTH.size :], kind._md5sum, kind  # as rosbag.Bag.write() takes it
+                self._write(topic, raw, convert.to_time(stamp_ns), raw=True)

@@ -3,14 +3,13 @@
 import math
 from typing import List
 
-import rospy
 from actionlib_msgs.msg import GoalID
 from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose
 from aro_robocop_goto_as.goto import Errors, track_progress
-from aro_robocop_goto_as.ros import graph, markers
+from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
 from ..handout import ACTION
@@ -26,6 +25,7 @@ SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then 
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AT_END = 0.25  # [s] before a result, in which the robot was where it ended
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
+GOAL, CANCEL = f"{ACTION}/goal", f"{ACTION}/cancel"
 
 
 class ServerRun(Run):
@@ -35,15 +35,11 @@ class ServerRun(Run):
         super().__init__(job, stage)
         self.listen_to_server()
         self.limits = job.plan.limits
-        self._advertise()
+        self.topics.advertise(GOAL, GoToPositionActionGoal)
+        self.topics.advertise(CANCEL, GoalID)
         self._used = False  # the node has served a scenario
         self._pushes: List[Push] = []  # that are still to come
         self._pushed_until = 0.0  # [s]
-
-    def _advertise(self) -> None:
-        """Publish goals and cancel requests."""
-        self.goal_topic = rospy.Publisher(f"{ACTION}/goal", GoToPositionActionGoal, queue_size=10)
-        self.cancel_topic = rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=10)
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
@@ -58,23 +54,22 @@ class ServerRun(Run):
         """Start the node; the record says whether its action server came up."""
         self.begin(START, 0)
         up = self._bring_up()
-        names = self.names(graph.action_servers())
+        names = self.names("/result")
         self.settle(0.3)
         return self.finish(START, up=up, **names)
 
     def _bring_up(self) -> bool:
         self.known, self._used = {}, False
         self.launch()
-        log = self.subscribers["/rosout"]
-        self.wait_for(lambda: log.get_num_connections() > 0, START_TIMEOUT)
+        self.wait_for(lambda: self.topics.hears("/rosout"), START_TIMEOUT)
         up = self.wait_for(self._connected, SERVER_TIMEOUT)
         self.settle(0.2)
         return up and not self.death_recorded
 
     def _connected(self) -> bool:
         """Whether all five topics are connected, so that no message is lost."""
-        heard = [self.subscribers[f"{ACTION}/{name}"] for name in ("result", "feedback", "status")]
-        return all(topic.get_num_connections() for topic in (self.goal_topic, self.cancel_topic, *heard))
+        heard = all(self.topics.hears(f"{ACTION}/{name}") for name in ("result", "feedback", "status"))
+        return heard and self.topics.reaches(GOAL) and self.topics.reaches(CANCEL)
 
     # -- one scenario --
 
@@ -97,7 +92,7 @@ class ServerRun(Run):
         self.ended.clear()
         self._pushes = list(scenario.pushes)
         if self.is_dead():
-            self._end_node()
+            self.close()
             if not self._bring_up():
                 problem = "the node did not come up again"
         self._used = True
@@ -113,7 +108,7 @@ class ServerRun(Run):
             scenario.name, obstacles=tuple(block.outline for block in scenario.obstacles), problem=problem
         )
         if problem or self._unclean(record):
-            self._end_node()
+            self.close()
         return record
 
     def _unclean(self, record: Record) -> bool:
@@ -137,15 +132,6 @@ class ServerRun(Run):
                     return True
         return False
 
-    def _end_node(self) -> None:
-        if self.stage.node is not None:
-            self.close()
-            self.stage.run_jobs()  # its last messages belong to the previous scenario
-            # rospy drops a dead subscriber only on the next write; new publishers count only the next node.
-            for topic in (self.goal_topic, self.cancel_topic):
-                topic.unregister()
-            self._advertise()
-
     def _step(self, index: int, name: str, step: Step) -> str:
         """Run one step of a script; returns the problem, or an empty text."""
         if step.place:
@@ -158,7 +144,7 @@ class ServerRun(Run):
         elif step.cancel:
             goal = self.parts["goals"][-1]
             self.add("cancels", rec.Cancel(self.stage.now, goal.id))
-            self.cancel_topic.publish(GoalID(id=goal.id))
+            self.topics.publish(CANCEL, GoalID(id=goal.id))
             self.stage.digest()
         if step.run:
             return self._advance(goal, step.run)
@@ -178,9 +164,9 @@ class ServerRun(Run):
         message.header.stamp = message.goal_id.stamp = self.stage.stamp
         message.goal_id.id = name
         message.goal.position.x, message.goal.position.y = x, y
-        self.stage.keep(f"{ACTION}/goal", message)
+        self.stage.keep(GOAL, message)
         self.stage.keep(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom_frame)))
-        self.goal_topic.publish(message)
+        self.topics.publish(GOAL, message)
         return goal
 
     def _advance(self, goal: rec.Goal, seconds: float) -> str:

@@ -1,13 +1,13 @@
 """The simulation that a submission meets: one robot, its topics, and what the submission sends back."""
 
 import math
-from collections import deque
 from functools import partial
-from typing import Any, Callable, Deque, Optional, Tuple
+from typing import Any, Optional
 
-import genpy
 import numpy as np
 import rospy
+from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.obstacle_ahead import beams_ahead
@@ -19,17 +19,17 @@ from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
-from aro_robocop_goto_as.simulation.rates import CLOCK, JOINTS, ODOM, SCAN, TF
+from aro_robocop_goto_as.simulation.rates import ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.running import Simulation
 from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
 
-from .. import record as rec
 from ..handout import AHEAD
 from ..plan import Plan, site, world_of
 from ..record import Sample
-from . import ros_internals
 from .node import Node
 from .scenario_bag import ScenarioBag
+from .step_messages import StepMessages
+from .topics import Topics
 from .watch import Watch
 
 # cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
@@ -38,32 +38,23 @@ PARAMS = SimParams.of(clock_rate=30, cmd_vel_timeout=0.0, ground_truth=False)
 STEPS_PER_TICK = PARAMS.rates.physics_rate // PARAMS.rates.control_rate
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
-MOST_WAITING = 20_000  # messages
-MOST_LISTED = 100  # entries of a message's list
-
-
-def trimmed(message: Any) -> Any:
-    """Truncate a message's strings and lists; returns the message."""
-    for name in message.__slots__:
-        value = getattr(message, name)
-        if isinstance(value, str):
-            setattr(message, name, value[: rec.MOST_TEXT])
-        elif isinstance(value, (list, tuple)):
-            setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MOST_LISTED]])
-        elif isinstance(value, genpy.Message):
-            trimmed(value)
-    return message
-
 
 class Stage:
-    """One robot in the world of all scenarios. The main thread owns it; what arrives is posted to it as a job."""
+    """One robot in the world of all scenarios."""
 
     def __init__(self, plan: Plan) -> None:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(plan), [robot])
         self.simulation = Simulation(self.sim)
-        self._topics = StepTopics(self.sim, hidden={JOINTS, CLOCK})
-        self.robot = self._topics.robots[0]
+        self.shown = StepTopics(self.sim)  # to those who watch
+        self.robot = self.shown.robots[0]
+        self._messages = StepMessages(self.sim, self.shown)
+        self._sensors = {**self.robot.topics, TF: self.shown.tf}
+        self.topics = Topics()
+        for topic in self._sensors.values():
+            self.topics.advertise(topic.name, topic.data_class)
+        self.topics.advertise("/tf_static", TFMessage, latch=True)
+        self.topics.advertise("/clock", Clock, latch=True)  # the agent sends it
         self.odd_scan = False
         spec = self.sim.lidar.spec
         self._ahead = beams_ahead(spec.samples, spec.angle_min, spec.increment, AHEAD)
@@ -71,7 +62,6 @@ class Stage:
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
-        self._arrived: Deque[Tuple[str, Callable[[], object]]] = deque()  # topic, and what handles a message
         self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._real_time = True
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
@@ -85,23 +75,6 @@ class Stage:
     def stamp(self) -> rospy.Time:
         """Simulated time, for messages."""
         return convert.to_time(self.sim.stamp_ns)
-
-    # -- what arrives --
-
-    def post(self, topic: str, handler: Callable[[Any], object], payload: Any) -> None:
-        """Have the main thread handle what has arrived on a topic; may be called from any thread."""
-        self._arrived.append((topic, partial(handler, payload)))
-
-    def listen(
-        self, topic: str, kind: Any, handler: Callable[[Any], object], of: Callable[[Any], Any] = trimmed
-    ) -> rospy.Subscriber:
-        """Have the main thread handle what arrives on a topic; `of` reduces a message to what is kept of it."""
-
-        def receive(message: Any) -> None:
-            if len(self._arrived) < MOST_WAITING:  # messages of a flood beyond that are dropped
-                self.post(topic, handler, of(message))
-
-        return rospy.Subscriber(topic, kind, receive, tcp_nodelay=True)
 
     # -- the robot --
 
@@ -146,13 +119,11 @@ class Stage:
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
             until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
-            observed = self.sim.advance(self.subscriptions(), max(1, until - self.sim.steps))
+            observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
                 self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
                 self.node.go_on(self.sim.stamp_ns, self.clock_ns)
-        if self.node is None:
-            self.run_jobs()
         return self.sample()
 
     def _step_at(self, stamp_ns: int) -> int:
@@ -164,63 +135,38 @@ class Stage:
         if self.node is not None:
             self.node.go_on(self.sim.stamp_ns, self.clock_ns)
 
-    def join(self) -> None:
-        """Let the node connect to topics that are new, in no simulated time."""
-        if self.node is not None and self.node.status() is None:
-            self.node.join()
-            self.digest()
-
-    def run_jobs(self) -> None:
-        """Handle what has arrived, by topics in the order of their names: which one was first is up to the system."""
-        arrived = [self._arrived.popleft() for _ in range(len(self._arrived))]
-        for _, handle in sorted(arrived, key=lambda topic_and_handle: topic_and_handle[0]):
-            handle()
-        self.answer_calls()
-
-    def answer_calls(self) -> None:
-        """Do what services have been called for."""
-        self.simulation.jobs.run_queued()
-
-    def subscriptions(self) -> Subscriptions:
-        """The submission's; odometry and transforms always, for the bag; wheel angles if the run is shown."""
-        always = {ODOM: [0], TF: [0]}
-        return {**self._topics.subscriptions(), **always, **({} if self.watch is None else {JOINTS: [0]})}
-
-    def publish_clock(self) -> None:
-        """For nodes that have just come up."""
-        self.clock_ns = self.sim.stamp_ns
-        ros_internals.set_time(self.clock_ns)
-        self._topics.publish_clock(self.clock_ns)
-        self._topics.count()
+    def _subscriptions(self) -> Subscriptions:
+        """The node's and the viewer's; odometry and transforms always, for the bag."""
+        wanted = {sensor for sensor, topic in self._sensors.items() if self.topics.reaches(topic.name)}
+        return {**self.shown.subscriptions(), **{sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}}
 
     def _publish(self, observed: Observations) -> None:
-        """One step's observations to the viewer, the submission and the bag; the clock last."""
-        stamp, node = convert.to_time(observed.stamp_ns), self.node
-        if node is not None and node.next_ns < observed.stamp_ns and not node.is_busy:
-            node.go_on(observed.stamp_ns - 1, self.clock_ns)
-        if self.watch is not None:
-            self.watch.observe(observed, self._real_time)
+        """One step's observations to the viewer, the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
             _make_odd(observed.scans[0])
-        self._topics.publish(observed)
-        self._topics.count()  # the agent is told how much was sent
-        if self.watch is not None and observed.of(TF):
-            self.watch.tf.publish(self.robot.transform_messages(stamp))
+        messages = self._messages.of(observed)
+        for topic, _, data in messages:
+            self.topics.send(topic, data)
         if observed.due.clock:
-            if node is not None and not node.is_busy and self._topics.clock.get_num_connections():
-                node.go_on(observed.stamp_ns - 1, self.clock_ns)  # who subscribes to it has the newest data before
-            self.publish_clock()
-        keep = partial(self.bag.write_step, observed)
-        if node is None:
+            self.clock_ns = self.sim.stamp_ns
+        if self.watch is not None:
+            self.watch.observe(observed, self._real_time)
+        keep = partial(self.bag.write_step, observed.stamp_ns, messages)
+        if self.node is None:
             keep()
         else:
-            node.go_on(observed.stamp_ns, self.clock_ns, meanwhile=keep)
+            self.node.go_on(observed.stamp_ns, self.clock_ns, meanwhile=keep)
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
-        transforms = self._topics.publish_static()
+        frames, map_from_odom = PARAMS.frames, self.sim.map_from_odom()
+        transforms = [
+            convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), self.stamp),
+            convert.to_transform(frames.map_frame, self.robot.odom_frame, map_from_odom, self.stamp),
+        ]
+        self.topics.publish("/tf_static", TFMessage(transforms))
         if self.watch is not None:
-            self.watch.tf_static.publish(transforms)
+            self.shown.publish_static()
         self.bag.write_static_frames(self._site)
 
     def keep(self, topic: str, message: Any) -> None:

@@ -1,25 +1,26 @@
-"""Shows a run at real time, on separate topics: the submission sees the same topics, connections, frames and log."""
+"""Shows a run at real time, on a ROS master of its own: the submission meets the same as in any other run."""
 
 import math
+import os
 import textwrap
 import time
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
+from urllib.parse import urlparse
 
 import rospy
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from geometry_msgs.msg import Point, Twist
-from sensor_msgs.msg import JointState
 from std_msgs.msg import ColorRGBA
-from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.errors import WatchError
+from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.robot.catalog import load_model
-from aro_robocop_goto_as.ros import convert, markers
+from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.publishing.publisher import publisher
 from aro_robocop_goto_as.ros.share import share
-from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.observations import Observations
@@ -29,7 +30,7 @@ from .. import record as rec
 from ..handout import ACTION
 from ..plan import Plan, world_of
 from ..viewer import Viewer
-from .display import NAMESPACE, SCENE, Display, shown
+from .display import Display
 
 PATIENCE = 60.0  # [s, wall] for RViz to come up, ten on a busy machine without a GPU; and for a browser to be opened
 AWAY = 10.0  # [s, wall] without a browser, after which the run continues at full speed; a reload takes one or two
@@ -41,6 +42,7 @@ CLICK_RADIUS = 0.2  # [m] wider than the goal's circle, so that both are visible
 TEXT_SIZE, TEXT_HEIGHT = 0.08, 1.5  # [m] of the letters, and above the floor, where it hides nothing
 TEMPORARY = ("path", "goal_circle", "goal_pin", "click")  # namespaces of markers
 TEXT_WIDTH = 44  # characters of a line
+SCENE = "/robocop_sim/world"
 FORWARDED = {
     "/cmd_vel": Twist,
     f"{ACTION}/goal": GoToPositionActionGoal,
@@ -49,27 +51,33 @@ FORWARDED = {
 }
 
 
+def begin_to_publish() -> None:
+    """Become a node of a ROS master of its own, which only the viewer knows; it ends with this process."""
+    port = str(urlparse(os.environ["ROS_MASTER_URI"]).port)
+    child.start(["rosmaster", "--core", "-p", port], start_new_session=False)
+    rospy.init_node("robocop_sim", disable_rosout=True, disable_rostime=True, disable_signals=True, argv=[])
+    rospy.set_param("/use_sim_time", True)
+
+
 class Watch:
     """The viewer, what it shows, and the pace. When it is closed the run continues as fast as without it."""
 
-    def __init__(self, robot: SensorTopics, params: SimParams, plan: Plan, viewer: Viewer, log: Path) -> None:
-        self._robot = robot
+    def __init__(self, topics: StepTopics, params: SimParams, plan: Plan, viewer: Viewer, log: Path) -> None:
+        """`topics`: of the steps, which the owner publishes."""
+        self._topics, self._robot = topics, topics.robots[0]
         self._plan = plan
         self._period = 1.0 / params.rates.clock_rate
         self._last_tick = 0.0  # [s, wall] of the clock
         self._seen = 0.0  # [s, wall] when a browser was last found to show the page
         self._path: List[Point] = []
-        self.tf = publisher(f"{NAMESPACE}/tf", TFMessage)
-        self.tf_static = publisher(f"{NAMESPACE}/tf_static", TFMessage, latch=True)
-        self._joints = publisher(f"{NAMESPACE}/joint_states", JointState)
         self._scene = publisher(SCENE, MarkerArray)
         self._forwarded: Dict[str, rospy.Publisher] = {}
         if viewer.is_page:
-            self._forwarded = {topic: publisher(shown(topic), kind) for topic, kind in FORWARDED.items()}
-        rospy.set_param(f"{NAMESPACE}/robot_description", load_model(params.robots.model, share()).urdf)
+            self._forwarded = {topic: publisher(topic, kind) for topic, kind in FORWARDED.items()}
+        rospy.set_param("/robot_description", load_model(params.robots.model, share()).urdf)
         self._display = Display(viewer, share(), log)
         self._obstacles = world_markers(world_of(plan), params.frames.world_frame, 0.0)
-        self._text = markers.text("scenario", "", robot.footprint_frame)
+        self._text = markers.text("scenario", "", self._robot.footprint_frame)
 
     def open(self) -> None:
         """Start the viewer, and wait until it has subscribed to everything it shows.
@@ -91,7 +99,8 @@ class Watch:
     def _shown(self) -> Sequence[rospy.Publisher]:
         """The topics that the viewer subscribes to, and last the one of robot_state_publisher."""
         only_rviz = () if self._display.is_page else (self._robot.topics[ODOM],)
-        return self._robot.topics[SCAN], *only_rviz, self.tf, self.tf_static, self._scene, self._joints
+        topics = self._robot.topics
+        return topics[SCAN], *only_rviz, self._topics.tf, self._topics.tf_static, self._scene, topics[JOINTS]
 
     @property
     def is_open(self) -> bool:
@@ -116,21 +125,16 @@ class Watch:
         self._text.scale.z, self._text.pose.position.z = TEXT_SIZE, TEXT_HEIGHT
 
     def observe(self, seen: Observations, real_time: bool) -> None:
-        """Called with a step's observations before they are published; at real time it waits for the next tick."""
-        if not self.is_open:
-            return
-        if seen.due.clock:
+        """Publish a step's observations; at real time, wait for the next tick before."""
+        if seen.due.clock and self.is_open:
             ahead = self._last_tick + self._period - time.monotonic()
             if real_time and ahead > 0.0:
                 time.sleep(ahead)
             self._last_tick = time.monotonic()
-        if seen.of(JOINTS):
-            angles: Any = seen.joint_angles[0].tolist()
-            speeds: Any = seen.fleet.wheel_speeds[0].tolist()
-            self._joints.publish(convert.to_joint_state(angles, speeds, convert.to_time(seen.stamp_ns)))
+        self._topics.publish(seen)
 
     def forward(self, topic: str, message: Any) -> None:
-        """Show a message of the submission in the page, which does not subscribe to the submission's topics."""
+        """Show a message of the submission, or one that it gets, in the page."""
         if topic in self._forwarded:
             self._forwarded[topic].publish(message)
 

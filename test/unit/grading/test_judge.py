@@ -184,3 +184,9 @@ def test_topic_that_nobody_publishes_is_named_if_something_failed() -> None:
     assert not any("robovop" in problem for problem in problems)
     assert any("subscribes to /scn, which nobody publishes" in problem for problem in problems)
     assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in problems)
+
+
+def test_programs_of_ros_that_a_node_starts_are_named_whatever_failed() -> None:
+    starts = replace(RIGHT, name="start", programs=("rostopic", "rosservice"))
+    problems = _grade(load(PLAN), start=starts, again=replace(starts, name="left")).problems
+    assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in problems] == [False, True]

@@ -19,7 +19,7 @@ from ...simulation.running import Simulation
 from ...world.edit import with_model_at
 from .. import convert
 from .gazebo_topics import State, models, raised, relative, robot_names, state_of
-from .services import REFUSALS, Services, serve
+from .services import REFUSALS, Offer, Services, serve
 
 Fields = Dict[str, Any]  # of a response
 REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, what its client can do instead
@@ -42,9 +42,15 @@ REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, what its client ca
 class GazeboServices:
     """Every request is carried out by the simulation's owner, between two steps, or refused with success false."""
 
-    def __init__(self, simulation: Simulation, services: Optional[Services], refusal: str = "") -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        services: Optional[Services],
+        refusal: str = "",
+        offer: Offer = rospy.Service,
+    ) -> None:
         """Without the simulator's services pausing and resetting do nothing; changes are refused with this reason."""
-        self._simulation = simulation
+        self._simulation, self._offer = simulation, offer
         self._simulator = simulation.simulator
         self._services, self._refusal = services, refusal
         self._names = robot_names(simulation.simulator)
@@ -58,12 +64,12 @@ class GazeboServices:
             ("get_world_properties", srv.GetWorldProperties, self._world_properties),
             ("set_model_state", srv.SetModelState, lambda request: self._set_model_state(request.model_state)),
         ):
-            serve(f"/gazebo/{name}", kind, self._in_owner(answer), "status_message")
-        serve("/gazebo/spawn_sdf_model", srv.SpawnModel, self._spawn, "status_message", "SpawnModel: ")
-        serve("/gazebo/delete_model", srv.DeleteModel, self._delete, "status_message", "DeleteModel: ")
-        rospy.Service("/gazebo/delete_light", srv.DeleteLight, _delete_light)
+            serve(f"/gazebo/{name}", kind, self._in_owner(answer), "status_message", offer=offer)
+        serve("/gazebo/spawn_sdf_model", srv.SpawnModel, self._spawn, "status_message", "SpawnModel: ", offer)
+        serve("/gazebo/delete_model", srv.DeleteModel, self._delete, "status_message", "DeleteModel: ", offer)
+        offer("/gazebo/delete_light", srv.DeleteLight, _delete_light)
         for name, (kind, reason) in REFUSED.items():
-            rospy.Service(f"/gazebo/{name}", kind, _refuser(name, reason))
+            offer(f"/gazebo/{name}", kind, _refuser(name, reason))
         if services is not None:
             rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
 
@@ -73,7 +79,7 @@ class GazeboServices:
                 self._simulation.jobs.call(action)
             return EmptyResponse()
 
-        rospy.Service(f"/gazebo/{name}", Empty, respond)
+        self._offer(f"/gazebo/{name}", Empty, respond)
 
     def _in_owner(self, answer: Callable[[Any], Fields]) -> Callable[[Any], Fields]:
         return lambda request: self._simulation.jobs.call(lambda: answer(request))

@@ -21,11 +21,17 @@ from ...world.model import World
 from .. import convert
 
 MAX_SPAN = 1e6  # [s]
+Offer = Callable[[str, Any, Callable[[Any], Any]], object]  # of a service: name, type, request -> response
 REFUSALS = FrameError, PlaceError, WorldError
 
 
 def serve(
-    name: str, kind: Any, answer: Callable[[Any], Dict[str, Any]], text: str = "message", begin: str = ""
+    name: str,
+    kind: Any,
+    answer: Callable[[Any], Dict[str, Any]],
+    text: str = "message",
+    begin: str = "",
+    offer: Offer = rospy.Service,
 ) -> None:
     """Offer a service; what is refused is answered with success false and the reason.
 
@@ -39,7 +45,7 @@ def serve(
         except REFUSALS as error:
             return {"success": False, text: f"{begin}{error}"}
 
-    rospy.Service(name, kind, respond)
+    offer(name, kind, respond)
 
 
 class Services:

@@ -5,15 +5,14 @@ others; odom -> base_footprint is sent with each odometry.
 """
 
 from functools import partial
-from typing import AbstractSet, Callable, Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence, Tuple
 
-from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
 from ...simulation.observations import Due, Observations, Subscriptions
-from ...simulation.rates import BUMPER, CAMERA, CLOCK, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF
+from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.batch import Batch, Posted
@@ -29,11 +28,10 @@ ORDER = (BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
 class StepTopics:
     """What is sent on steps on which the same is due is put together once, until the subscribers change."""
 
-    def __init__(self, simulator: Simulator, hidden: AbstractSet[str] = frozenset()) -> None:
-        """`hidden`: sensors that are not published, and CLOCK if /clock is not published with the steps."""
-        self._simulator, self._hidden = simulator, hidden
-        self._tf = publisher("/tf", TFMessage, on_change=self._on_change)
-        self._tf_static = publisher("/tf_static", TFMessage, latch=True)
+    def __init__(self, simulator: Simulator) -> None:
+        self._simulator = simulator
+        self.tf = publisher("/tf", TFMessage, on_change=self._on_change)
+        self.tf_static = publisher("/tf_static", TFMessage, latch=True)
         self.robots = [SensorTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
         self.clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
         self._clock_message = packed_clock()
@@ -56,8 +54,8 @@ class StepTopics:
             self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
             for index, robot in enumerate(self.robots):
-                for sensor, topic in {**robot.topics, TF: self._tf}.items():
-                    if sensor not in self._hidden and topic.get_num_connections():
+                for sensor, topic in {**robot.topics, TF: self.tf}.items():
+                    if topic.get_num_connections():
                         subscriptions.setdefault(sensor, []).append(index)
             self._subscriptions = subscriptions
         return self._subscriptions
@@ -76,8 +74,8 @@ class StepTopics:
             publish()
         batch.send(observed.stamp_ns, more)
 
-    def publish_static(self) -> Sequence[TransformStamped]:
-        """world -> map, and each robot's map -> odom where that is static; returns what was sent."""
+    def publish_static(self) -> None:
+        """world -> map, and each robot's map -> odom where that is static."""
         simulator, frames = self._simulator, self._simulator.params.frames
         stamp = convert.to_time(simulator.stamp_ns)
         transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
@@ -86,8 +84,7 @@ class StepTopics:
                 convert.to_transform(frames.map_frame, robot.odom_frame, simulator.map_from_odom(index), stamp)
                 for index, robot in enumerate(self.robots)
             ]
-        self._tf_static.publish(transforms)
-        return transforms
+        self.tf_static.publish(transforms)
 
     def publish_clock(self, stamp_ns: int) -> None:
         """Simulated time [ns] alone."""
@@ -99,21 +96,26 @@ class StepTopics:
         for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
             batch.count()
 
-    def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
-        """What publishes the measurements that are not packed, and the batch of all others."""
-        unpacked: List[Callable[[], None]] = []
+    def packed(self, due: Due) -> List[Posted]:
+        """The packed messages of what is due, with their topics."""
         messages: List[Posted] = []
         for sensor in ORDER:
-            robots = [self.robots[index] for index in due.sensors.get(sensor, ()) if sensor not in self._hidden]
+            robots = [self.robots[index] for index in due.sensors.get(sensor, ())]
             if sensor == TF:
                 transforms = [transform for robot in robots for transform in robot.transforms()]
-                messages += [(self._tf, packed_transforms(transforms))] if transforms else []
+                messages += [(self.tf, packed_transforms(transforms))] if transforms else []
                 continue
             for robot in robots:
                 message = robot.packed(sensor)
-                if message is None:
-                    unpacked.append(partial(robot.publish, sensor))
-                else:
+                if message is not None:
                     messages.append((robot.topics[sensor], message))
-        with_clock = due.clock and CLOCK not in self._hidden
-        return unpacked, Batch(messages, [(self.clock, self._clock_message)] if with_clock else [])
+        return messages
+
+    def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
+        """What publishes the measurements that are not packed, and the batch of all others."""
+        unpacked = [
+            partial(self.robots[index].publish, sensor)
+            for sensor in (BUMPER, CAMERA)
+            for index in due.sensors.get(sensor, ())
+        ]
+        return unpacked, Batch(self.packed(due), [(self.clock, self._clock_message)] if due.clock else [])

@@ -1,7 +1,5 @@
-"""Programs under the agent live in simulated time, which a stub of the grader's end of the channel lets go on."""
+"""Programs under the agent live in simulated time."""
 
-import contextlib
-import itertools
 import os
 import socket
 import subprocess
@@ -9,80 +7,10 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import List, NamedTuple
 
 import pytest
-from support import ROOT
+from agent_program import AGENT, PATIENCE, STEP, Program
 from waiting import wait_for
-
-AGENT = os.path.join(ROOT, "src", "robocop_grading", "agent")
-STEP = 10**7  # [ns] of simulated time between two requests
-PATIENCE = 60.0  # [s, wall] for a program to do what it does at one time
-
-
-class Answer(NamedTuple):
-    """The numbers of an answer."""
-
-    done: int
-    next: int
-    busy: int
-    sent: List[int]  # port of the program, other port, bytes; and so on
-
-
-class Program:
-    """A program under the agent."""
-
-    def __init__(self, folder, text, grader_port=1):
-        script = folder / "script.py"
-        script.write_text("import time\nstart = time.monotonic()\n" + text)
-        mine, theirs = socket.socketpair()
-        self.process = subprocess.Popen(
-            [sys.executable, AGENT, f"{theirs.fileno()},0,{grader_port}", str(script), "argument"],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            pass_fds=[theirs.fileno()],
-        )
-        theirs.close()
-        mine.settimeout(PATIENCE)
-        self._channel, self._lines = mine, mine.makefile("rb")
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.kill()
-        self.process.wait()
-        self.process.stdout.close()
-        self._channel.close()
-
-    def go_on(self, until, clock=0, sent=()):
-        """Let simulated time go on until this time [ns]; the agent's answer, or nothing if the program has ended.
-
-        `clock`: what /clock shows then [ns]; `sent`: of connections the program's port, the other one and bytes.
-        """
-        try:
-            request = " ".join(map(str, [until, clock, *itertools.chain(*sent)]))
-            self._channel.sendall(f"{request}\n".encode())
-            line = self._lines.readline()
-        except OSError:
-            return None
-        numbers = list(map(int, line.partition(b"\t")[0].split()))
-        return Answer(*numbers[:3], numbers[3:]) if line else None
-
-    def threads(self):
-        """How many threads the program has."""
-        return len(os.listdir(f"/proc/{self.process.pid}/task"))
-
-    def output(self, seconds):
-        """Let it live for this simulated time, or until it ends; what it has printed."""
-        for step in range(1, int(seconds * 1e9) // STEP + 1):
-            if self.go_on(step * STEP) is None:
-                self.process.wait(PATIENCE)
-                break
-        else:
-            self.process.kill()
-        return self.process.stdout.read().splitlines()
 
 
 def printed(folder, text, seconds=20.0):
@@ -237,22 +165,6 @@ def test_message_that_arrives_wakes_its_reader_before_time_goes_on(tmp_path):
             assert program.process.stdout.readline() == "b'hello' 0.01\n"
 
 
-def test_grader_learns_what_was_sent_by_a_connection_that_has_been_closed_since(tmp_path):
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-        text = f"""
-import socket
-for data in (b"x", b"xyz"):
-    with socket.create_connection(("127.0.0.1", {port})) as connection:
-        connection.sendall(data)
-time.sleep(1.0)
-"""
-        with Program(tmp_path, text) as program:
-            sent = program.go_on(STEP).sent
-            assert sent[1:3] + sent[4:] == [port, 1, port, 3]
-            assert program.go_on(2 * STEP).sent == []
-
-
 def test_thread_that_receives_ends_when_another_one_closes_its_socket(tmp_path):
     text = """
 import socket, threading
@@ -276,58 +188,14 @@ print(threading.active_count(), round(time.monotonic() - start, 3), flush=True)
     assert printed(tmp_path, text, 1.0) == ["closed"] * 3 + ["1 0.3"]
 
 
-def test_threads_that_have_data_to_read_go_on_in_the_order_in_which_the_grader_publishes(tmp_path):
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-        text = f"""
-import socket, threading
-def read(connection):
-    print(connection.recv(1).decode(), flush=True)
-    for _ in range(10**5): pass
-    print(connection.recv(1).decode(), flush=True)
-for _ in range(3):
-    connection = socket.create_connection(("127.0.0.1", {port}))
-    threading.Thread(target=read, args=[connection]).start()
-time.sleep(1.0)
-"""
-        with Program(tmp_path, text, port) as program, contextlib.ExitStack() as stack:
-            program.go_on(STEP)
-            connections = [stack.enter_context(server.accept()[0]) for _ in range(3)]
-            links = [(it.getpeername()[1], it.getsockname()[1]) for it in (connections[i] for i in (2, 0, 1))]
-            for step, letters in enumerate(("abc", "def"), 2):
-                for connection, letter in zip(connections, letters):
-                    connection.sendall(letter.encode())
-                program.go_on(step * STEP, sent=[(*link, step - 1) for link in links])
-            assert [program.process.stdout.readline().strip() for _ in range(6)] == list("cabfde")
-
-
-def test_others_get_answers_between_two_requests_also_if_a_thread_waits_in_an_unknown_way(tmp_path):
-    text = """
-import ctypes, socket, socketserver, threading
-threading.Thread(target=ctypes.CDLL(None).sleep, args=[1000], daemon=True).start()
-class Echo(socketserver.BaseRequestHandler):
-    def handle(self): self.request.sendall(self.request.recv(1))
-server = socketserver.ThreadingTCPServer(('127.0.0.1', 0), Echo)
-threading.Thread(target=server.serve_forever, daemon=True).start()
-print(server.server_address[1], flush=True)
-time.sleep(60)
-"""
-    with Program(tmp_path, text) as program:
-        program.go_on(STEP)
-        port = int(program.process.stdout.readline())
-        for letter in (b"a", b"b", b"c"):
-            with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as connection:
-                connection.sendall(letter)
-                assert connection.recv(1) == letter
-
-
 # The system takes long to begin a thread.
 SLOW_STARTS = """
 import sys
-scheduler = sys.modules["robocop_agent.scheduler"]
+module = sys.modules["robocop_agent.scheduler"]
+scheduler = module.scheduler
 def slow_begin(waiter, begin=scheduler.begin):
     waiter.gate.acquire()
-    scheduler.sleep(0.05)
+    module.sleep(0.05)
     waiter.gate.release()
     begin(waiter)
 scheduler.begin = slow_begin
@@ -351,60 +219,6 @@ time.sleep(0.01)
 print(*order)
 """
     assert printed(tmp_path, text) == ["started main read"]
-
-
-def test_others_get_answers_between_two_requests_also_if_threads_start_slowly(tmp_path):
-    text = f"""{SLOW_STARTS}
-import socket, threading
-server = socket.create_server(('127.0.0.1', 0))
-def handle(connection):
-    connection.sendall(connection.recv(1) + connection.recv(1))
-def serve():
-    while True: threading.Thread(target=handle, args=server.accept()[:1], daemon=True).start()
-threading.Thread(target=serve, daemon=True).start()
-print(server.getsockname()[1], flush=True)
-time.sleep(60)
-"""
-    with Program(tmp_path, text) as program:
-        program.go_on(STEP)
-        port = int(program.process.stdout.readline())
-        with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as connection:
-            connection.sendall(b"a")
-            wait_for(lambda: program.threads() >= 4, "the connection has a thread")
-            connection.sendall(b"b")
-            assert connection.recv(2) + connection.recv(2) == b"ab"
-
-
-def test_others_get_answers_between_two_requests_also_if_several_threads_never_pause(tmp_path):
-    text = """
-import socket, sys, threading
-server = socket.create_server(('127.0.0.1', 0))
-def serve():
-    while True:
-        connection, _ = server.accept()
-        connection.sendall(connection.recv(1))
-threading.Thread(target=serve, daemon=True).start()
-print(server.getsockname()[1], flush=True)
-begin = threading.Event()
-def second():
-    begin.wait()
-    while True: pass
-def first():
-    time.sleep(0.125)
-    sys.modules["robocop_agent.scheduler"].calls += 1  # as if it had called the grader
-    begin.set()
-    while True: pass
-for function in (second, first): threading.Thread(target=function, daemon=True).start()
-time.sleep(0.015)
-while True: pass
-"""
-    with Program(tmp_path, text) as program:
-        for step in range(1, 14):
-            program.go_on(step * STEP)
-        port = int(program.process.stdout.readline())
-        with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as connection:
-            connection.sendall(b"a")
-            assert connection.recv(1) == b"a"
 
 
 @pytest.mark.parametrize(
@@ -616,16 +430,6 @@ def test_thread_that_waits_while_it_holds_the_clocks_condition_does_not_stop_tim
             program.go_on(tick * 10**8, clock=tick * 10**8)
         program.process.kill()
         assert program.process.stdout.read() == "0.3\n"
-
-
-def test_grader_learns_of_new_topics_before_the_clock_goes_on(tmp_path):
-    with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("sys.modules['robocop_agent.scheduler'].calls += 1")) as program:
-        program.go_on(STEP)
-        with socket.create_connection(("127.0.0.1", int(program.process.stdout.readline()))) as client:
-            client.sendall(b"hello")
-            assert program.go_on(2 * STEP, clock=6 * 10**8).done < 2 * STEP
-            assert program.go_on(2 * STEP, clock=6 * 10**8).done == 2 * STEP
-            assert program.process.stdout.readline() == "b'hello' 0.6\n"
 
 
 def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):

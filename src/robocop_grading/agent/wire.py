@@ -1,0 +1,63 @@
+"""What the grader and the agent say to each other: frames on a socket, each with its length, its kind and its body.
+
+grader -> agent
+    SETUP     the node's parameters, and headers of connections, pickled
+    TOPIC     the header of one more connection, pickled
+    GO        until when [ns since the node's start], /clock [ns], messages
+    REPLY     a service's response as on TCPROS
+agent -> grader
+    MESSAGE   a topic, and bytes of the stream of its messages
+    CALL      a service, and the request as on TCPROS; a REPLY follows
+    TOPICS    what it publishes and subscribes to, and programs of ROS that it has started, as JSON
+    CHILD     a forked child has become a node, which nobody connects
+    DONE      until when [ns], when it does something by itself [ns], whether it is busy
+"""
+
+import struct
+from typing import Iterable, Iterator, Tuple
+
+SETUP, TOPIC, GO, REPLY, MESSAGE, CALL, TOPICS, CHILD, DONE = range(9)
+HEAD = struct.Struct("<IB")  # of a frame: bytes of its body, kind
+LENGTH = struct.Struct("<I")  # of a message, as on TCPROS
+TIMES = struct.Struct("<qq")
+ANSWER = struct.Struct("<qq?")
+_NAME = struct.Struct("<H")
+
+Message = Tuple[str, bytes]  # a topic, and what is sent on it, with its length
+
+
+def frame(kind: int, body: bytes) -> bytes:
+    """A frame as it is sent."""
+    return HEAD.pack(len(body), kind) + body
+
+
+def named(name: str, data: bytes) -> bytes:
+    """A body that begins with a name."""
+    text = name.encode()
+    return _NAME.pack(len(text)) + text + data
+
+
+def split(body: bytes) -> Tuple[str, bytes]:
+    """Its name, and the rest; struct.error or UnicodeError if it is none."""
+    (size,) = _NAME.unpack_from(body)
+    start = _NAME.size + size
+    return body[_NAME.size : start].decode(), body[start:]
+
+
+def go(until_ns: int, clock_ns: int, messages: Iterable[Message]) -> bytes:
+    """The body of GO."""
+    parts = [TIMES.pack(until_ns, clock_ns)]
+    for topic, data in messages:
+        part = named(topic, data)
+        parts += [LENGTH.pack(len(part)), part]
+    return b"".join(parts)
+
+
+def messages_of(body: bytes) -> Iterator[Message]:
+    """The messages in the body of GO."""
+    start = TIMES.size
+    while start < len(body):
+        (size,) = LENGTH.unpack_from(body, start)
+        start += LENGTH.size
+        yield split(body[start : start + size])
+        start += size

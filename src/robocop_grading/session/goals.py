@@ -1,0 +1,95 @@
+"""The goals that a bridge has sent, as an action server tells of them; what becomes of them is decided elsewhere."""
+
+from typing import Any, Callable, Dict
+
+import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from aro_robocop_goto_as.msg import (
+    GoToPositionActionFeedback,
+    GoToPositionActionGoal,
+    GoToPositionActionResult,
+    GoToPositionFeedback,
+    GoToPositionResult,
+)
+
+from ..handout import ACTION
+
+KEPT = rospy.Duration(5.0)  # for which actionlib's server goes on to tell of a goal that has ended
+ACCEPTED = "This goal has been accepted by the simple action server"  # actionlib's text
+REQUESTED = {GoalStatus.PENDING: GoalStatus.RECALLING, GoalStatus.ACTIVE: GoalStatus.PREEMPTING}
+CANCELLED = {GoalStatus.RECALLING: GoalStatus.RECALLED, GoalStatus.PREEMPTING: GoalStatus.PREEMPTED}
+
+
+class Goals:
+    """Their states, and what is published of them: status, feedback, result."""
+
+    def __init__(self, publish: Callable[[str, Any], object], stamp: Callable[[], rospy.Time]) -> None:
+        self._publish, self._stamp = publish, stamp
+        self._statuses: Dict[str, GoalStatus] = {}
+        self._ended: Dict[str, rospy.Time] = {}
+        self._last_cancel = rospy.Time()
+        self.tell()
+
+    def tell(self) -> None:
+        """Publish the states of all goals."""
+        now = self._stamp()
+        for name, ended in list(self._ended.items()):
+            if ended + KEPT < now:
+                del self._ended[name], self._statuses[name]
+        array = GoalStatusArray(status_list=list(self._statuses.values()))
+        array.header.stamp = now
+        self._publish(f"{ACTION}/status", array)
+
+    def add(self, goal: GoToPositionActionGoal) -> bool:
+        """A goal has come; return whether it is PENDING now. Others are known, or cancelled already."""
+        name, stamp = goal.goal_id.id, goal.goal_id.stamp
+        known = self._statuses.get(name)
+        if known is not None:
+            if known.status == GoalStatus.RECALLING:
+                self.cancel(name, GoToPositionResult())
+            return False
+        self._statuses[name] = GoalStatus(goal.goal_id, GoalStatus.PENDING, "")
+        if stamp and stamp <= self._last_cancel:
+            self._end(name, GoalStatus.RECALLED, GoToPositionResult())
+            return False
+        return True
+
+    def accept(self, name: str) -> None:
+        """It is ACTIVE."""
+        self._statuses[name].status, self._statuses[name].text = GoalStatus.ACTIVE, ACCEPTED
+        self.tell()
+        feedback = GoToPositionActionFeedback(
+            status=self._statuses[name], feedback=GoToPositionFeedback(1.0, 0.0, "on the way")
+        )
+        feedback.header.stamp = self._stamp()
+        self._publish(f"{ACTION}/feedback", feedback)
+
+    def request_cancel(self, request: GoalID) -> None:
+        """A cancel request has come: note it of each goal that it is for, also of one that is still to come."""
+        everything = not request.id and not request.stamp
+        for status in list(self._statuses.values()):
+            before = bool(request.stamp) and status.goal_id.stamp <= request.stamp
+            if (everything or before or request.id == status.goal_id.id) and status.status in REQUESTED:
+                status.status = REQUESTED[status.status]
+                self.tell()
+        if request.id and request.id not in self._statuses:
+            self._statuses[request.id] = GoalStatus(request, GoalStatus.RECALLING, "")
+            self._ended[request.id] = self._stamp()
+        self._last_cancel = max(self._last_cancel, request.stamp)
+
+    def cancel(self, name: str, result: GoToPositionResult) -> None:
+        """It ends as cancelled: RECALLED if it was not accepted, else PREEMPTED."""
+        status = self._statuses[name].status
+        self._end(name, CANCELLED[REQUESTED.get(status, status)], result)
+
+    def succeed(self, name: str) -> None:
+        """It ends as SUCCEEDED."""
+        self._end(name, GoalStatus.SUCCEEDED, GoToPositionResult(True, "there"))
+
+    def _end(self, name: str, status: int, result: GoToPositionResult) -> None:
+        self._statuses[name].status, self._statuses[name].text = status, ""
+        self._ended[name] = self._stamp()
+        message = GoToPositionActionResult(status=self._statuses[name], result=result)
+        message.header.stamp = self._stamp()
+        self._publish(f"{ACTION}/result", message)
+        self.tell()

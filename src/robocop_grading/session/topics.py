@@ -1,0 +1,196 @@
+"""The topics that the grader shares with a hand-in's node: what it sends, what it hears, and who is connected.
+
+Messages are as on TCPROS: each with its length, and after one that could not be serialized the stream has rubbish.
+"""
+
+import io
+import json
+from functools import partial
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Set, Tuple
+
+import genpy
+
+from aro_robocop_goto_as.errors import GraderLostError
+
+from .. import record as rec
+from ..agent import wire
+
+NAME = "/robocop_sim"  # of the grader's node
+MAX_WAITING = 20_000  # messages
+MAX_LISTED = 100  # entries of a message's list
+MAX_TOPICS, MAX_NAME = 1000, 200  # of a node, and characters of a name
+MAX_BYTES = 64 * 1024**2  # of a topic's stream that are no whole message
+
+Handler = Callable[[Any], object]
+
+
+class NodeTopic(NamedTuple):
+    """A topic of the node."""
+
+    type: str
+    checksum: str
+
+
+class _Heard(NamedTuple):
+    kind: Any
+    handler: Handler
+    of: Callable[[Any], Any]
+
+
+def trimmed(message: Any) -> Any:
+    """Truncate a message's strings and lists; returns the message."""
+    for name in message.__slots__:
+        value = getattr(message, name)
+        if isinstance(value, str):
+            setattr(message, name, value[: rec.MOST_TEXT])
+        elif isinstance(value, (list, tuple)):
+            setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MAX_LISTED]])
+        elif isinstance(value, genpy.Message):
+            trimmed(value)
+    return message
+
+
+def header(kind: Any, **more: str) -> Dict[str, str]:
+    """What a connection begins with."""
+    text = {"message_definition": kind._full_text} if hasattr(kind, "_full_text") else {}
+    return {"callerid": NAME, "type": kind._type, "md5sum": kind._md5sum, **text, **more}
+
+
+class Topics:
+    """All of them. What has arrived is handled in the order of the topics' names, whichever was sent first."""
+
+    def __init__(self) -> None:
+        self.published: Dict[str, NodeTopic] = {}  # by the node
+        self.subscribed: Dict[str, NodeTopic] = {}  # likewise
+        self.programs: Set[str] = set()  # of ROS that the node has started, which find no master
+        self._sent: Dict[str, Any] = {}  # topic -> type of what the grader publishes
+        self._latched: Dict[str, bytes] = {}  # topic -> the last message, of those that keep it
+        self._heard: Dict[str, _Heard] = {}
+        self._numbers: Dict[str, int] = {}  # of messages
+        self._outgoing: List[wire.Message] = []
+        self._new: List[Dict[str, str]] = []  # headers
+        self._streams: Dict[str, bytearray] = {}
+        self._arrived: List[Tuple[str, Callable[[], object]]] = []  # topic, and what handles a message
+
+    # -- what the grader does with topics --
+
+    def advertise(self, name: str, kind: Any, latch: bool = False) -> None:
+        """Begin to publish a topic; with `latch` its last message is sent to each new subscriber."""
+        self._sent[name] = kind
+        if latch:
+            self._latched[name] = b""
+        self._new.append(self._sent_header(name))
+
+    def listen(self, name: str, kind: Any, handler: Handler, of: Callable[[Any], Any] = trimmed) -> None:
+        """Have `handler` called with what arrives on a topic; `of` reduces a message to what is kept of it."""
+        self._heard[name] = _Heard(kind, handler, of)
+        self._new.append(header(kind, topic=name))
+
+    def ignore(self, name: str) -> None:
+        """Listen to it no longer."""
+        del self._heard[name]
+
+    def publish(self, name: str, message: Any) -> None:
+        """Send a message."""
+        body = io.BytesIO()
+        if getattr(message, "_has_header", False):
+            message.header.seq = self._numbers[name] = self._numbers.get(name, 0) + 1
+        message.serialize(body)
+        self.send(name, wire.LENGTH.pack(body.tell()) + body.getvalue())
+
+    def send(self, name: str, data: bytes) -> None:
+        """Send a serialized message, with its length."""
+        if name in self._latched:
+            self._latched[name] = data
+        if name in self._latched or self.reaches(name):
+            self._outgoing.append((name, data))
+
+    # -- who is connected --
+
+    def reaches(self, name: str) -> bool:
+        """Return whether the node gets what the grader publishes on a topic."""
+        kind, used = self._sent.get(name), self.subscribed.get(name)
+        return kind is not None and used is not None and used.checksum in ("*", kind._md5sum)
+
+    def hears(self, name: str) -> bool:
+        """Return whether the grader gets what the node publishes on a topic that it listens to."""
+        return name in self.published and self.published[name].checksum == self._heard[name].kind._md5sum
+
+    def other_types(self) -> Tuple[Tuple[str, str, str], ...]:
+        """The topics that the node uses with another type than the grader: name, its type, and the grader's."""
+        kinds = {**{name: heard.kind for name, heard in self._heard.items()}, **self._sent}
+        return tuple(
+            (name, used.type, kinds[name]._type)
+            for name, used in [*self.published.items(), *self.subscribed.items()]
+            if name in kinds and used.checksum not in ("*", kinds[name]._md5sum)
+        )
+
+    def unpublished(self) -> List[str]:
+        """Topics that the node subscribes to and nobody publishes."""
+        return sorted(self.subscribed.keys() - self.published.keys() - self._sent.keys())
+
+    # -- the wire's end --
+
+    def begin(self) -> List[Dict[str, str]]:
+        """A new node is started: the headers of all topics."""
+        self.published, self.subscribed, self.programs, self._new = {}, {}, set(), []
+        self._streams.clear()
+        self._outgoing = [(name, data) for name, data in self._latched.items() if data]
+        return [
+            *(self._sent_header(name) for name in self._sent),
+            *(header(heard.kind, topic=name) for name, heard in self._heard.items()),
+        ]
+
+    def _sent_header(self, name: str) -> Dict[str, str]:
+        return header(self._sent[name], topic=name, latching=str(int(name in self._latched)))
+
+    def take(self) -> Tuple[List[Dict[str, str]], List[wire.Message]]:
+        """The headers of new topics, and the messages, since the last time."""
+        new, outgoing = self._new, self._outgoing
+        self._new, self._outgoing = [], []
+        return new, outgoing
+
+    def tell(self, body: bytes) -> None:
+        """The node has told of its topics. GraderLostError if it can't be read."""
+        try:
+            told: Mapping[str, Any] = json.loads(body)
+            self.published, self.subscribed = (
+                {
+                    str(name)[:MAX_NAME]: NodeTopic(str(kind)[:MAX_NAME], str(checksum))
+                    for name, checksum, kind in told[direction][:MAX_TOPICS]
+                }
+                for direction in ("published", "subscribed")
+            )
+            self.programs.update(str(name)[:MAX_NAME] for name in told["programs"][:MAX_TOPICS])
+        except (KeyError, RecursionError, TypeError, ValueError) as error:
+            raise GraderLostError("the node's topics can't be read") from error
+
+    def receive(self, name: str, data: bytes) -> None:
+        """A part of the stream of the node's messages on a topic."""
+        heard = self._heard.get(name)
+        if heard is None or len(self._arrived) >= MAX_WAITING:  # of a flood beyond that nothing is kept
+            return
+        stream = self._streams.setdefault(name, bytearray())
+        stream += data
+        start = 0
+        while len(stream) - start >= wire.LENGTH.size:
+            (size,) = wire.LENGTH.unpack_from(stream, start)
+            end = start + wire.LENGTH.size + size
+            if end > len(stream):
+                break
+            try:
+                message = heard.of(heard.kind().deserialize(bytes(stream[start + wire.LENGTH.size : end])))
+            except Exception:  # genpy does not document its errors; as rospy, which connects anew
+                stream.clear()
+                return
+            self._arrived.append((name, partial(heard.handler, message)))
+            start = end
+        del stream[:start]
+        if len(stream) > MAX_BYTES:
+            stream.clear()
+
+    def handle_arrived(self) -> None:
+        """Handle what has arrived."""
+        arrived, self._arrived = self._arrived, []
+        for _, handle in sorted(arrived, key=lambda topic_and_handle: topic_and_handle[0]):
+            handle()
