@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, Optional
+from typing import Any, Dict, Optional
 
 import numpy as np
 import rospy
@@ -49,9 +49,10 @@ class Stage:
         self.shown = StepTopics(self.sim)  # to those who watch
         self.robot = self.shown.robots[0]
         self._messages = StepMessages(self.sim, self.shown)
-        self._sensors = {**self.robot.topics, TF: self.shown.tf}
+        self._sensors: Dict[str, str] = {}  # by topic
         self.topics = Topics()
-        for topic in self._sensors.values():
+        for sensor, topic in {**self.robot.topics, TF: self.shown.tf}.items():
+            self._sensors[topic.name] = sensor
             self.topics.advertise(topic.name, topic.data_class)
         self.topics.advertise("/tf_static", TFMessage, latch=True)
         self.topics.advertise("/clock", Clock, latch=True)  # the agent sends it
@@ -137,7 +138,7 @@ class Stage:
 
     def _subscriptions(self) -> Subscriptions:
         """The node's and the viewer's; odometry and transforms always, for the bag."""
-        wanted = {sensor for sensor, topic in self._sensors.items() if self.topics.reaches(topic.name)}
+        wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
         return {**self.shown.subscriptions(), **{sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}}
 
     def _publish(self, observed: Observations) -> None:
@@ -146,7 +147,8 @@ class Stage:
             _make_odd(observed.scans[0])
         messages = self._messages.of(observed)
         for topic, _, data in messages:
-            self.topics.send(topic, data)
+            if topic in self._sensors:  # the agent sends /clock when its callbacks may see it
+                self.topics.send(topic, data)
         if observed.due.clock:
             self.clock_ns = self.sim.stamp_ns
         if self.watch is not None:
