@@ -130,7 +130,10 @@ def approach(value: float, target: float, step: float) -> float:
 
 
 def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
-    """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular."""
+    """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular.
+
+    The other one becomes 0 at once, as the handout's robot turns in place.
+    """
     if isinstance(decision, End):
         return STANDSTILL
     if isinstance(decision, Rotate):

@@ -42,6 +42,7 @@ class Bridge:
         self.feedback: Optional[GoToPositionFeedback] = None  # of the current goal
         self.ending = ""  # of the last goal: state and message
         self.has_ended = threading.Event()  # the goal that was sent last
+        self.sending = threading.Lock()  # held while a goal is sent, which nothing is reported of before
         self.last_status = ""
         self.last_seen = time.monotonic()  # when the server was up
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
@@ -100,10 +101,12 @@ class Bridge:
         if self.clicked.is_set() or rospy.is_shutdown():
             return
         clicked = click.pose.position
-        self.where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
-        self.feedback = None
-        self.has_ended.clear()
-        self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
+        with self.sending:
+            self.where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
+            self.feedback = None
+            self.client.stop_tracking_goal()  # so that an earlier goal's late end is not taken for this one's
+            self.has_ended.clear()
+            self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
         rospy.loginfo("goal sent: %s, for the server %s", self.where, place(position.x, position.y, self.p.goal_frame))
         self.report()
 
@@ -141,8 +144,9 @@ class Bridge:
                 text, log = f"{text}; {discovery.advice()}", rospy.logwarn
             return self.publish_status(text, log)
         self.last_seen = time.monotonic()
-        if self.where and not self.has_ended.is_set():
-            return self.publish_status(self.progress(), log)
+        with self.sending:
+            if self.where and not self.has_ended.is_set():
+                return self.publish_status(self.progress(), log)
         last = f"last goal {self.ending}" if self.where else "no goal yet"
         self.publish_status(f"{ACTION} is ready, {last}", log)
 

@@ -15,7 +15,7 @@ from ...goto_params import GotoParams
 from ...names import place
 from .inputs import Inputs
 
-MAX_JUMPS = 10  # of odometry, after each of which a goal begins anew, as after a reset; later ones are ignored
+MAX_JUMPS = 10  # of odometry in one goal; after each of these, progress and turning start anew, as after a reset
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class GoalExecution:
         self._errors = errors
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
         turning = self._turning.after(decision)
-        if turning.limit(p) < self._turning.limit(p):  # a new attempt, which gets its own time
+        if turning.limit(p) < self._turning.limit(p):  # the rotation was reversed, and is slower now: its time starts anew
             self._progress = None
         self._turning = turning
         self._progress = goto.track_progress(self._progress, errors, self._now, p.stuck_distance, p.stuck_angle)
@@ -82,15 +82,15 @@ class GoalExecution:
     def ending(self, decision: Decision, clearance: float, p: GotoParams) -> Optional[Ending]:
         """How the goal ends by the decision, without progress, or at its timeout; None to go on."""
         elapsed = self._elapsed()
-        idle = 0.0 if self._progress is None else self._now - self._progress.since
+        without_progress = 0.0 if self._progress is None else self._now - self._progress.since
         where = f"{decision.errors.position:.3f} m from the goal {self.where()} after {elapsed:.1f} s"
         if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)
         if isinstance(decision, End):
             obstacle = f"obstacle {clearance:.3f} m ahead (limit {p.obstacle_distance:g} m)"
             return Ending(decision.outcome, f"{obstacle}; {where}")
-        if idle > p.stuck_timeout:
-            return Ending(Outcome.STUCK, f"no progress for {idle:.1f} s; {where}")
+        if without_progress > p.stuck_timeout:
+            return Ending(Outcome.STUCK, f"no progress for {without_progress:.1f} s; {where}")
         if 0.0 < p.goal_timeout < elapsed:
             return Ending(Outcome.TIMEOUT, f"not reached within {p.goal_timeout:g} s; {where}")
         return None

@@ -51,7 +51,7 @@ class Inputs:
         self._tuning = tuning
         self.odom: Optional[Received] = None
         self.scan: Optional[Received] = None
-        self.valid_scan: Optional[Received] = None  # the newest with a valid beam ahead, by clearance_ahead
+        self.valid_scan: Optional[Received] = None  # the newest, except those whose beams ahead are all NaN
         self._arrived = threading.Condition()
 
     def on_odom(self, message: Odometry) -> None:
@@ -136,7 +136,7 @@ class Inputs:
         return self._clearance_in(scan.message) if scan is not None and self._is_recent(scan) else None
 
     def _clearance_in(self, s: LaserScan) -> Optional[float]:
-        if s.angle_increment * (s.angle_max - s.angle_min) < 0.0:  # clockwise or counter-clockwise?
+        if s.angle_increment * (s.angle_max - s.angle_min) < 0.0:  # so it is not known which beams are ahead
             return None
         half_angle = self._tuning.params.obstacle_half_angle
         return clearance_ahead(s.ranges, s.angle_min, s.angle_increment, s.range_min, s.range_max, half_angle)

@@ -2,6 +2,7 @@
 
 import threading
 import time
+import traceback
 from typing import Optional
 
 import actionlib
@@ -48,7 +49,7 @@ class GotoNode:
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         odom = rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
         scan = rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
-        self.ticks = Ticks(1.0 / p.control_rate, (odom, scan), self.on_clock_set_back)
+        self.ticks = Ticks(p.control_rate, (odom, scan), self.on_clock_set_back)
         self.server = actionlib.SimpleActionServer(ACTION, GoToPositionAction, self.execute, auto_start=False)
         self.server.register_preempt_callback(self.ticks.wake)
         rospy.on_shutdown(self.shut_down)
@@ -67,6 +68,7 @@ class GotoNode:
                     self.display.newest = execution
                     rospy.loginfo("goal accepted: %s", execution.where())
                 while ending is None:
+                    # The next one, or the one that was due when this goal came.
                     tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
                     if self.stop_reason:
                         ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
@@ -78,8 +80,11 @@ class GotoNode:
                         ending = self.control_period(execution, tick)
                         if ending is None:
                             self.ticks.answer(tick)
-            except RobocopError as error:  # odometry or a scan can't be used; actionlib reports other errors
+            except RobocopError as error:  # odometry or a scan can't be used
                 ending = Ending(Outcome.ERROR, str(error))
+            except Exception as error:  # a fault of this program: also then the goal ends below, once
+                rospy.logerr(traceback.format_exc())
+                ending = Ending(Outcome.ERROR, f"{type(error).__name__}: {error}")
             finally:
                 self.drive(STANDSTILL)
             self.set_terminal_state(execution, ending)

@@ -1,7 +1,9 @@
-"""The ticks of the control loop: whole multiples of its period of ROS time, 0.1 s, 0.2 s, ..."""
+"""The ticks of the control loop: whole multiples of its period of ROS time, as at 10 Hz 0.1 s, 0.2 s, ..."""
 
 import contextlib
+import math
 import threading
+from fractions import Fraction
 from typing import Callable, Optional, Sequence
 
 import rosgraph
@@ -22,14 +24,14 @@ class Ticks:
     Unlike rospy.Rate, the wait can be interrupted, as by a cancel while /clock is paused.
     """
 
-    def __init__(self, period: float, inputs: Sequence[rospy.Subscriber], on_set_back: Callable[[str], None]) -> None:
-        """`period` [s]; `on_set_back` is called with the reason when simulated time was set back.
+    def __init__(self, rate: float, inputs: Sequence[rospy.Subscriber], on_set_back: Callable[[str], None]) -> None:
+        """`rate` [Hz]; `on_set_back` is called with the reason when simulated time was set back.
 
         The first answer is sent once the `inputs` are connected; from then on a simulator in lockstep waits for this
         node.
         """
         self.command: Optional[Twist2D] = None  # since the last answer
-        self._period_ns = round(period * NANOSECONDS)
+        self._rate = Fraction(rate) / NANOSECONDS  # ticks per nanosecond, exactly
         self._inputs, self._on_set_back = inputs, on_set_back
         self._has_joined = False
         self._has_warned = False
@@ -38,8 +40,8 @@ class Ticks:
         self._is_simulated = rospy.get_param("/use_sim_time", False)
         self.answers = rospy.Publisher("tick_answer", TickAnswer, queue_size=10)
         self.answered = self.newest()  # the newest tick [ns] that is done
-        # rospy sets its time before it calls this, as its own subscriber was there first.
-        rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
+        if self._is_simulated:  # rospy sets its time before it calls this, as its own subscriber was there first
+            rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
 
     def _on_clock(self, message: Clock) -> None:
         before, self._clock = self._clock, message.clock
@@ -72,14 +74,21 @@ class Ticks:
 
     def newest(self) -> int:
         """The time of the newest tick [ns]."""
-        return convert.to_ns(rospy.get_rostime()) // self._period_ns * self._period_ns
+        return self._tick(convert.to_ns(rospy.get_rostime()))
+
+    def _tick(self, time_ns: int, later: int = 0) -> int:
+        """The time of the newest tick at a time [ns], or of one that is `later`; rounded down as the simulator does."""
+        number = math.ceil((time_ns + 1) * self._rate) - 1 + later
+        return math.floor(number / self._rate)
 
     def wait_for_next(self, last_ns: int, is_interrupted: Callable[[], bool]) -> int:
         """Wait until there is a later tick than the last one, or for an interruption; the newest tick [ns]."""
         with self._changed:
             while self.newest() <= last_ns and not is_interrupted():
-                remaining = last_ns + self._period_ns - convert.to_ns(rospy.get_rostime())
-                self._changed.wait(None if self._is_simulated else remaining / NANOSECONDS)
+                if not self._is_simulated:  # a wall clock may be set back: the ticks go on from there
+                    last_ns = self.answered = min(last_ns, self.newest())
+                remaining = self._tick(last_ns, later=1) - convert.to_ns(rospy.get_rostime())
+                self._changed.wait(None if self._is_simulated else max(0, remaining) / NANOSECONDS)
         return self.newest()
 
     def answer(self, tick_ns: int) -> None:

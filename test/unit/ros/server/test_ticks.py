@@ -13,6 +13,7 @@ from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.ros.graph import Topic
 from aro_robocop_goto_as.ros.server import ticks
 from aro_robocop_goto_as.ros.server.ticks import Ticks
+from aro_robocop_goto_as.simulation.schedule import stamp_ns
 
 MS = 1_000_000  # [ns]
 
@@ -20,7 +21,7 @@ MS = 1_000_000  # [ns]
 class Time:
     """Simulated time, whose messages rospy hands to the ticks; the answers to ticks."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, rate: float = 10.0) -> None:
         self.now = rospy.Time()
         self.set_back: List[str] = []
         self.answers: List[Any] = []
@@ -36,7 +37,7 @@ class Time:
         monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: self)
         self.connections = {"answers": 1, "odom": 1}
         odom: Any = SimpleNamespace(get_num_connections=lambda: self.connections["odom"])
-        self.ticks = Ticks(0.1, [odom], self.set_back.append)
+        self.ticks = Ticks(rate, [odom], self.set_back.append)
 
     def get_num_connections(self) -> int:
         """As a publisher."""
@@ -70,6 +71,18 @@ def test_ticks_are_multiples_of_the_period_and_those_that_were_missed_are_left_o
     assert newest == [0, 0, 100, 100, 400, 500]
 
 
+@pytest.mark.parametrize("rate", [1, 5, 6, 7, 10, 15, 30, 60])
+def test_each_tick_of_the_simulator_is_one_and_the_nanosecond_before_is_not(
+    monkeypatch: pytest.MonkeyPatch, rate: int
+) -> None:
+    time = Time(monkeypatch, rate)
+    for tick in range(1, 3 * rate + 1):
+        stamp, previous = stamp_ns(tick, rate), stamp_ns(tick - 1, rate)
+        for now, newest in ((stamp, stamp), (stamp - 1, previous)):
+            time.now = rospy.Time(0, now)
+            assert time.ticks.newest() == newest
+
+
 @pytest.mark.parametrize("before", [0, 99])
 def test_wait_ends_at_the_next_tick(time: Time, before: int) -> None:
     time.reach(before)
@@ -95,9 +108,23 @@ def test_wait_ends_by_an_interruption_while_the_clock_stands(time: Time) -> None
 def test_on_the_wall_clock_nobody_has_to_tell_of_a_tick(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
     monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time()))
-    ticks = Ticks(0.01, [], time.set_back.append)
+    ticks = Ticks(100.0, [], time.set_back.append)
     last = ticks.newest()
     assert ticks.wait_for_next(last, never) > last
+
+
+def test_ticks_go_on_when_the_wall_clock_is_set_back(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
+    begin, ahead = wall.time(), [3600.0]
+    monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time() + ahead[0]))
+    ticks = Ticks(100.0, [], time.set_back.append)
+    last = ticks.newest()
+    ahead[0] = 0.0
+    now = ticks.wait_for_next(last, never)
+    assert begin * 1e9 < now < last
+    ticks.answer(now)
+    assert ticks.wait_for_next(ticks.answered, never) > now
+    assert time.set_back == []
 
 
 def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time: Time) -> None:
