@@ -72,7 +72,7 @@ class GoalExecution:
         self._errors = errors
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
         turning = self._turning.after(decision)
-        if turning.limit(p) < self._turning.limit(p):  # the rotation was reversed, and is slower now: its time starts anew
+        if turning.limit(p) < self._turning.limit(p):  # reversed, and slower now: its time starts anew
             self._progress = None
         self._turning = turning
         self._progress = goto.track_progress(self._progress, errors, self._now, p.stuck_distance, p.stuck_angle)
