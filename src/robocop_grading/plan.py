@@ -23,7 +23,7 @@ HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 SPACING = 40.0  # [m] between the scenarios' sites; more than twice the lidar's range of 10 m
 HEADING = 0.7  # [rad] yaw of each site's odom frame in the world, so that confusing the two frames has an effect
 PARTS = ("server", "bridge")
-FARTHEST = SPACING / 2.0  # [m] largest coordinate within a scenario
+MAX_OFFSET = SPACING / 2.0  # [m] largest coordinate within a scenario
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
 MIDDLE = 0  # the seed with which every range stands for its middle
@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 def _numbers(count: int) -> Any:
     """A field for coordinates and sizes."""
-    return several(count, -FARTHEST, FARTHEST)
+    return several(count, -MAX_OFFSET, MAX_OFFSET)
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Step:
     place: Tuple[float, ...] = _numbers(3)  # x, y [m], yaw [rad] in the odom frame of the scenario's start
 
     def conflicts(self) -> List[str]:
-        """Whether there is not exactly one thing to do, in words."""
+        """Return whether there is not exactly one thing to do, in words."""
         things = sum(map(bool, (self.goal, self.cancel, self.place)))
         return [] if things == 1 else ["expected one of goal, cancel and place in a step"]
 

@@ -17,7 +17,7 @@ PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING,
 STATUS_NAMES = tuple(
     "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
 )  # actionlib_msgs/GoalStatus
-MOST_TEXT = 2_000  # characters that are kept of a text from the submission
+MAX_TEXT = 2_000  # characters that are kept of a text from the submission
 TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 

@@ -13,11 +13,11 @@ from typing import List, Tuple
 from . import connections, files, ros, stuck, wire
 from .scheduler import allocate_lock, scheduler
 
-STARTING = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
-PATIENCE = 0.5  # [s] likewise for what it does at one time ...
+STARTING_TIME = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
+REQUEST_TIME = 0.5  # [s] likewise for what it does at one time ...
 TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
-IMPATIENCE = 0.002  # [s] as long as it goes on, and
-BRIEFLY = 0.2  # [s] once it has come to an end
+LOOP_TIME = 0.002  # [s] as long as it goes on, and
+AFTER_LOOP_TIME = 0.2  # [s] once it has come to an end
 TURN = 0.05  # [s] of processor time that other threads leave to one
 MANY = 100  # times that threads are woken between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
@@ -32,7 +32,7 @@ class Channel:
         self._writing, self._turn = allocate_lock(), allocate_lock()
         self._turn.acquire()  # free while the grader waits for an answer
         os.register_at_fork(after_in_child=self._begin_anew)
-        self._allowance, self._patience = STARTING, PATIENCE
+        self._allowance, self._full_allowance = STARTING_TIME, REQUEST_TIME
         self._exhausted = 0  # requests in a row at whose end the node still ran
         self._busy = False  # the node still ran at the end of the last request
         self._programs = 0  # of ROS that the grader knows of
@@ -160,7 +160,7 @@ class Channel:
                     if count % MANY:
                         continue
                 elif is_over and not stuck.others.work:
-                    self._allowance, self._exhausted = self._patience, 0
+                    self._allowance, self._exhausted = self._full_allowance, 0
                     return True
                 if idle:
                     files.wait_for_more(look)
@@ -175,6 +175,6 @@ class Channel:
                 scheduler.wait_for_none_of(set(scheduler.running))
                 self._exhausted += 1
                 if self._exhausted >= TIMES:
-                    self._allowance, self._patience = IMPATIENCE, BRIEFLY
+                    self._allowance, self._full_allowance = LOOP_TIME, AFTER_LOOP_TIME
                 return False
         return False

@@ -223,7 +223,7 @@ class Scheduler:
             return not self.running and not self.starting
 
     def is_unawaited(self) -> bool:
-        """Whether all threads that run are such that nobody waits for them."""
+        """Return whether all threads that run are such that nobody waits for them."""
         with self.guard:
             return not self.starting and self.running <= self.unawaited
 

@@ -93,7 +93,7 @@ class Results:
             tree.remove(unfinished)
 
     def has(self, hand_in: HandIn) -> bool:
-        """Whether the hand-in was graded with its present content, plan and grader."""
+        """Return whether the hand-in was graded with its present content, plan and grader."""
         try:
             stamp = json.loads((self.folder / hand_in.name / STAMP).read_text())
         except (OSError, ValueError):

@@ -90,7 +90,7 @@ def _processor_time(process: "psutil.Process") -> float:
 
 
 def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:
-    """Whether processes use more than `limit` bytes of memory together.
+    """Return whether processes use more than `limit` bytes of memory together.
 
     Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
     once, are only read when the resident sizes exceed the limit.

@@ -38,7 +38,7 @@ def prefix() -> Tuple[str, ...]:
 
 
 def has_killed() -> bool:
-    """Whether the kernel has killed a process of the caller's group because the group exceeded LIMIT."""
+    """Return whether the kernel has killed a process of the caller's group because the group exceeded LIMIT."""
     try:
         (name,) = [line[3:] for line in OWN.read_text().splitlines() if line.startswith("0::")]
         group = Path(f"{GROUPS}{name}")

@@ -245,4 +245,4 @@ class BridgeRun(Run):
 def _text(text: str, message: Any) -> str:
     """A line about a published report: a state's number, or the words that the message has."""
     content = getattr(message, "status", getattr(message, "data", message))
-    return f"{text}: {content}"[: rec.MOST_TEXT]
+    return f"{text}: {content}"[: rec.MAX_TEXT]

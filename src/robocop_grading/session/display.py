@@ -56,7 +56,7 @@ class Display:
 
     @property
     def runs(self) -> bool:
-        """Whether RViz or the page is running; asked in every step, so it does not read the log."""
+        """Return whether RViz or the page is running; asked in every step, so it does not read the log."""
         return self._processes[-1].poll() is None
 
     @property

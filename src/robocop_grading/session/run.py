@@ -124,7 +124,7 @@ class Run:
         )
 
     def is_dead(self) -> bool:
-        """Whether there is no node, or it has ended."""
+        """Return whether there is no node, or it has ended."""
         return self.stage.node is None or self.stage.node.status() is not None
 
     def close(self) -> None:

@@ -18,11 +18,11 @@ from aro_robocop_goto_as.simulation.simulator import Simulator
 
 from ..agent import wire
 from ..handout import ACTION
-from ..plan import FARTHEST
+from ..plan import MAX_OFFSET
 from .step_messages import StepMessage
 from .topics import header
 
-MOST_BAG = 32 * 1024**2  # bytes
+MAX_BAG = 32 * 1024**2  # bytes
 MARKERS = "/aro_robocop_goto_as_node/markers"  # of this package's server, in the bag only: a replay shows them
 # What holds until the next message: a replay that begins later sends the last one before that, by rosbag's own rule.
 LASTING = ("/tf_static", "/robocop_sim/world", "/joint_states", f"{ACTION}/goal", MARKERS)
@@ -77,7 +77,7 @@ class ScenarioBag:
         self._write(topic, message, max(convert.to_time(self._sim.stamp_ns), rospy.Time(0, 1)))
 
     def _write(self, topic: str, message: Any, stamp: rospy.Time, raw: bool = False) -> None:
-        if self._bag is not None and self._file.tell() < MOST_BAG:
+        if self._bag is not None and self._file.tell() < MAX_BAG:
             self._bag.write(
                 topic, message, stamp, raw, header(message, topic=topic, latching="1") if topic in LASTING else None
             )
@@ -97,7 +97,7 @@ class ScenarioBag:
         near = [
             marker
             for marker in world_markers(self._sim.world, self._frames.world_frame, self._sim.time)
-            if abs(marker.pose.position.x - site.x) < FARTHEST
+            if abs(marker.pose.position.x - site.x) < MAX_OFFSET
         ]
         self.write("/robocop_sim/world", MarkerArray(near))
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))

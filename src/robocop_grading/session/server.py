@@ -67,7 +67,7 @@ class ServerRun(Run):
         return up and not self.death_recorded
 
     def _connected(self) -> bool:
-        """Whether all five topics are connected, so that no message is lost."""
+        """Return whether all five topics are connected, so that no message is lost."""
         heard = all(self.topics.hears(f"{ACTION}/{name}") for name in ("result", "feedback", "status"))
         return heard and self.topics.reaches(GOAL) and self.topics.reaches(CANCEL)
 
@@ -112,13 +112,13 @@ class ServerRun(Run):
         return record
 
     def _unclean(self, record: Record) -> bool:
-        """Whether the node has to be restarted, so that its state does not affect the next scenario."""
+        """Return whether the node has to be restarted, so that its state does not affect the next scenario."""
         text = "\n".join(line.text for line in record.lines)
         ended = all(len(rec.results_of(record, goal)) == 1 for goal in record.goals)
         return bool(record.deaths) or not ended or self._unexpected(record) or "Traceback" in text or "[ERROR]" in text
 
     def _unexpected(self, record: Record) -> bool:
-        """Whether a goal ended in another state than it should, in the open by an abort, or elsewhere by a success."""
+        """Return whether a goal ended in another state than it should: openly by an abort, elsewhere by a success."""
         for goal in record.goals:
             for result in rec.results_of(record, goal)[:1]:
                 at_end = rec.samples_between(record, result.time - AT_END, result.time)

@@ -42,7 +42,7 @@ def trimmed(message: Any) -> Any:
     for name in message.__slots__:
         value = getattr(message, name)
         if isinstance(value, str):
-            setattr(message, name, value[: rec.MOST_TEXT])
+            setattr(message, name, value[: rec.MAX_TEXT])
         elif isinstance(value, (list, tuple)):
             setattr(message, name, [trimmed(it) if isinstance(it, genpy.Message) else it for it in value[:MAX_LISTED]])
         elif isinstance(value, genpy.Message):

@@ -32,7 +32,9 @@ from ..plan import Plan, world_of
 from ..viewer import Viewer
 from .display import Display
 
-PATIENCE = 60.0  # [s, wall] for RViz to come up, ten on a busy machine without a GPU; and for a browser to be opened
+DISPLAY_TIMEOUT = (
+    60.0  # [s, wall] for RViz to come up, ten on a busy machine without a GPU; and for a browser to be opened
+)
 AWAY = 10.0  # [s, wall] without a browser, after which the run continues at full speed; a reload takes one or two
 POLL = 0.05  # [s, wall]
 PATH_COLOR = ColorRGBA(0.35, 0.78, 0.98, 0.9)
@@ -82,17 +84,17 @@ class Watch:
     def open(self) -> None:
         """Start the viewer, and wait until it has subscribed to everything it shows.
 
-        WatchError if it does not. The page does so when a browser is opened, and is waited for no longer than PATIENCE.
+        WatchError if it does not. The page does so when a browser is opened, and is waited for as long.
         """
         self._display.start()
         started = time.monotonic()
         while not all(topic.get_num_connections() for topic in self._shown()):
             if not self._display.runs:
                 raise WatchError(self._display.end)
-            if time.monotonic() - started > PATIENCE:
+            if time.monotonic() - started > DISPLAY_TIMEOUT:
                 if self._display.is_page:
                     break
-                raise WatchError(f"{self._display.name} did not come up within {PATIENCE:g} s")
+                raise WatchError(f"{self._display.name} did not come up within {DISPLAY_TIMEOUT:g} s")
             time.sleep(POLL)
         self._seen = time.monotonic()
 
@@ -104,7 +106,7 @@ class Watch:
 
     @property
     def is_open(self) -> bool:
-        """Whether RViz is running, or a browser shows the page."""
+        """Return whether RViz is running, or a browser shows the page."""
         if not self._display.is_page:
             return self._display.runs
         if self._scene.get_num_connections():

@@ -10,7 +10,7 @@ from std_msgs.msg import Float64, String
 
 from aro_robocop_goto_as.errors import GraderLostError
 from robocop_grading.agent import wire
-from robocop_grading.record import MOST_TEXT
+from robocop_grading.record import MAX_TEXT
 from robocop_grading.session.topics import MAX_WAITING, Topics
 
 
@@ -60,9 +60,9 @@ def test_of_a_flood_and_of_a_long_text_a_part_is_kept(topics):
     topics.receive("/unknown", b"anything")
     topics.handle_arrived()
     assert len(topics.heard) == MAX_WAITING
-    topics.receive("/a", serialized(String("x" * 10 * MOST_TEXT)))
+    topics.receive("/a", serialized(String("x" * 10 * MAX_TEXT)))
     topics.handle_arrived()
-    assert len(topics.heard[-1][1]) == MOST_TEXT
+    assert len(topics.heard[-1][1]) == MAX_TEXT
 
 
 def test_only_what_the_node_hears_is_sent_and_what_is_latched(topics):
