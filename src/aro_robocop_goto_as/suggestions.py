@@ -1,6 +1,8 @@
-"""The end of a message about a mistyped word: "; did you mean ...?"."""
+"""The end of a message about an unknown word: which ones there are, or which one was meant."""
 
-from typing import Iterable
+from typing import Collection, Iterable
+
+MAX_LINE = 78  # characters; `rosservice call` wraps a longer text
 
 
 def did_you_mean(word: str, known: Iterable[str], form: str = "{}") -> str:
@@ -9,3 +11,9 @@ def did_you_mean(word: str, known: Iterable[str], form: str = "{}") -> str:
 
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {form.format(close[0])}?" if close else ""
+
+
+def unknown(text: str, word: str, known: Collection[str]) -> str:
+    """A message about an unknown word, with the known ones if it stays in one line, else with the one meant."""
+    full = f"{text}; there are: {', '.join(known) or 'none'}"
+    return full if len(full) <= MAX_LINE else text + did_you_mean(word, known)

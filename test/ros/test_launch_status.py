@@ -64,14 +64,17 @@ def test_launch_fails_and_shows_why_when_the_simulator_refuses_its_parameters(la
     [
         ("model:=../../etc/passwd", "there is no model '../../etc/passwd'; known are: burger, "),
         pytest.param("config:=/no/such.yaml", "file does not exist [/no/such.yaml]", marks=pytest.mark.slow),
+        pytest.param("odom_tf:=Maybe", "RLException: odom_tf:=Maybe: ", marks=pytest.mark.slow),
+        pytest.param("gui:=false cmd_vel_timeout:=abc", "RLException: cmd_vel_timeout:=abc: ", marks=pytest.mark.slow),
+        pytest.param("state_publisher:=no", "ValueError: state_publisher:=no: no is not", marks=pytest.mark.slow),
         pytest.param("seed:=12345678901234567890123", "seed: expected int, got str", marks=pytest.mark.slow),
     ],
 )
 def test_launch_explains_an_impossible_argument_without_a_traceback(launch, argument, words):
-    launched = launch(argument)
+    launched = launch(*argument.split())
     assert launched.wait_for_exit() == 1
     assert words in launched.output
-    assert "Traceback" not in launched.output
+    assert "Traceback" not in launched.output and " xml is " not in launched.output
 
 
 @pytest.mark.slow

@@ -63,7 +63,7 @@ ORDER = {
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading probes sim_params process robot names sensors simulation world",
-    "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation world",
+    "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation suggestions world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
     "ros.web": "errors geometry param_loading ros ros.client names web web_params",

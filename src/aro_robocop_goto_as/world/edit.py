@@ -5,6 +5,7 @@ from dataclasses import replace
 from ..errors import WorldError
 from ..geometry import Pose3D, compose, compose3, inverse3
 from ..reading import parse_xml, reading
+from ..suggestions import unknown
 from .ground import levelled
 from .model import Obstacle, World
 from .sdf.reader import read_model
@@ -70,7 +71,7 @@ def with_model_at(world: World, name: str, pose: Pose3D) -> World:
 
 def _require_model(world: World, name: str) -> None:
     if name not in world.models:
-        raise WorldError(f"there is no model '{name}'; there are: {', '.join(world.models) or 'none'}")
+        raise WorldError(unknown(f"there is no model '{name}'", name, world.models))
 
 
 def _belongs(obstacle: Obstacle, model: str) -> bool:

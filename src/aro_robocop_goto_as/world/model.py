@@ -127,8 +127,9 @@ class World:
 
     obstacles: in the file's order, the ground included
     spawn: world_from_footprint of a robot at the start [m, rad]
-    has_spawn: whether the file says so; otherwise `spawn` is where a robot saved with the world stood, or
-        the origin, and there may be no room for a robot
+    has_spawn: whether the file says so; otherwise there may be no room for a robot
+    has_saved_robot: whether a robot was saved with the world; its pose is `spawn` if the file does not say one, which
+        without such a robot is the origin
     ignored: what may have an effect in Gazebo, such as "plugin 'lift' (line 4)"
     approximated: each element that differs from the file, such as "'hill/link/c' is left out: <heightmap> (line 4)"
     path: the file, as it was given to load_world
@@ -145,6 +146,7 @@ class World:
     models: Mapping[str, Pose3D] = field(default_factory=dict)
     occupancy: Optional[Occupancy] = None
     has_spawn: bool = True
+    has_saved_robot: bool = False
     ground: float = 0.0
     approximated: Tuple[str, ...] = ()
 

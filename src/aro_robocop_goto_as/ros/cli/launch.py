@@ -6,6 +6,7 @@ roslaunch itself exits with 0 even when a required node failed.
 import argparse
 import contextlib
 import os
+import re
 import sys
 import time
 from pathlib import Path
@@ -61,7 +62,7 @@ def launch(arguments: List[str]) -> int:
         print("[FATAL] PARAMETER: robots: too many for a launch file", file=sys.stderr)
     except (roslaunch.RLException, rospkg.ResourceNotFound, ValueError, OSError) as error:
         if not deferred.interrupted:  # Ctrl-C also ends the commands that roslaunch runs for parameters
-            print(f"[FATAL] {type(error).__name__}: {error}", file=sys.stderr)
+            print(f"[FATAL] {type(error).__name__}: {_told(error, options.file)}", file=sys.stderr)
     return FAILED
 
 
@@ -115,6 +116,19 @@ def _check(words: List[str]) -> None:
         from . import preflight
 
         preflight.check(given)
+
+
+def _told(error: Exception, words: List[str]) -> str:
+    """An error's text without the XML that roslaunch appends, after each NAME:=VALUE whose value it refuses."""
+    text = re.split(r"\s*\w+ xml is ", str(error), maxsplit=1)[0]
+    refused = []
+    for word in words:
+        _, separator, value = word.partition(":=")
+        value = re.escape(value.strip())
+        # float() and int() quote the value; roslaunch writes that of a boolean in lower case.
+        if separator and re.search(rf"(^|: ){value} is not a '|: '{value}'", text, re.IGNORECASE):
+            refused.append(word)
+    return ": ".join([*refused, text])
 
 
 def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:

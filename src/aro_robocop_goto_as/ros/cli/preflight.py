@@ -13,6 +13,7 @@ from ...param_loading import declared, from_dict
 from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...sim_params import SimParams
+from ...suggestions import did_you_mean
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
@@ -29,6 +30,8 @@ def check(given: Mapping[str, str]) -> None:
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))
     urdf_of(p.robots.model, share())
+    if given.get("profile"):
+        _require_profile(given["profile"])
     parse_spawn(p.robots.spawn, Pose2D())
     text = p.robots.robots.strip()
     if text.isdecimal():
@@ -40,6 +43,13 @@ def check(given: Mapping[str, str]) -> None:
         if name.endswith("config") and value.endswith(".yaml") and os.path.isfile(value):
             with reading(value, ParameterError, "parameters in YAML"):
                 require_parameters(rosparam.yaml.safe_load(Path(value).read_text(encoding="utf-8")) or {}, value)
+
+
+def _require_profile(name: str) -> None:
+    known = sorted(path.stem for path in Path(share(), "config", "profiles").glob("*.yaml"))
+    if name not in known:
+        hint = did_you_mean(name, known)
+        raise ParameterError(f"profile: there is no profile {name!r}; known are: {', '.join(known)}{hint}")
 
 
 def require_parameters(value: Any, where: str) -> None:

@@ -18,6 +18,7 @@ from ...names import prefixed
 from ...robot.fleet import RobotState
 from ...robot.model import WHEEL_JOINTS, RobotModel
 from ...simulation.simulator import Simulator
+from ...suggestions import unknown
 from .. import convert
 from ..publishing.publisher import publisher
 
@@ -96,7 +97,7 @@ def state_of(kind: str, name: str, states: Sequence[State]) -> State:
         return name, Pose3D(), convert.to_twist_msg(STANDSTILL)
     known = {state[0]: state for state in states}
     if name not in known:
-        raise FrameError(f"{kind} [{name}] does not exist; there are: {', '.join(known)}")
+        raise FrameError(unknown(f"{kind} [{name}] does not exist", name, known))
     return known[name]
 
 

@@ -16,6 +16,10 @@ from ...simulation.time_control import FactorReport
 from .. import convert
 from ..publishing.publisher import publisher
 
+# Without lockstep, above this real-time factor, a controller at the lab's 10 Hz has less than 5 ms [wall] for each
+# command. That is CPython's switch interval, for which one of its threads may wait for another one.
+MAX_FREE_FACTOR = 20.0
+
 
 class StatusTopics:
     """One report per second of wall time, and one whenever the set of controllers changes."""
@@ -55,7 +59,8 @@ class StatusTopics:
             text = (
                 "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower"
             )
-            rospy.logwarn(f"{text}, results are the same; a summary follows at the end", report.reached, report.asked)
+            text += "" if self._outruns_controllers() else ", results are the same"
+            rospy.logwarn(f"{text}; a summary follows at the end", report.reached, report.asked)
             rospy.on_shutdown(self._summarize)
 
     def _summarize(self) -> None:
@@ -63,20 +68,26 @@ class StatusTopics:
         text = "the machine was too slow in %d of %d s: real-time factor %.2f on average then, %.2f at the slowest"
         rospy.logwarn(text, len(self._behind), self._running, mean, slowest)
 
+    def _outruns_controllers(self) -> bool:
+        """Return whether simulated time may run too fast for controllers, for which it does not wait."""
+        factor = self._simulation.time_control.pacer.factor
+        return not (self._simulation.controllers.in_lockstep or 0.0 < factor <= MAX_FREE_FACTOR)
+
     def warn_of_full_speed(self, connected: Connected) -> None:
-        """Warn once that controllers are too slow for simulated time that waits neither for the clock nor for them."""
-        simulation = self._simulation
-        is_unbounded = simulation.time_control.pacer.factor == 0.0 and not simulation.controllers.in_lockstep
-        if not is_unbounded or self._has_warned_of_full_speed or simulation.time_control.paused:
+        """Warn once of controllers that may be too slow for simulated time that does not wait for them."""
+        time_control = self._simulation.time_control
+        if not self._outruns_controllers() or self._has_warned_of_full_speed or time_control.paused:
             return
         nodes = sorted({controller.node for controller in connected()})
         if nodes:
             self._has_warned_of_full_speed = True
             rospy.logwarn(
-                "real_time_factor 0 without lockstep: simulated time runs %.0f times as fast as the wall clock, and %s "
-                "can't keep up; use sync:=lockstep, or a real_time_factor such as 10",
+                "real_time_factor %g without lockstep: simulated time runs %.0f times as fast as the wall clock, and "
+                "%s %s keep up; use sync:=lockstep, or a real_time_factor such as 10",
+                time_control.pacer.factor,
                 self._report.reached,
                 " and ".join(nodes),
+                "may not" if time_control.pacer.factor else "can't",
             )
 
     def warn_of(self, tick: TickReport) -> None:

@@ -110,12 +110,12 @@ def read_spec(path: str) -> MapSpec:
 
 
 def _image(entries: _Entries) -> Tuple[str, str]:
-    """The path of the image, and what is to be said of it: another machine's path means the file of that name here."""
+    """The path of the image, and what is to be said of it: a path that is not here means the file of that name here."""
     folder, given = os.path.dirname(entries.path), entries.text("image", f"the name of a {SUPPORTED} file")
     image, name = os.path.join(folder, given), ntpath.basename(given)  # which knows both machines' separators
     if os.path.isfile(image):
         return image, ""
     beside = os.path.join(folder, name)
-    if (os.path.isabs(given) or ntpath.isabs(given)) and os.path.isfile(beside):
+    if os.path.isfile(beside):
         return beside, f"there is no image {given}; {name} beside the map's file is used"
     raise entries.error("image", f"a {SUPPORTED} file, but there is no file {image}")

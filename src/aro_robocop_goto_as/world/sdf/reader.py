@@ -89,11 +89,13 @@ class _Parent:
     pose: world_from_parent
     names: of the models and links, the outermost first
     motion: the scripted motion of the innermost model that has one
+    static: whether one of the models is
     """
 
     pose: Pose3D = Pose3D()
     names: Tuple[str, ...] = ()
     motion: Optional[Motion] = None
+    static: bool = False
 
 
 class _Reader:
@@ -123,6 +125,7 @@ class _Reader:
             self.path,
             self.models,
             has_spawn=self.spawn is not None,
+            has_saved_robot=self.saved_robot is not None,
             approximated=tuple(dict.fromkeys(self.approximated)),
         )
 
@@ -171,7 +174,7 @@ class _Reader:
                 self.model(model, parent, include, new_name, new_pose, static)
             return
         if is_robot_name(model_name) and self.may_be_robot(parent, static):
-            self.leave_out_robot(new_name or model_name, new_pose or parent.pose, include)
+            self.leave_out_robot(new_name or model_name, parent, new_pose or parent.pose, include)
             return
         try:
             with xml.about(include):
@@ -208,7 +211,7 @@ class _Reader:
         static = xml.boolean(model, "static") if static is None else static
         if self.may_be_robot(parent, static) and is_robot(model):
             name = new_name or xml.name_of(model)
-            self.leave_out_robot(name, pose, model if include is None else include)
+            self.leave_out_robot(name, parent, pose, model if include is None else include)
             return name
         self.check_children(model, "include", "link", "model", "pose", "static")
         if model.get("placement_frame"):
@@ -223,7 +226,7 @@ class _Reader:
         motion = motion_of(model, pose) or parent.motion
         if not (static or parent.names or motion):
             self.report(f"motion of model '{name}', which is not static", model)
-        inherited = _Parent(pose, names, motion)
+        inherited = _Parent(pose, names, motion, bool(static) or parent.static)
         xml.require_unique_names(model.iterchildren("link"))
         for link in model.iterchildren("link"):
             self.link(link, inherited)
@@ -232,13 +235,15 @@ class _Reader:
 
     def may_be_robot(self, parent: _Parent, static: Optional[bool]) -> bool:
         """Return whether a model of this parent is left out if it looks like a robot."""
-        return not (self.keeps_robots or parent.names or static)
+        return not (self.keeps_robots or parent.static or static)
 
-    def leave_out_robot(self, name: str, pose: Pose3D, element: Element) -> None:
+    def leave_out_robot(self, name: str, parent: _Parent, pose: Pose3D, element: Element) -> None:
         """Report a robot that was saved with the world, and keep the pose of the first one."""
         is_start = self.spawn is None and self.saved_robot is None
-        self.report(f"the robot '{name}' is left out" + is_start * ", and a robot starts at its pose", element, True)
-        self.saved_robot = self.saved_robot or self.state.get(name, pose).on_plane()
+        starts = ", and a robot starts at its pose if there is room" if is_start else ""
+        path = "/".join((*parent.names, name))
+        self.report(f"the robot '{path}' is left out{starts}", element, is_different=True)
+        self.saved_robot = self.saved_robot or self.state.get(path, pose).on_plane()
 
     def unused_name(self, name: str, parent: _Parent, element: Element) -> str:
         """A model's name, with a number if another model beside it has the same one."""

@@ -19,10 +19,10 @@ def is_robot_name(name: str) -> bool:
 
 
 def is_robot(model: Element) -> bool:
-    """Return whether a <model> has the name or the links of a known robot, or a plugin that drives it."""
-    links = [str(link.get("name", "")) for link in model.iter("link")]
+    """Return whether a <model> itself has the name or the links of a known robot, or a plugin that drives it."""
+    links = [str(link.get("name", "")) for link in model.iterchildren("link")]
     has_links = not _BASES.isdisjoint(links) and sum("wheel" in name for name in links) >= _WHEELS
-    return is_robot_name(str(model.get("name", ""))) or has_links or any(map(_is_drive, model.iter("plugin")))
+    return is_robot_name(str(model.get("name", ""))) or has_links or any(map(_is_drive, model.iterchildren("plugin")))
 
 
 def _is_drive(plugin: Element) -> bool:

@@ -14,6 +14,7 @@ from aro_robocop_goto_as.ros.cli.preflight import check, require_parameters
         ({"world": "stag_1"}, "there is no world 'stag_1'"),
         ({"world": "stag_1"}, "; did you mean stage_1?"),
         ({"model": "burgr"}, "; did you mean burger?"),
+        ({"profile": "gazbo"}, "known are: gazebo, real, turtlebot3_gazebo; did you mean gazebo?"),
         ({"robots": "0"}, "robots: expected at least 1"),
         ({"robots": "1001"}, "robots: expected at most 1000"),
         ({"robots": "9" * 5000}, "robots: expected at most 1000"),

@@ -2,12 +2,13 @@
 
 import math
 from io import BytesIO
-from typing import Callable
+from typing import Callable, List
 
 import pytest
+from geometry_msgs.msg import Twist
 from support import drive
 
-from aro_robocop_goto_as.errors import WorldError
+from aro_robocop_goto_as.errors import FrameError, WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
 from aro_robocop_goto_as.reading import parse_xml
 from aro_robocop_goto_as.ros.sim import gazebo_topics
@@ -73,3 +74,18 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
     moving, frame = (gazebo_topics.state_of("model", name, states) for name in ("robot_1", reference))
     _, twist = gazebo_topics.relative(moving, frame)
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((*expected, 0.0), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "known, told",
+    [
+        (["ground_plane", "robot_1"], "model [tables] does not exist; there are: ground_plane, robot_1"),
+        (["table", *(f"wall_{i}" for i in range(9))], "model [tables] does not exist; did you mean table?"),
+        ([f"wall_{i}" for i in range(9)], "model [tables] does not exist"),
+    ],
+)
+def test_an_unknown_name_is_refused_in_a_line_that_rosservice_does_not_wrap(known: List[str], told: str) -> None:
+    states = [(name, Pose3D(), Twist()) for name in known]
+    with pytest.raises(FrameError) as refused:
+        gazebo_topics.state_of("model", "tables", states)
+    assert str(refused.value) == told
