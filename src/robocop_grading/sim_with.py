@@ -34,6 +34,8 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
         if package.starts_gazebo:
             raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
         raise
+    if found.starts_gazebo:
+        _tell(instead_of_gazebo(package))
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")

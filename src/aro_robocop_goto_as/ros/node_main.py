@@ -29,10 +29,13 @@ T = TypeVar("T")
 
 
 def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTHER...]") -> None:
-    """End the program with three lines about a node if --help was given; needs no master."""
-    if {"-h", "--help"} & set(sys.argv[1:]):
-        print(HELP.format(about, os.path.basename(sys.argv[0]), arguments))
+    """End the program with three lines about a node if --help was given, and refuse other options; needs no master."""
+    program, options = os.path.basename(sys.argv[0]), [word for word in sys.argv[1:] if word.startswith("-")]
+    if {"-h", "--help"} & set(options):
+        print(HELP.format(about, program, arguments))
         sys.exit()
+    if options:
+        sys.exit(f"{program}: there is no option {options[0]}; there is: --help")
 
 
 def wait_for_master() -> None:

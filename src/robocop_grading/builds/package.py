@@ -161,6 +161,7 @@ class Started:
     choices: Mapping[str, Choice]
     parameters: Mapping[str, Any]
     notes: Sequence[str]
+    starts_gazebo: bool = False  # whether the package's own launch file has a node of Gazebo
 
 
 def started(
@@ -174,6 +175,7 @@ def started(
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}
     notes: List[str] = []
+    starts_gazebo = False
     for path in package.launch_files:
         is_main = path == package.launch_file
         try:
@@ -182,6 +184,9 @@ def started(
             if is_main:
                 raise
             continue  # it may need packages that only another machine has
+        if is_main:
+            others = {node.package for node in file.nodes} - {package.name}
+            starts_gazebo = any(GAZEBO.search(other) for other in others)
         choices = choose(copy, [*nodes, *file.nodes], relays, expects_one=False)
         if is_main or any(choice.node in file.nodes for choice in choices.values()):
             nodes += file.nodes
@@ -190,7 +195,7 @@ def started(
             notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
         if all(part in choices and choices[part].node is not None for part in PARTS.values()):
             break
-    return Started(choose(copy, nodes, relays), parameters, notes)
+    return Started(choose(copy, nodes, relays), parameters, notes, starts_gazebo)
 
 
 def _not_done(

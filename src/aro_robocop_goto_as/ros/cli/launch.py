@@ -10,7 +10,7 @@ import re
 import sys
 import time
 from pathlib import Path
-from typing import Any, Dict, List, Optional, TextIO
+from typing import Any, Callable, Dict, List, Optional, TextIO, TypeVar
 
 import rosgraph
 import roslaunch
@@ -29,6 +29,7 @@ READY_SERVICE = "pause"  # one of those that the simulator offers when it runs
 READY_TIMEOUT = 30.0  # [s, wall] for a simulator with a large world on a slow machine
 POLL = 0.05  # [s, wall]
 STDOUT = 1  # file descriptor
+T = TypeVar("T")
 
 
 class Launcher(ROSLaunchParent, ProcessListener):
@@ -99,10 +100,11 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         failed = launcher.pm.is_shutdown and not deferred.interrupted  # too early for process_died()
     if options.quiet or options.overview:
         simulator = _simulator(launcher, expected=options.overview)
-        if not launcher.pm.is_shutdown:
-            from .overview import overview  # now that everything else has started
+        from .overview import is_page, overview  # now that everything else has started
 
-            print(overview(launcher.config, simulator, logs, not options.quiet), file=screen, flush=True)
+        running = [node for node in launcher.config.nodes if not is_page(node) or _has_started(launcher, node)]
+        if not launcher.pm.is_shutdown:
+            print(overview(running, simulator, logs, not options.quiet), file=screen, flush=True)
     if not options.no_summary:
         rlutil.check_log_disk_usage()
     launcher.spin()
@@ -139,12 +141,37 @@ def _simulator(launcher: Launcher, expected: bool) -> Optional[Dict[str, Any]]:
     nodes = [node for node in launcher.config.nodes if node.name == SIMULATOR]
     names = [rosgraph.names.ns_join(node.namespace, node.name) for node in nodes]
     names = names or ([absolute("", SIMULATOR)] if expected else [])
-    master = rosgraph.Master("/robocop_launch", launcher.config.master.uri)
+    master = _master(launcher)
+
+    def parameters() -> Dict[str, Any]:
+        master.lookupService(f"{names[0]}/{READY_SERVICE}")
+        return dict(master.getParam(names[0])) if master.hasParam(names[0]) else {}
+
+    return _answer(launcher, parameters) if names else None
+
+
+def _has_started(launcher: Launcher, node: Any) -> bool:
+    """Wait until a node has registered with the master; return whether it has, instead of ending before."""
+    name = rosgraph.names.ns_join(node.namespace, node.name)
+    master = _master(launcher)
+
+    def is_registered() -> bool:
+        runs = any(process.rpartition("-")[0] == name.strip("/") for process in launcher.pm.get_active_names())
+        return runs and bool(master.lookupNode(name))
+
+    return bool(_answer(launcher, is_registered))
+
+
+def _master(launcher: Launcher) -> rosgraph.Master:
+    return rosgraph.Master("/robocop_launch", launcher.config.master.uri)
+
+
+def _answer(launcher: Launcher, ask: Callable[[], T]) -> Optional[T]:
+    """What `ask` returns once it has no error of the master's; None if everything ends or READY_TIMEOUT is over."""
     deadline = time.monotonic() + READY_TIMEOUT
-    while names and not launcher.pm.is_shutdown and time.monotonic() < deadline:
+    while not launcher.pm.is_shutdown and time.monotonic() < deadline:
         with contextlib.suppress(rosgraph.MasterException, OSError):
-            master.lookupService(f"{names[0]}/{READY_SERVICE}")
-            return dict(master.getParam(names[0])) if master.hasParam(names[0]) else {}
+            return ask()
         launcher.spin_once()
         time.sleep(POLL)
     return None

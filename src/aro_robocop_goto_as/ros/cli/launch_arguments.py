@@ -42,14 +42,18 @@ class LaunchArguments:
     verbose: bool
 
     @classmethod
-    def parse(cls, file: Path, words: Sequence[str]) -> "LaunchArguments":
-        """Refuse, by ending the program, words that roslaunch would take for files or would silently ignore."""
-        known = names(file)
+    def parse(cls, file: Path, words: Sequence[str], *other_options: str) -> "LaunchArguments":
+        """Refuse, by ending the program, words that roslaunch would take for files or would silently ignore.
+
+        `other_options`: those of the command that it handles itself, to be named where an option is unknown.
+        """
+        known, options = names(file), ["--verbose", *other_options]
         given = [_absolute(word) for word in words if word != "--verbose"]
         for word in given:
             name, separator, _ = word.partition(":=")
             if word.startswith("-"):
-                refuse(f"there is no option {word}; there is: --verbose{did_you_mean(word, ['--verbose'])}")
+                there_is = "there are" if other_options else "there is"
+                refuse(f"there is no option {word}; {there_is}: {' '.join(options)}{did_you_mean(word, options)}")
             if not separator:
                 refuse(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
             if separator and not name.startswith("__") and name not in known:

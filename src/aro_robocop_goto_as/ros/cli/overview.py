@@ -3,7 +3,7 @@
 import os
 import re
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB
@@ -13,22 +13,24 @@ from ...web.access import default_host, url
 from ...web_params import WebParams
 
 DEFAULT_WORLD = SimParams().world.world  # in this world the example of a goal is in front of the robot
+REPLAYED = "replay:="  # an argument of the web page
 
 
-def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False) -> str:
-    """The text for a roslaunch configuration and the parameters of the simulator, if there is one.
+def overview(
+    running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False
+) -> str:
+    """The text for the nodes of a roslaunch configuration and the parameters of the simulator, if there is one.
 
     The nodes' messages are shown on the screen or go to files in `logs`.
     """
-    nodes = {node.name for node in config.nodes}
+    nodes = {node.name for node in running}
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
-    robots = sorted({node.namespace.strip("/") for node in config.nodes if node.name == SERVER} - {""})
+    robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
     command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
-    for node in config.nodes:
-        played = "replay:=" in node.args
-        if node.name == WEB or played:
-            waits = "; it plays when the page is opened" if played and "rviz" not in nodes else ""
+    for node in running:
+        if is_page(node):
+            waits = "; it plays when the page is opened" if REPLAYED in node.args and "rviz" not in nodes else ""
             rows.append(("view", f"in a browser: {_page(node.args)}{waits}"))
     if SERVER in nodes:
         ways = []
@@ -48,6 +50,11 @@ def overview(config: Any, simulator: Optional[Dict[str, Any]], logs: Path, messa
         ("all messages", "appear below" if messages_shown else in_files),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
+
+
+def is_page(node: Any) -> bool:
+    """Return whether a node is the web page, also one that plays a recording."""
+    return node.name == WEB or REPLAYED in node.args
 
 
 def _page(arguments: str) -> str:

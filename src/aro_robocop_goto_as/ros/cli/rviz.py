@@ -23,6 +23,7 @@ from ...names import RVIZ_LOG, prefixed
 from ...probes import x_display
 from .rviz_config import SHARE, Observed, adapted
 
+ABOUT = "RViz, configured for the running system. Other options are passed on to RViz. ./robocop run starts it, too."
 STDERR = 2  # file descriptor
 # Runs until roslaunch ends it: a launch file ends with RViz, so RViz's node stays where there is no RViz.
 IDLE = "setpriv --pdeathsig TERM -- sleep infinity".split()
@@ -35,7 +36,7 @@ UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for
 
 def main(arguments: Optional[List[str]] = None) -> None:
     """Replace this process by RViz, which is started again if it crashes."""
-    parser = argparse.ArgumentParser(prog="robocop_rviz.py", description=__doc__)
+    parser = argparse.ArgumentParser(prog="robocop_rviz.py", description=ABOUT)
     parser.add_argument("--frame", default="map", help="RViz's Fixed Frame (default map)")
     parser.add_argument("--config", default="", help="a configuration file of your own; empty: made for the system")
     parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")

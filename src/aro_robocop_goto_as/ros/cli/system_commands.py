@@ -63,19 +63,27 @@ def run(arguments: List[str]) -> None:
 
 def sim(arguments: List[str]) -> None:
     """The simulator alone, or with somebody else's package."""
-    if arguments[:1] != ["--with"]:
-        given = LaunchArguments.parse(SIM, [word for word in arguments if word != "rviz:=false"])  # it starts none
+    before, option, after = _split_at(arguments, "--with")
+    if not option:
+        words = [word for word in arguments if word != "rviz:=false"]  # it starts none
+        given = LaunchArguments.parse(SIM, words, "--with")
         refuse_second_simulator()
         program.need(*["gui"] * given.is_true("gui"))
         launch(given)
-    if len(arguments) < 2:
+    if not after:
         refuse("--with: expected the folder of a catkin package")
     shown = "rviz:=false" not in arguments and x_display.answers()
     os.environ["ROBOCOP_RVIZ"] = str(shown).lower()
-    web, others = web_arguments(arguments[2:])
+    web, others = web_arguments([*before, *after[1:]])
     program.need("hosting", *["rviz"] * shown, *["web"] * bool(web))
     os.environ["ROBOCOP_WEB"] = " ".join(web)
-    program.start_script("robocop_sim_with.py", os.path.realpath(arguments[1]), *others)
+    program.start_script("robocop_sim_with.py", os.path.realpath(after[0]), *others)
+
+
+def _split_at(words: List[str], option: str) -> Tuple[List[str], bool, List[str]]:
+    """The words before an option, whether it is there, and the words after it."""
+    at = words.index(option) if option in words else len(words)
+    return words[:at], option in words, words[at + 1 :]
 
 
 def web_arguments(words: Sequence[str]) -> Tuple[List[str], List[str]]:
@@ -129,10 +137,10 @@ def replay(arguments: List[str]) -> None:
     bag = arguments[0] if arguments else ""
     if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
         refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
-    rest = arguments[1:]
-    if rest[:1] == ["--start"]:
-        rest = [f"start:={_seconds(rest[1:2])}", *rest[2:]]
-    given = LaunchArguments.parse(REPLAY, rest)
+    rest, option, after = _split_at(arguments[1:], "--start")
+    if option:
+        rest += [f"start:={_seconds(after[:1])}", *after[1:]]
+    given = LaunchArguments.parse(REPLAY, rest, "--start")
     shown = x_display.answers()
     program.need("web", *["rviz"] * shown)
     refuse_second_simulator()

@@ -116,6 +116,19 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
     ]
 
 
+def test_launch_file_with_a_node_of_gazebo_is_known_unless_a_condition_leaves_the_node_out(tmp_path: Path) -> None:
+    pytest.importorskip("roslaunch")
+    node = '<node pkg="gazebo_ros" type="gzserver" name="gazebo" if="$(arg gazebo)"/>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": f'<launch><arg name="gazebo" default="true"/>{node}</launch>',
+        "scripts/robocop_goto_as.py": "",
+    }
+    package = find_package(str(tree(tmp_path / "src" / LAB, files)))
+    for words in ([], ["gazebo:=false"]):
+        assert started(package, tmp_path, dict(os.environ), run_plain, words).starts_gazebo == (not words)
+
+
 def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
     pytest.importorskip("roslaunch")
     node = f'<launch><node pkg="{LAB}" type="{{0}}" name="n"><param name="of" value="{{0}}"/></node></launch>'

@@ -149,6 +149,7 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false rate:=2")
     command, _, _ = dry_run("replay", f"{tmp_path}/run.bag", "--start", "12.5")
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false start:=12.5")
+    assert dry_run("replay", f"{tmp_path}/run.bag", "rate:=2", "--start", "12.5")[0].endswith(" rate:=2 start:=12.5")
     assert "--start: expected seconds" in robocop("replay", __file__, "--start", "soon").stderr
     assert "would set up: run web\n" in messages
     done = robocop("replay", "nowhere.bag")
@@ -159,6 +160,9 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
 def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
     assert dry_run("sim", "--with", str(tmp_path), "gui:=true")[0].endswith(
         f"/robocop_sim_with.py {tmp_path} gui:=true"
+    )
+    assert dry_run("sim", "--verbose", "--with", str(tmp_path))[0].endswith(
+        f"/robocop_sim_with.py {tmp_path} --verbose"
     )
     assert "--with: expected the folder of a catkin package" in robocop("sim", "--with").stderr
 

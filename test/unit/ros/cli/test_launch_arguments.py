@@ -52,6 +52,13 @@ def test_other_words_are_refused(file, word, message):
     assert refused.value.code == f"robocop: {message}"
 
 
+def test_unknown_option_is_refused_with_those_of_the_command(file):
+    with pytest.raises(SystemExit) as refused:
+        LaunchArguments.parse(file, ["--wiht"], "--with")
+    message = "there is no option --wiht; there are: --verbose --with; did you mean --with?"
+    assert refused.value.code == f"robocop: {message}"
+
+
 def test_opposite_of_an_argument_is_suggested_with_its_value(tmp_path):
     (tmp_path / "my.launch").write_text('<launch><arg name="rviz" default="true"/></launch>')
     with pytest.raises(SystemExit, match="did you mean rviz:=false[?]"):

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.ros.cli.overview import overview
 def shown(*nodes, arguments=""):
     """The overview's rows for nodes of these names."""
     nodes = [SimpleNamespace(name=name, namespace="/", args="" if name == "rviz" else arguments) for name in nodes]
-    text = overview(SimpleNamespace(nodes=nodes), {}, Path("/logs"))
+    text = overview(nodes, {}, Path("/logs"))
     return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
 
 
@@ -41,8 +41,6 @@ def test_goals_are_offered_only_with_a_server():
 
 def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
     server = SimpleNamespace(name=SERVER, namespace="/", args="")
-    texts = [
-        overview(SimpleNamespace(nodes=[server]), {"world": world}, Path("/logs")) for world in ("stage_4", "world")
-    ]
+    texts = [overview([server], {"world": world}, Path("/logs")) for world in ("stage_4", "world")]
     assert "goto 0.3 0\n" in texts[0]
     assert "goto X Y " in texts[1]
