@@ -192,6 +192,8 @@ def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], Non
                     orphans.reap_adopted("bwrap")  # two of each hand-in
                     print(group.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
+        for hand_in in [it for it in group.waiting.values() if group.results.has(it)]:  # as a worker could not yet tell
+            group.add(hand_in.name, "")
         with contextlib.suppress(OSError):  # the terminal may be closed
             print(
                 f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",
