@@ -46,6 +46,7 @@ class Job:
     out: Path  # for records and bags
     plan: Plan
     parameters: Mapping[str, Any]  # on the parameter server
+    cpu_time: float  # [s] of the node and its children together
     viewer: Optional[Viewer] = None
 
 
@@ -73,8 +74,7 @@ class Runner:
     def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
         """Run the scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
 
-        NoTimeError if the machine has no time for it, UngradableError where it, the ROS master or the plan's packages
-        can't be had.
+        NoTimeError if the machine has no time for it, UngradableError where it or the plan's packages can't be had.
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
@@ -100,8 +100,10 @@ class Runner:
             command = self.sandbox.node_command(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
+        cpu_time = math.inf if self.sandbox is None else float(self.sandbox.cpu_time)
         rec.write(
-            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, self.viewer), file
+            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time, self.viewer),
+            file,
         )
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:

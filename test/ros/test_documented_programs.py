@@ -33,6 +33,7 @@ EXCEPTIONS = {
     "image": "needs docker, podman or buildah: test_container.py",
     "shell python3 -m distributed": "runs until it is ended: test/solutions/test_class.py",
     "shell python3 test/solutions/graded.py": "takes minutes: test/solutions",
+    "shell python3 test/solutions/measure.py": "takes hours",
     "shell rosrun aro_robocop_goto_as robocop_rviz.py": "needs a display: test/gui/test_rviz_starts.py",
     "teleop": "needs a keyboard: rostest teleop",
     "test": "this suite",

@@ -303,6 +303,11 @@ LIES = {  # code after LIE, and what the report says
     "unknown_kind": ("replace(wire.DONE, lambda self, body: write(self, 77, body))", UNREADABLE),
     "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.ANSWER.pack(0, 0, False)))", STILL),
     "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
+    "closed": (
+        "def lie(self, body):\n    os.close(self._descriptor)\n    while True: scheduler.sleep(0.01)\n"
+        "replace(wire.DONE, lie)",
+        "closed its connection to the grader",
+    ),
     # These are graded: nothing of it counts, or only as a topic that nobody hears.
     "early": (
         "replace(wire.DONE, lambda self, b: write(self, wire.DONE, b[:8] + struct.pack('<q', -2**62) + b[16:]))",

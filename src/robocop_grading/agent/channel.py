@@ -98,6 +98,7 @@ class Channel:
             until_ns, clock_ns = wire.TIMES.unpack_from(body)
             self._busy = not self._go_on(until_ns, clock_ns, list(wire.messages_of(body)))
             self._turn.acquire()
+            self.grader.end_probes()
             self._tell()
             scheduler.requests += 1  # what the grader sends from now on belongs to the next one
             self._write(wire.DONE, wire.ANSWER.pack(scheduler.now_ns, scheduler.next_deadline(), self._busy))

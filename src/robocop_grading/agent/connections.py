@@ -10,16 +10,18 @@ import _thread
 import errno
 import logging
 import os
+import select
 import socket
 import xmlrpc.client
 from functools import partial
 from typing import Any, Callable, Dict, List, Optional
 from urllib.parse import urlsplit
 
+from . import files
 from .scheduler import NEVER, Waiter, scheduler
 
 CLOCK = "/clock"
-PROBES = 1000  # of its services, see Grader
+PROBES = 1000  # of its services at one time, see Grader
 Header = Dict[str, str]  # of a connection, as on TCPROS
 
 
@@ -97,7 +99,7 @@ class _AtOnce:
 class Grader:
     """The node /robocop_sim, as rospy sees it: its API, its topics and its services.
 
-    Its address is a port at which nobody accepts connections: rospy.wait_for_service() only makes them.
+    Its address is a port of which only rospy.wait_for_service() makes connections, and asks no more of them.
     """
 
     def __init__(
@@ -124,6 +126,11 @@ class Grader:
         self._heard: Dict[str, End] = {}  # of the node's publications
         for header in connections:
             self.offer(header)
+
+    def end_probes(self) -> None:
+        """Close the connections that rospy.wait_for_service() has made, so that there is room for others."""
+        while files.wait([(self._port.fileno(), select.POLLIN)], 0.0):
+            self._port.accept()[0].close()
 
     def offer(self, header: Header) -> None:
         """The grader publishes a topic, subscribes to it, or offers a service."""

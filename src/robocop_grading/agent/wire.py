@@ -10,7 +10,7 @@ agent -> grader
     CALL      a service, and the request as on TCPROS; a REPLY follows
     TOPICS    what it publishes and subscribes to, and programs of ROS that it has started, as JSON
     CHILD     a forked child has become a node, which nobody connects
-    DONE      until when [ns], when it does something by itself [ns], whether it is busy
+    DONE      until when [ns], when it does something by itself [ns], whether it computes without an end
 """
 
 import struct

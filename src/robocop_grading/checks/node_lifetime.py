@@ -28,14 +28,14 @@ def action_server(record: Record, limits: Limits) -> Verdict:
         return NotReached("this is checked when the node starts")
     if record.up:
         return PASSED
+    for death in record.deaths:
+        return _died("The node ended while starting", death, record)
     name = ACTION[1:]
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
         if kind != ACTION_TYPE:
             return Failed(ACTION_TYPE, kind, 0.0, text("other_type", kind))
         return Failed("a server that clients can connect to", "no connection", 0.0, text("other_fields"))
-    for death in record.deaths:
-        return _died("The node ended while starting", death, record)
     servers = [server.lstrip("/") for server in record.servers]
     if servers:
         close = closest(name, servers) or servers[0]

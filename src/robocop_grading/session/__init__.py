@@ -1,1 +1,1 @@
-"""A hand-in's node in the ordinary simulation, scenario by scenario. The ROS master is the session's own."""
+"""A hand-in's node in the ordinary simulation, scenario by scenario. The ROS master is in the node's process."""

@@ -1,9 +1,7 @@
 """The hand-in's node as a child process: its output line by line, and simulated time with it by way of its agent."""
 
 import contextlib
-import math
 import pickle
-import resource
 import select
 import socket
 import struct
@@ -24,20 +22,17 @@ from .services import Services
 from .topics import Topics
 
 NEVER = 1 << 62  # [ns]
-MAX_FRAME = 64 * 1024**2  # bytes
+MAX_FRAME = 8 * 1024**2  # bytes
+MAX_UNREAD = 16 * 1024**2  # bytes of answers that the node does not read
 READ = 1 << 18  # bytes
 MAX_LAST_READS = 1000  # of what an ended node has sent; its child may go on
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
 MAX_IDLE = 45.0  # [s, wall] in which the node does nothing, until its answer is not waited for any more
+CLOSE_TIMEOUT = 10.0  # [s, wall] for a node that has closed its connection to end
 UNREADABLE = "the node's answer to the grader can't be read"
+NOT_READ = "the node does not read the answers of the services that it calls"
 CHILD = "rospy in a child process"
 NO_TIME = 900.0  # [s, wall] for one answer
-
-
-def _own_limit() -> float:
-    """The limit of this process's processor time [s], which the sandbox has set, and which is also the node's."""
-    soft, _ = resource.getrlimit(resource.RLIMIT_CPU)
-    return math.inf if soft == resource.RLIM_INFINITY else float(soft)
 
 
 class Node:
@@ -54,7 +49,9 @@ class Node:
         parameters: Mapping[str, Any],
         now_ns: int,
         clock_ns: int,
+        cpu_time: float,
     ) -> None:
+        """`cpu_time` [s] of the node and its children together, until they are ended."""
         self._channel, theirs = socket.socketpair()
         self._channel.setblocking(False)
         self._process = child.start(
@@ -71,10 +68,10 @@ class Node:
         offered = [*topics.begin(), *services.headers()]
         self._send(wire.SETUP, pickle.dumps((dict(parameters), offered)))
         self.next_ns = now_ns  # when the node will do something without having received a message
-        self.is_busy = False  # it computes without an end, as a loop without pauses
         self.ended = ""  # why the node was ended here, if it was
         self._lost = False  # it has ended
-        self.guard = Guard(self._process.pid, processor_time=_own_limit())
+        self._is_closed = False  # it sends nothing any more
+        self.guard = Guard(self._process.pid, processor_time=cpu_time)
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -110,7 +107,7 @@ class Node:
         if answer is None:
             self._lose()
             return
-        done_ns, next_ns, self.is_busy = answer
+        done_ns, next_ns = answer
         if done_ns != until_ns - self._started_ns:
             raise GraderLostError("the node's time did not go on")
         self.next_ns = min(NEVER, next_ns + self._started_ns)
@@ -127,19 +124,25 @@ class Node:
         with contextlib.suppress(OSError):  # it is full, or the node has ended
             del self._unsent[: self._channel.send(self._unsent)]
 
-    def _answer(self) -> Optional[Tuple[int, int, bool]]:
+    def _answer(self) -> Optional[Tuple[int, int]]:
         """What the node says when it is done; None if it has ended. NoTimeError if the machine has no time for it."""
         deadline, stillness = time.monotonic() + NO_TIME, Stillness(self._process.pid)
         while True:
             for kind, body in self._frames():
                 if kind == wire.DONE and len(body) == wire.ANSWER.size:
-                    done_ns, next_ns, is_busy = wire.ANSWER.unpack(body)
-                    return done_ns, next_ns, is_busy
+                    done_ns, next_ns, _ = wire.ANSWER.unpack(body)
+                    return done_ns, next_ns
                 self._handle(kind, body)
             if not self._has_more() and self._has_ended():
                 return None
+            if self._is_closed:
+                deadline = min(deadline, time.monotonic() + CLOSE_TIMEOUT)
             if stillness.look() > MAX_IDLE:
                 self.ended = "it stopped answering the grader, which has ended it"
+                self.end()
+                return None
+            if self._is_closed and time.monotonic() > deadline:
+                self.ended = "it closed its connection to the grader, which has ended it"
                 self.end()
                 return None
             if time.monotonic() > deadline:
@@ -151,6 +154,8 @@ class Node:
                 self._topics.receive(*wire.split(body))
             elif kind == wire.CALL:
                 self._send(wire.REPLY, self._services.call(*wire.split(body)))
+                if len(self._unsent) > MAX_UNREAD:
+                    raise GraderLostError(NOT_READ)
             elif kind == wire.TOPICS:
                 self._topics.tell(body)
             elif kind == wire.CHILD:
@@ -175,7 +180,8 @@ class Node:
 
     def _has_more(self) -> bool:
         """Wait a moment; whether the node has sent something. What it prints is read meanwhile."""
-        reads: List[Any] = [self._channel, self._output] if self._output.is_open else [self._channel]
+        reads: List[Any] = [] if self._is_closed else [self._channel]
+        reads += [self._output] if self._output.is_open else []
         ready, writable, _ = select.select(reads, [self._channel] if self._unsent else [], [], POLL)
         if self._output in ready:
             self._output.read()
@@ -185,6 +191,7 @@ class Node:
         if self._channel in ready:
             with contextlib.suppress(OSError):
                 data = self._channel.recv(READ)
+                self._is_closed = not data
             self._unread += data
         return bool(data)
 

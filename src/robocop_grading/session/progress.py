@@ -1,6 +1,6 @@
 """Lines to the process that grades, on the standard output that it reads: nothing else of this process writes there.
 
-rosmaster and rospy print what a node sends to them, as with shutdown().
+Libraries print there, too.
 """
 
 import os

@@ -121,6 +121,7 @@ class Run:
             {**ROS_PARAMETERS, **self.job.parameters},
             self.stage.sim.stamp_ns,
             self.stage.clock_ns,
+            self.job.cpu_time,
         )
 
     def is_dead(self) -> bool:

@@ -20,7 +20,7 @@ from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage
 
-START_TIMEOUT = 20.0  # [s] for the node to connect to the recorder of /rosout
+START_TIMEOUT = 20.0  # [s] for the node to come up: it publishes /rosout
 SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then on
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AT_END = 0.25  # [s] before a result, in which the robot was where it ended
@@ -67,7 +67,7 @@ class ServerRun(Run):
         return up and not self.death_recorded
 
     def _connected(self) -> bool:
-        """Return whether all five topics are connected, so that no message is lost."""
+        """Return whether the node has all five topics, with the right types."""
         heard = all(self.topics.hears(f"{ACTION}/{name}") for name in ("result", "feedback", "status"))
         return heard and self.topics.reaches(GOAL) and self.topics.reaches(CANCEL)
 

@@ -16,10 +16,10 @@ from .. import record as rec
 from ..agent import wire
 
 NAME = "/robocop_sim"  # of the grader's node
-MAX_WAITING = 20_000  # messages
+MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, of one turn; a flood beyond is dropped
 MAX_LISTED = 100  # entries of a message's list
 MAX_TOPICS, MAX_NAME = 1000, 200  # of a node, and characters of a name
-MAX_BYTES = 64 * 1024**2  # of a topic's stream that are no whole message
+MAX_BYTES = 16 * 1024**2  # of a topic's stream that are no whole message
 
 Handler = Callable[[Any], object]
 
@@ -71,6 +71,7 @@ class Topics:
         self._new: List[Dict[str, str]] = []  # headers
         self._streams: Dict[str, bytearray] = {}
         self._arrived: List[Tuple[str, Callable[[], object]]] = []  # topic, and what handles a message
+        self._decoded = 0  # bytes of them
 
     # -- what the grader does with topics --
 
@@ -85,6 +86,10 @@ class Topics:
         """Have `handler` called with what arrives on a topic; `of` reduces a message to what is kept of it."""
         self._heard[name] = _Heard(kind, handler, of)
         self._new.append(header(kind, topic=name))
+
+    def listens_to(self, name: str) -> bool:
+        """Return whether `handler` of anybody is called with what arrives on a topic."""
+        return name in self._heard
 
     def ignore(self, name: str) -> None:
         """Listen to it no longer."""
@@ -156,7 +161,7 @@ class Topics:
             told: Mapping[str, Any] = json.loads(body)
             self.published, self.subscribed = (
                 {
-                    str(name)[:MAX_NAME]: NodeTopic(str(kind)[:MAX_NAME], str(checksum))
+                    str(name)[:MAX_NAME]: NodeTopic(str(kind)[:MAX_NAME], str(checksum)[:MAX_NAME])
                     for name, checksum, kind in told[direction][:MAX_TOPICS]
                 }
                 for direction in ("published", "subscribed")
@@ -168,7 +173,7 @@ class Topics:
     def receive(self, name: str, data: bytes) -> None:
         """A part of the stream of the node's messages on a topic."""
         heard = self._heard.get(name)
-        if heard is None or len(self._arrived) >= MAX_WAITING:  # of a flood beyond that nothing is kept
+        if heard is None:
             return
         stream = self._streams.setdefault(name, bytearray())
         stream += data
@@ -178,6 +183,10 @@ class Topics:
             end = start + wire.LENGTH.size + size
             if end > len(stream):
                 break
+            if len(self._arrived) >= MAX_WAITING or self._decoded >= MAX_DECODED:
+                start = end
+                continue
+            self._decoded += size
             try:
                 message = heard.of(heard.kind().deserialize(bytes(stream[start + wire.LENGTH.size : end])))
             except Exception:  # genpy does not document its errors; as rospy, which connects anew
@@ -191,6 +200,6 @@ class Topics:
 
     def handle_arrived(self) -> None:
         """Handle what has arrived."""
-        arrived, self._arrived = self._arrived, []
+        arrived, self._arrived, self._decoded = self._arrived, [], 0
         for _, handle in sorted(arrived, key=lambda topic_and_handle: topic_and_handle[0]):
             handle()

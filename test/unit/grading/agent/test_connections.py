@@ -90,6 +90,12 @@ def lived(folder, program, messages=(), answer=b""):
             id="services are called",
         ),
         pytest.param(
+            "for _ in range(1500):\n    rospy.wait_for_service('/trigger')\n    time.sleep(0.001)\ntell('all')",
+            [[]] * 160,
+            ["all 1.5"],
+            id="a service may be waited for in each loop",
+        ),
+        pytest.param(
             "tell(rospy.get_param('/speed'), [name for name, _ in rospy.get_published_topics()])\n"
             "rospy.set_param('~a', {'b': 1})\n"
             "tell(rospy.get_param('~a/b'), rospy.get_param_cached('/node/a/b'), rospy.has_param('/none'))",
