@@ -1,7 +1,6 @@
 """The ticks of the control loop: whole multiples of its period of ROS time, as at 10 Hz 0.1 s, 0.2 s, ..."""
 
 import contextlib
-import math
 import threading
 from fractions import Fraction
 from typing import Callable, Optional, Sequence
@@ -31,7 +30,8 @@ class Ticks:
         node.
         """
         self.command: Optional[Twist2D] = None  # since the last answer
-        self._rate = Fraction(rate) / NANOSECONDS  # ticks per nanosecond, exactly
+        ticks, seconds = Fraction(rate).limit_denominator(10**6).as_integer_ratio()
+        self._ticks, self._span_ns = ticks, seconds * NANOSECONDS  # so many ticks in so much time [ns], exactly
         self._inputs, self._on_set_back = inputs, on_set_back
         self._has_joined = False
         self._has_warned = False
@@ -78,17 +78,19 @@ class Ticks:
 
     def _tick(self, time_ns: int, later: int = 0) -> int:
         """The time of the newest tick at a time [ns], or of one that is `later`; rounded down as the simulator does."""
-        number = math.ceil((time_ns + 1) * self._rate) - 1 + later
-        return math.floor(number / self._rate)
+        number = ((time_ns + 1) * self._ticks - 1) // self._span_ns + later
+        return number * self._span_ns // self._ticks
 
     def wait_for_next(self, last_ns: int, is_interrupted: Callable[[], bool]) -> int:
         """Wait until there is a later tick than the last one, or for an interruption; the newest tick [ns]."""
         with self._changed:
             while self.newest() <= last_ns and not is_interrupted():
-                if not self._is_simulated:  # a wall clock may be set back: the ticks go on from there
-                    last_ns = self.answered = min(last_ns, self.newest())
+                if self._is_simulated:
+                    self._changed.wait()
+                    continue
+                last_ns = self.answered = min(last_ns, self.newest())  # a wall clock may be set back
                 remaining = self._tick(last_ns, later=1) - convert.to_ns(rospy.get_rostime())
-                self._changed.wait(None if self._is_simulated else max(0, remaining) / NANOSECONDS)
+                self._changed.wait(max(0, remaining) / NANOSECONDS)
         return self.newest()
 
     def answer(self, tick_ns: int) -> None:
