@@ -51,6 +51,7 @@ class Class:
         self.done: Dict[str, Result] = {
             it.name: results.read(it.name) for it in hand_ins if it.name not in again and results.has(it)
         }
+        self._again = again
         left = [it for it in hand_ins if it.name not in self.done]
         self.waiting = {it.name: it for it in sorted(left, key=lambda it: it.name not in again)}
         self.problems: Dict[str, str] = {}
@@ -88,6 +89,15 @@ class Class:
         words = f"{points if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
+
+    def add_stored(self) -> None:
+        """Add the results that workers have stored, but could not tell of any more.
+
+        Of those that are graded again, an older result is stored, too.
+        """
+        for hand_in in [it for it in self.waiting.values() if it.name not in self._again]:
+            if self.results.has(hand_in):
+                self.add(hand_in.name, "")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
@@ -192,8 +202,7 @@ def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], Non
                     orphans.reap_adopted("bwrap")  # two of each hand-in
                     print(group.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
-        for hand_in in [it for it in group.waiting.values() if group.results.has(it)]:  # as a worker could not yet tell
-            group.add(hand_in.name, "")
+        group.add_stored()
         with contextlib.suppress(OSError):  # the terminal may be closed
             print(
                 f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",

@@ -135,18 +135,16 @@ class Node:
                 self._handle(kind, body)
             if not self._has_more() and self._has_ended():
                 return None
+            now = time.monotonic()
             if self._is_closed:
-                deadline = min(deadline, time.monotonic() + CLOSE_TIMEOUT)
-            if stillness.look() > MAX_IDLE:
-                self.ended = "it stopped answering the grader, which has ended it"
-                self.end()
-                return None
-            if self._is_closed and time.monotonic() > deadline:
-                self.ended = "it closed its connection to the grader, which has ended it"
-                self.end()
-                return None
-            if time.monotonic() > deadline:
+                deadline = min(deadline, now + CLOSE_TIMEOUT)
+            elif now > deadline:
                 raise NoTimeError(f"the node's turn was not over within {NO_TIME:g} s")
+            if stillness.look() > MAX_IDLE or now > deadline:
+                did = "closed its connection to" if self._is_closed else "stopped answering"
+                self.ended = f"it {did} the grader, which has ended it"
+                self.end()
+                return None
 
     def _handle(self, kind: int, body: bytes) -> None:
         try:
@@ -180,9 +178,9 @@ class Node:
 
     def _has_more(self) -> bool:
         """Wait a moment; whether the node has sent something. What it prints is read meanwhile."""
-        reads: List[Any] = [] if self._is_closed else [self._channel]
-        reads += [self._output] if self._output.is_open else []
-        ready, writable, _ = select.select(reads, [self._channel] if self._unsent else [], [], POLL)
+        channel: List[Any] = [] if self._is_closed else [self._channel]  # a closed one would always be ready
+        output: List[Any] = [self._output] if self._output.is_open else []
+        ready, writable, _ = select.select(channel + output, channel if self._unsent else [], [], POLL)
         if self._output in ready:
             self._output.read()
         if writable:

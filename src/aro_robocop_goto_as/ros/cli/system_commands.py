@@ -65,7 +65,7 @@ def sim(arguments: List[str]) -> None:
     """The simulator alone, or with somebody else's package."""
     before, option, after = _split_at(arguments, "--with")
     if not option:
-        words = [word for word in arguments if word != "rviz:=false"]  # it starts none
+        words = [word for word in arguments if word != "rviz:=false"]  # sim alone starts no RViz
         given = LaunchArguments.parse(SIM, words, "--with")
         refuse_second_simulator()
         program.need(*["gui"] * given.is_true("gui"))

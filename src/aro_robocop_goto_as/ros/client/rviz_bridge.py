@@ -42,7 +42,7 @@ class Bridge:
         self.feedback: Optional[GoToPositionFeedback] = None  # of the current goal
         self.ending = ""  # of the last goal: state and message
         self.has_ended = threading.Event()  # the goal that was sent last
-        self.sending = threading.Lock()  # held while a goal is sent, which nothing is reported of before
+        self.sending = threading.Lock()  # held while a goal is being sent: it is reported only afterwards
         self.last_status = ""
         self.last_seen = time.monotonic()  # when the server was up
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)

@@ -88,7 +88,8 @@ class Ticks:
                 if self._is_simulated:
                     self._changed.wait()
                     continue
-                last_ns = self.answered = min(last_ns, self.newest())  # a wall clock may be set back
+                if self.newest() < last_ns:  # the wall clock was set back
+                    last_ns = self.answered = self.newest()
                 remaining = self._tick(last_ns, later=1) - convert.to_ns(rospy.get_rostime())
                 self._changed.wait(max(0, remaining) / NANOSECONDS)
         return self.newest()
