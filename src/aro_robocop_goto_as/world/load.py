@@ -15,14 +15,9 @@ RANDOM = "random"  # in place of a name: the world that is made from the seed
 _MAP_EXTENSIONS = (".yaml", ".yml")
 _EXTENSIONS = (".sdf", ".world", *_MAP_EXTENSIONS)
 
-# The grammar of Stage's worldfiles (player-stage-manual.readthedocs.io): properties and blocks instead of XML.
-_STAGE = re.compile(
-    rb"\A(?!(\xef\xbb\xbf)?\s*<)(?s:.*?)(\A\xef\xbb\xbf|^)[ \t]*"
-    rb"(define\s+\w+\s+\w+|include\s+\"|(floorplan|window|model|position|ranger)\s*\(|\w+\s*\(\s*\w+\s+[\"\[\d]|"
-    rb"(interval_(sim|real)|paused|quit_?time|resolution|show_clock(_interval)?|speedup|threads)\s+[\d.-])",
-    re.M,
-)
-_HEAD = 1 << 16  # bytes of a file in which Stage's words are looked for
+_XML = re.compile(
+    rb"(\xef\xbb\xbf)?\s*<|\xff\xfe|\xfe\xff"
+)  # how it begins, with the byte order marks of UTF-8 and UTF-16
 
 LAB_WORLDS = ("house", "aro_maze_1", "aro_maze_2", "aro_maze_8")  # names that the original lab's launch file accepted
 LAB_WORLD_HINT = ", which the original lab had and this package does not have: give the path of its file"
@@ -47,7 +42,7 @@ def find_world(name_or_path: str, directory: str) -> str:
 
 
 def load_world(path: str) -> World:
-    """The world in an SDF file (1.4 to 1.8, a <world> or a single <model>) or in the YAML file of a map_server map.
+    """The world in an SDF file (1.4 and later, a <world> or a single <model>) or in the YAML file of a map_server map.
 
     What robots stand on is at z = 0, see levelled.
 
@@ -57,9 +52,9 @@ def load_world(path: str) -> World:
         if path.endswith(_MAP_EXTENSIONS):
             return read_map(path)
         with open(path, "rb") as file:
-            if _STAGE.search(file.read(_HEAD)):
+            if not _XML.match(file.read()):  # an image of a map, a world of Stage or Webots, ...
                 raise WorldError(
-                    f"{path}: a world of Stage; expected an SDF file, or the YAML file of a map, whose image may be "
-                    "the bitmap of Stage's floor plan"
+                    f"{path}:1: not XML; expected an SDF file, or the YAML file of a map, whose image may be the "
+                    "floor plan of a world of Stage"
                 )
         return levelled(read_world(path))

@@ -1,4 +1,4 @@
-"""Worlds are found by name or path, and those of Stage are told apart; broken files are in sdf and grid_map."""
+"""Worlds are found by name or path, and files of other kinds are told apart; broken ones are in sdf and grid_map."""
 
 from pathlib import Path
 
@@ -11,27 +11,28 @@ from aro_robocop_goto_as.world.load import find_world, load_world
 WORLDS = Path(ROOT, "worlds")
 
 
-STAGE = {
-    "maze.world": '# a maze\ninclude "pioneer.inc"\nresolution 0.02\n',
-    "blank.world": "\n" * 60000 + "window\n(\n size [ 600 700 ] )\n",
-    "simple.world": 'define floorplan model\n(\n  gui_nose 0\n)\nfloorplan( bitmap "cave.png" size [16 16 1.5] )\n',
-    "robot.world": "resolution 0.1\nposition( pose [ 0 0 0 0 ] )\n",
-}
-
-
-@pytest.mark.parametrize("name", STAGE)
-def test_world_of_stage_is_named_as_such(tmp_path, name):
-    (tmp_path / name).write_text(STAGE[name])
-    with pytest.raises(WorldError, match=f"^{tmp_path}/{name}: a world of Stage; expected an SDF file"):
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("stage.world", '# a maze\ninclude "pioneer.inc"\nresolution 0.02\n'),
+        ("map.pgm", "P2\n1 1\n255\n0\n"),
+        ("no.sdf", ""),
+    ],
+)
+def test_file_of_another_kind_is_refused_with_what_was_expected(tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(
+        WorldError, match=f"^{tmp_path}/{name}:1: not XML; expected an SDF file, or the YAML file of a map"
+    ):
         load_world(str(tmp_path / name))
 
 
-@pytest.mark.parametrize("text", ["define\n", "", "window", "\n  <!-- window ( -->\n<sdf/>", "hello (world)"])
-def test_other_texts_are_not_taken_for_a_world_of_stage(tmp_path, text):
-    (tmp_path / "w.world").write_text(text)
-    with pytest.raises(WorldError) as caught:
-        load_world(str(tmp_path / "w.world"))
-    assert "Stage" not in str(caught.value)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_file_in_unicode_is_read_with_or_without_a_byte_order_mark(tmp_path, encoding):
+    (tmp_path / "w.world").write_text(
+        f"\n  <!-- zeď -->\n<sdf version='1.6'><world name='{encoding}'/></sdf>", encoding
+    )
+    assert load_world(str(tmp_path / "w.world")).name == encoding
 
 
 def test_bare_name_is_looked_up_in_the_worlds_directory():

@@ -41,7 +41,7 @@ class _Entries:
 
     def __init__(self, path: str) -> None:
         self.path = path
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8", errors="replace") as file:  # comments may be in another encoding
             self.content = file.read()
         root = yaml.compose(self.content, yaml.SafeLoader)
         if not isinstance(root, yaml.MappingNode):

@@ -19,7 +19,7 @@ def placed(element: Element, world_from_parent: Pose3D) -> Pose3D:
     WorldError if that frame is unknown or defined by itself.
     """
     (_, name), scope = _frame_of(element), element.getparent()
-    if name == "world" and element.find("pose").get("relative_to") == "world":
+    if name == "world":
         return xml.pose_in_world(element)
     if scope is None or scope.tag != "link":
         return compose3(world_from_parent, _in_scope(element, ()))
@@ -38,7 +38,7 @@ def _in_scope(element: Element, chain: Chain) -> Pose3D:
     if len(chain) >= MAX_CHAIN:
         raise xml.error(element, f"more than {MAX_CHAIN} poses relative to one another; supported: {MAX_CHAIN}")
     (_, name), pose, scope = _frame_of(element), xml.pose_of(element), element.getparent()
-    if name in ("", "" if scope is None else _OWN_FRAME.get(str(scope.tag), "")):
+    if scope is None or name in ("", _OWN_FRAME.get(str(scope.tag), "")):
         return pose
     return compose3(_referred(element, name, scope, (*chain, element)), pose)
 
@@ -60,18 +60,21 @@ def _frame_of(element: Element) -> Tuple[str, str]:
 
 
 def _referred(element: Element, name: str, scope: Element, chain: Chain) -> Pose3D:
-    """Pose of what a <pose> is relative to, in the frame of the world or model `scope`."""
-    pose = xml.optional_child(element, "pose")
-    siblings = [] if scope is None or (pose is not None and pose.get("frame")) else scope.iterchildren(*_NAMED)
-    for sibling in siblings:
-        if _name(sibling) == name:
+    """Pose of what a <pose> is relative to, in the frame of the world or model `scope`; model::link is in a model."""
+    first, _, inner = name.partition("::")
+    for sibling in [] if scope is None else scope.iterchildren(*_NAMED):
+        if _name(sibling) == first and (not inner or sibling.tag == "model"):
             if sibling.tag == "include" and xml.optional_child(sibling, "pose") is None:
                 raise xml.error(element, f"'{name}' is an <include> without <pose>; supported: one that has a <pose>")
-            return _in_scope(sibling, chain)
+            scope_from_sibling = _in_scope(sibling, chain)
+            return (
+                compose3(scope_from_sibling, _referred(element, inner, sibling, chain)) if inner else scope_from_sibling
+            )
+    pose = xml.optional_child(element, "pose")
     raise xml.error(
         element if pose is None else pose,
-        f"{_frame_of(element)[0]} is not supported; supported: a pose in the parent's frame, or relative_to a "
-        "<link>, <model>, <joint>, <frame> or named <include> beside it, or to the world",
+        f"{_frame_of(element)[0]} is not supported; supported: a pose in the parent's frame, or relative_to the world, "
+        "or to a <link>, <model>, <joint>, <frame> or named <include> beside it, or within a <model> beside it",
     )
 
 

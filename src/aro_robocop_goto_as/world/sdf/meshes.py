@@ -10,6 +10,7 @@ from lxml import etree
 
 from ...errors import WorldError
 from ...reading import parse_xml, reading
+from .xml import NotSimulatedError
 
 KINDS = (".dae", ".obj", ".stl")
 _STL_HEADER, _STL_FACET = 84, 50  # bytes of a binary .stl file
@@ -23,11 +24,11 @@ def load_triangles(path: str) -> np.ndarray:
     """The triangles (n, 3, 3) [m] of a mesh file, with its parts placed as in the file's scene.
 
     Lengths are in metres unless a COLLADA file declares another unit; <up_axis> is ignored, as in Gazebo Classic.
-    WorldError if the file can't be read, has another format, or contains no triangles.
+    NotSimulatedError for another format. WorldError if the file can't be read or contains no triangles.
     """
     kind = os.path.splitext(path)[1].lower()
     if kind not in KINDS:
-        raise WorldError(f"{path}: not a supported mesh format; supported: {', '.join(KINDS)}")
+        raise NotSimulatedError(f"{path}, which is no mesh in one of the formats {', '.join(KINDS)}")
     with reading(path, WorldError, f"a mesh in {kind} format"):
         import trimesh  # takes 0.3 s
 
@@ -83,14 +84,17 @@ def _plain_obj(text: str) -> str:
 def _geometry_alone(content: bytes, path: str) -> Tuple[io.BytesIO, float]:
     """A COLLADA file without elements that do not affect its triangles, whose faults do not matter; metres per unit."""
     root = parse_xml(content, path, WorldError)
+    if not root.tag.startswith("{"):  # pycollada prints a traceback
+        raise WorldError(f"{path}:{root.sourceline}: <{root.tag}>, expected <COLLADA xmlns='...'>")
     for part in list(root):
         if etree.QName(part).localname not in _COLLADA_PARTS:
             root.remove(part)
     etree.strip_elements(root, *(f"{{*}}{tag}" for tag in _WITHOUT_EFFECT), with_tail=False)
     for mesh in root.iterfind("{*}library_geometries/{*}geometry/{*}mesh"):
         _reduce_to_positions(mesh)
-    if root.find("{*}scene") is None:
-        raise WorldError(f"{path}: no <scene>, which says where the parts of the mesh are")
+    shown = root.find("{*}scene/{*}instance_visual_scene")
+    if shown is None or not root.xpath("//*[@id = $id]", id=shown.get("url", "")[1:]):
+        raise WorldError(f"{path}: no <scene> with a <visual_scene>, which says where the parts of the mesh are")
     unit = root.find("{*}asset/{*}unit")
     metres = 1.0 if unit is None else float(unit.get("meter", "1"))
     if not 0.0 < metres < np.inf:

@@ -45,7 +45,7 @@ _BUILT_IN: Mapping[str, Optional[bytes]] = {
 
 
 def read_world(path: str) -> World:
-    """The world in an SDF file (1.4 to 1.8) that contains one <world>, or one <model> such as a model.sdf.
+    """The world in an SDF file (1.4 and later) that contains one <world>, or one <model> such as a model.sdf.
 
     WorldError names the file, line and element, what is wrong with it, and what is supported.
     """
@@ -72,7 +72,8 @@ def _spawn(world: Element) -> Optional[Pose2D]:
     spawns = world.findall(f"frame[@name='{SPAWN_FRAME}']")
     if not spawns:
         return None
-    xml.require_unique_names(spawns)
+    if len(spawns) > 1:
+        raise xml.error(spawns[1], f"a second <frame name='{SPAWN_FRAME}'>; supported: one")
     if spawns[0].get("attached_to", "world") not in ("", "world"):
         raise xml.error(spawns[0], f"<frame name='{SPAWN_FRAME}'> is attached to a model; supported: to the world")
     pose = xml.pose_in_world(spawns[0])
@@ -107,7 +108,8 @@ class _Reader:
         self.models: Dict[str, Pose3D] = {}
         self.ignored: List[str] = []
         self.approximated: List[str] = []
-        self.used: Set[Tuple[str, ...]] = set()  # paths of models: names, the outermost model's first
+        self.used: Set[Tuple[str, ...]] = set()  # paths of models, links, collisions: names, the outermost's first
+        self.count = 0  # of models
         self.state: SavedPoses = {}
         self.spawn: Optional[Pose2D] = None  # as the file says
         self.keeps_robots = True
@@ -158,8 +160,6 @@ class _Reader:
     def include(self, include: Element, parent: _Parent) -> None:
         """Read the model that an <include> refers to."""
         self.check_children(include, "name", "pose", "static", "uri")
-        if include.attrib:
-            raise xml.error(include, f"<include {include.keys()[0]}='...'> is not supported; expected no attributes")
         uri = xml.text_of(xml.required_child(include, "uri"))
         name = xml.optional_child(include, "name")
         pose = xml.optional_child(include, "pose")
@@ -186,7 +186,11 @@ class _Reader:
             raise xml.error(include, f"'{uri}' is {path} again, within itself; expected another model")
         self.open_files.append(os.path.realpath(path))
         try:
-            included = xml.root_of(xml.parse(path), ("actor", "light", "model"))
+            root = xml.parse(path)
+            if root.tag == "robot":
+                self.report(f"an include is left out: '{uri}' is a URDF", include, is_different=True)
+                return
+            included = xml.root_of(root, ("actor", "light", "model"))
             if included.tag == "model":
                 self.model(included, parent, include, new_name, new_pose, static)
         except WorldError as exc:
@@ -215,10 +219,11 @@ class _Reader:
             return name
         self.check_children(model, "include", "link", "model", "pose", "static")
         if model.get("placement_frame"):
-            raise xml.error(
-                model, "the attribute placement_frame is not supported; expected a model placed by its origin"
-            )
-        name = self.unused_name(new_name or xml.name_of(model), parent, model if include is None else include)
+            self.report(f"placement_frame of model '{model.get('name')}' is left out", model, is_different=True)
+        self.count += 1
+        if self.count > MAX_MODELS:
+            raise xml.error(model, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
+        name = self.unused_name(new_name or xml.name_of(model), parent, model, include)
         names = (*parent.names, name)
         pose = self.state.get("/".join(names), pose)
         if not parent.names:
@@ -227,7 +232,6 @@ class _Reader:
         if not (static or parent.names or motion):
             self.report(f"motion of model '{name}', which is not static", model)
         inherited = _Parent(pose, names, motion, bool(static) or parent.static)
-        xml.require_unique_names(model.iterchildren("link"))
         for link in model.iterchildren("link"):
             self.link(link, inherited)
         self.children(model, inherited)
@@ -245,26 +249,22 @@ class _Reader:
         self.report(f"the robot '{path}' is left out{starts}", element, is_different=True)
         self.saved_robot = self.saved_robot or self.state.get(path, pose).on_plane()
 
-    def unused_name(self, name: str, parent: _Parent, element: Element) -> str:
-        """A model's name, with a number if another model beside it has the same one."""
+    def unused_name(self, name: str, parent: _Parent, element: Element, include: Optional[Element] = None) -> str:
+        """The name of a model, link or collision, with a number if something beside it has the same one."""
         unused, number = name, 0
         while (*parent.names, unused) in self.used:
             number += 1
             unused = f"{name}_{number}"
         if unused != name:
-            self.report(
-                f"the name '{name}' is already taken, so this model is called '{unused}'", element, is_different=True
-            )
+            what = f"the name '{name}' is already taken, so this {element.tag} is called '{unused}'"
+            self.report(what, element if include is None else include, is_different=True)
         self.used.add((*parent.names, unused))
-        if len(self.used) > MAX_MODELS:
-            raise xml.error(element, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
         return unused
 
     def link(self, link: Element, parent: _Parent) -> None:
         """Read a link's collisions."""
         self.check_children(link, "collision", "pose")
-        xml.require_unique_names(link.iterchildren("collision"))
-        names = (*parent.names, xml.name_of(link))
+        names = (*parent.names, self.unused_name(xml.name_of(link), parent, link))
         pose = self.state.get("/".join(names), frames.placed(link, parent.pose))
         for collision in link.iterchildren("collision"):
             self.collision(collision, replace(parent, pose=pose, names=names))
@@ -272,7 +272,7 @@ class _Reader:
     def collision(self, collision: Element, parent: _Parent) -> None:
         """Read one collision, unless its geometry is <empty>."""
         self.check_children(collision, "geometry", "pose")
-        name = "/".join((*parent.names, xml.name_of(collision)))
+        name = "/".join((*parent.names, self.unused_name(xml.name_of(collision), parent, collision)))
         shape = xml.required_child(collision, "geometry")
         try:
             geometry = read_shape(shape, self.triangles)

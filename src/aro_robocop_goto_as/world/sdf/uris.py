@@ -56,7 +56,7 @@ def locate(uri: str, file: str) -> str:
 def locate_model(uri: str, file: str) -> str:
     """The SDF file of a model: the file that locate finds, or the SDF file in the directory that it finds.
 
-    In a directory, model.config names the file; the newest supported SDF version is preferred. Default: model.sdf, also
+    In a directory, model.config names the file; the newest SDF version is preferred. Default: model.sdf, also
     where model.config can't be read.
     """
     location = locate(uri, file)
@@ -70,13 +70,12 @@ def locate_model(uri: str, file: str) -> str:
 
 
 def _sdf_name(path: str) -> str:
-    """The name of the SDF file that a model.config lists for the newest supported version."""
+    """The name of the SDF file that a model.config lists for the newest version."""
     try:
         entries = xml.parse(path, lenient=True).findall("sdf")
     except WorldError:  # only this name is needed of the file, so its errors are no errors of the world
         return _DEFAULT
-    listed = [entry for entry in entries if entry.get("version", "1.4") in xml.VERSIONS]
-    newest = max(listed, key=lambda entry: str(entry.get("version", "")), default=None)
+    newest = max(entries, key=xml.version_of, default=None)
     return (_DEFAULT if newest is None else xml.text_of(newest)) or _DEFAULT
 
 

@@ -1,16 +1,18 @@
 """Read validated values from SDF elements, with errors that name file, line and element.
 
-The grammar of SDF is that of http://sdformat.org/spec, versions 1.4 to 1.8.
+The grammar of SDF is that of http://sdformat.org/spec, version 1.4 and later.
 """
 
+import math
+import re
 from contextlib import contextmanager
-from typing import Iterable, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from ...errors import WorldError
 from ...geometry import MAX_COORDINATE, Pose3D
 from ...reading import Element, file_of, finite_numbers, parse_xml, reading
 
-VERSIONS = ("1.4", "1.5", "1.6", "1.7", "1.8")
+OLDEST = 4  # of SDF 1.4, 1.5, ...
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -41,18 +43,24 @@ def about(element: Element) -> Iterator[None]:
 def root_of(root: Element, expected: Sequence[str]) -> Element:
     """The only element within a parsed <sdf>; `expected` lists the tags it may have, such as world and model.
 
-    WorldError if it is not SDF 1.4 to 1.8 with one such element.
+    WorldError if it is not SDF 1.4 or later with one such element.
     """
     if root.tag != "sdf":
         raise error(root, f"the outermost element is <{root.tag}>, expected <sdf>")
-    if root.get("version") not in VERSIONS:
-        raise error(root, f"SDF version {root.get('version')!r} is not supported; supported: {', '.join(VERSIONS)}")
+    if version_of(root) < OLDEST:
+        raise error(root, f"SDF version {root.get('version')!r} is not supported; supported: 1.{OLDEST} and later")
     children = [child for child in root if child.tag in expected]
     if not children:
         raise error(root, f"<sdf> has no <{'> and no <'.join(expected)}>")
     if len(children) > 1:
         raise error(children[1], f"a second <{children[1].tag}> in <sdf>; supported: one")
     return children[0]
+
+
+def version_of(element: Element) -> int:
+    """N of the SDF version 1.N that an element says it has; 0 if it says another one, or none."""
+    version = re.fullmatch(r"1\.(\d{1,9})", element.get("version", ""), re.ASCII)
+    return int(version[1]) if version else 0
 
 
 def parse(path: str, lenient: bool = False) -> Element:
@@ -71,16 +79,6 @@ def unknown_children(element: Element, known: Iterable[str]) -> List[Element]:
 def title_of(element: Element) -> str:
     """An element's tag, and its name if it has one, for a message."""
     return f"<{element.tag}>" + (f" '{element.get('name')}'" if element.get("name") else "")
-
-
-def require_unique_names(elements: Iterable[Element]) -> None:
-    """WorldError for the second of two elements with the same name."""
-    used: Set[str] = set()
-    for element in elements:
-        name = name_of(element)
-        if name in used:
-            raise error(element, f"the name '{name}' of this <{element.tag}> is already taken; expected another name")
-        used.add(name)
 
 
 def optional_child(element: Element, tag: str) -> Optional[Element]:
@@ -148,10 +146,17 @@ def pose_of(element: Element, largest: float = MAX_COORDINATE) -> Pose3D:
     pose = optional_child(element, "pose")
     if pose is None:
         return Pose3D()
-    for key, value in pose.attrib.items():
-        if key not in ("frame", "relative_to") and (key, _BOOLEANS.get(value.lower())) != ("degrees", False):
-            raise error(pose, f"<pose {key}='{value}'> is not supported; supported: metres and radians")
-    x, y, z, roll, pitch, yaw = numbers(pose, 6, largest=largest) if text_of(pose) else (0.0,) * 6
+    if not text_of(pose):
+        return Pose3D()
+    if pose.get("rotation_format") == "quat_xyzw":
+        x, y, z, *quaternion = numbers(pose, 7, largest=largest)
+        length = math.hypot(*quaternion)
+        if not length:
+            raise error(pose, f"<pose> is '{text_of(pose)}', expected a quaternion that is not zero")
+        qx, qy, qz, qw = (part / length for part in quaternion)
+        return Pose3D((x, y, z), (qx, qy, qz, qw))
+    x, y, z, *angles = numbers(pose, 6, largest=largest)
+    roll, pitch, yaw = map(math.radians, angles) if _BOOLEANS.get(pose.get("degrees", "").lower()) else angles
     return Pose3D.from_xyz_rpy((x, y, z), (roll, pitch, yaw))
 
 

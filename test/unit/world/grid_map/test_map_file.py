@@ -1,5 +1,7 @@
 """Maps of map_server are interpreted as by map_server."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from map_files import room, write_map, write_yaml, yaml_of
@@ -67,7 +69,6 @@ def test_colours_are_averaged_and_alpha_counts_as_in_map_server(tmp_path, pixel,
 BROKEN = {  # case: (text of the YAML, line of the error or None, what the message must name)
     "not YAML": ("image: [m.pgm\nresolution: 1\n", 2, ["YAML"]),
     "too deep": ("image: " + 1000 * "[", None, ["nested too deeply"]),
-    "not text": ("image: \ud800", None, ["not UTF-8 text"]),
     "a list": ("- m.pgm\n", 1, ["image, resolution, origin"]),
     "keys missing": ("image: m.pgm\nresolution: 0.05\n", None, ["no origin, negate", "occupied_thresh"]),
     "image missing": (yaml_of(image="none.pgm"), 1, ["none.pgm", "no file"]),
@@ -101,3 +102,9 @@ def test_broken_map_is_refused_with_file_line_and_key(tmp_path, case):
     message = str(caught.value)
     assert message.startswith(f"{path}:{line}: " if line else str(tmp_path))
     assert [word for word in named if word not in message] == []
+
+
+def test_comment_in_another_encoding_is_skipped(tmp_path):
+    path = Path(write_map(tmp_path, room()))
+    path.write_bytes(path.read_bytes() + "# zeď\n".encode("cp1250"))
+    assert load_world(str(path)).occupancy is not None

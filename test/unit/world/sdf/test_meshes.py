@@ -114,7 +114,7 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
     "cut.dae": (TRIANGLE_DAE[:700].encode(), "XML"),
     "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), "meter='0'"),
     "entity.dae": (b"<!DOCTYPE COLLADA [<!ENTITY e SYSTEM 'file:///etc/hostname'>]><COLLADA/>", "DOCTYPE"),
-    "house.fbx": (b"", ".dae, .obj, .stl"),
+    "nowhere.dae": (TRIANGLE_DAE.replace("#s", "#other").encode(), "no <scene> with a <visual_scene>"),
 }
 
 

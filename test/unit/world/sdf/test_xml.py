@@ -7,7 +7,7 @@ from sdf_files import raised_by
 
 BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message must name)
     "not SDF": ("<gazebo version='1.0'/>", 1, ["<gazebo>", "<sdf>"]),
-    "unsupported version": ("\n<sdf version='1.9'><world name='w'/></sdf>", 2, ["'1.9'", "1.4, 1.5, 1.6, 1.7"]),
+    "unsupported version": ("\n<sdf version='1.3'><world name='w'/></sdf>", 2, ["'1.3'", "1.4 and later"]),
     "no version": ("<sdf><world name='w'/></sdf>", 1, ["version None"]),
     "no world": ("<sdf version='1.7'/>", 1, ["<world>"]),
     "two worlds": ("<sdf version='1.7'><world name='a'/>\n<world name='b'/></sdf>", 2, ["second <world>"]),
