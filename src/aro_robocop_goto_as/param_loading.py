@@ -61,7 +61,7 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     Raises ParameterError naming `source` (a file or a parameter namespace) and every key that is unknown, missing, of
     the wrong type or out of bounds, with its value and what was expected.
     """
-    specs, types = declared(cls), _types(cls)
+    specs, types = declared(cls), types_of(cls)
     problems = [
         f"{name}: missing, expected {types[name].__name__}"
         for name, spec in specs.items()
@@ -84,13 +84,13 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     return params
 
 
-def _types(cls: Type[Any]) -> Dict[str, Type[Any]]:
+def types_of(cls: Type[Any]) -> Dict[str, Type[Any]]:
     """The type of each parameter's value."""
     types: Dict[str, Type[Any]] = {}
     hints = get_type_hints(cls)
     for spec in fields(cast(Any, cls)):
         inner = spec.metadata.get("group")
-        types.update(_types(inner) if inner else {_key(spec): _type_of_value(hints[spec.name])})
+        types.update(types_of(inner) if inner else {_key(spec): _type_of_value(hints[spec.name])})
     return types
 
 

@@ -127,8 +127,7 @@ def _told(error: Exception, words: List[str]) -> str:
     for word in words:
         _, separator, value = word.partition(":=")
         value = re.escape(value.strip())
-        # float() and int() quote the value; roslaunch writes that of a boolean in lower case.
-        if separator and re.search(rf"(^|: ){value} is not a '|: '{value}'", text, re.IGNORECASE):
+        if separator and re.search(rf"(^|: ){value} is not a '", text, re.IGNORECASE):  # roslaunch writes it in lower case
             refused.append(word)
     return ": ".join([*refused, text])
 

@@ -1,15 +1,17 @@
 """What is refused of a launch file's arguments before anything is started, as NAME:=VALUE on the command line."""
 
+import contextlib
 import datetime
 import os
 from pathlib import Path
 from typing import Any, Mapping
 
 import rosparam  # with its tags for YAML, such as !degrees
+from roslaunch.loader import convert_value
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
-from ...param_loading import declared, from_dict
+from ...param_loading import from_dict, types_of
 from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...sim_params import SimParams
@@ -20,19 +22,19 @@ from ..share import share
 
 
 def check(given: Mapping[str, str]) -> None:
-    """RobocopError for texts that the simulator would refuse, and for files that the parameter server can't have.
+    """RobocopError for values that the simulator would refuse, and for files that the parameter server can't have.
 
-    A world is found, but not read. roslaunch checks numbers, and the simulator what its parameter files say.
+    A world is found, but not read. The simulator checks what its parameter files say.
     """
-    are_texts = {name for name, spec in declared(SimParams).items() if isinstance(spec.default, str)}
-    texts = {name: text for name, text in given.items() if text and name in are_texts}
-    p = from_dict(SimParams, texts, "launch arguments")
+    kinds = types_of(SimParams)
+    values = {name: _value(text, kinds[name]) for name, text in given.items() if text and name in kinds}
+    p = from_dict(SimParams, values, "launch arguments")
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))
     urdf_of(p.robots.model, share())
     if given.get("profile"):
         _require_profile(given["profile"])
-    parse_spawn(p.robots.spawn, Pose2D())
+    parse_spawn(p.robots.spawn or " ".join(given.get(name) or "0" for name in ("x_pos", "y_pos", "yaw")), Pose2D())
     text = p.robots.robots.strip()
     if text.isdecimal():
         parse_count(text)
@@ -43,6 +45,13 @@ def check(given: Mapping[str, str]) -> None:
         if name.endswith("config") and value.endswith(".yaml") and os.path.isfile(value):
             with reading(value, ParameterError, "parameters in YAML"):
                 require_parameters(rosparam.yaml.safe_load(Path(value).read_text(encoding="utf-8")) or {}, value)
+
+
+def _value(text: str, kind: type) -> Any:
+    """What roslaunch makes of an argument's text; the text itself if it is no value of this kind."""
+    with contextlib.suppress(ValueError):
+        return convert_value(text, {int: "int", float: "double", bool: "bool"}.get(kind, "str"))
+    return text
 
 
 def _require_profile(name: str) -> None:

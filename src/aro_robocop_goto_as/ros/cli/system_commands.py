@@ -20,6 +20,8 @@ RECORDED = (
 
 def launch(given: LaunchArguments, *words: str) -> NoReturn:
     """Become roslaunch, but with exit status 1 if the simulator fails."""
+    if given.is_true("gui") and not x_display.answers():
+        refuse("gui:=true: it is a window, and there is no usable display")
     quiet = [] if given.verbose else ["--quiet"]
     program.start_launcher(*quiet, PACKAGE, given.file.name, *words, *given.words)
 

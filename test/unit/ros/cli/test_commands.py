@@ -69,6 +69,11 @@ def test_without_a_display_the_web_page_is_left_as_chosen(chosen):
     assert "no usable display; RViz is not started\n" in messages
 
 
+def test_without_a_display_pybullets_window_is_refused():
+    done = robocop("sim", "gui:=true", ROBOCOP_DRY_RUN="1")
+    assert done.returncode == 1 and "gui:=true: it is a window, and there is no usable display" in done.stderr
+
+
 def test_sim_takes_that_rviz_is_not_wanted():
     assert dry_run("sim", "world:=empty", "rviz:=false")[0].endswith(f"{LAUNCH} robocop_sim.launch world:=empty")
     assert "there is no argument rviz" in robocop("sim", "rviz:=true").stderr

@@ -22,6 +22,10 @@ from aro_robocop_goto_as.ros.cli.preflight import check, require_parameters
         ({"robots": "red:burgr 0 0"}, "there is no model 'burgr'"),
         ({"robots": "red"}, "robots: expected a number, such as 3, or 'NAME X Y [YAW]; ...'"),
         ({"spawn": "here"}, "spawn: expected 'x y'"),
+        ({"spawn": "", "x_pos": "left"}, "spawn: expected 'x y'"),
+        ({"seed": "x"}, "launch arguments: seed: expected int, got str 'x'"),
+        ({"seed": "99999999999"}, "launch arguments: seed: expected at most 2.14748e+09, got 99999999999"),
+        ({"real_time_factor": "-1", "moving": "maybe"}, "real_time_factor: expected at least 0, got -1.0; moving: ex"),
         ({"drive": "wheel"}, "launch arguments: drive: expected one of wheels, kinematic, got 'wheel'"),
     ],
 )
