@@ -14,7 +14,7 @@ from waiting import DEADLINE, wait_for
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
-NODES = ("robocop_goto_as.py", "robocop_rviz_goto_ac.py", "robocop_sim.py", "robocop_web.py")
+NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "robocop_sim.py", "robocop_web.py")
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").glob("*.py")))

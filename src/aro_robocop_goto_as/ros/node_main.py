@@ -28,13 +28,16 @@ MAX_DESCRIPTORS = 65_536  # files; in containers the system may grant a billion,
 T = TypeVar("T")
 
 
-def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTHER...]") -> None:
-    """End the program with three lines about a node if --help was given, and refuse other options; needs no master."""
+def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTHER...]", others: bool = False) -> None:
+    """End the program with three lines about a node if --help was given; needs no master.
+
+    others: whether it may have other options, which are refused otherwise
+    """
     program, options = os.path.basename(sys.argv[0]), [word for word in sys.argv[1:] if word.startswith("-")]
     if {"-h", "--help"} & set(options):
         print(HELP.format(about, program, arguments))
         sys.exit()
-    if options:
+    if options and not others:
         sys.exit(f"{program}: there is no option {options[0]}; there is: --help")
 
 

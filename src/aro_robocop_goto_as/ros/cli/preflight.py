@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Mapping
 
 import rosparam  # with its tags for YAML, such as !degrees
-from roslaunch.loader import convert_value
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
@@ -19,6 +18,8 @@ from ...suggestions import did_you_mean
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
+
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def check(given: Mapping[str, str]) -> None:
@@ -49,8 +50,8 @@ def check(given: Mapping[str, str]) -> None:
 
 def _value(text: str, kind: type) -> Any:
     """What roslaunch makes of an argument's text; the text itself if it is no value of this kind."""
-    with contextlib.suppress(ValueError):
-        return convert_value(text, {int: "int", float: "double", bool: "bool"}.get(kind, "str"))
+    with contextlib.suppress(KeyError, ValueError):
+        return _BOOLEANS[text.strip().lower()] if kind is bool else kind(text)
     return text
 
 

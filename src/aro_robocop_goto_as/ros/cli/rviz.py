@@ -21,9 +21,11 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...geometry import rotation_matrix
 from ...names import RVIZ_LOG, prefixed
 from ...probes import x_display
+from ..node_main import answer_help
 from .rviz_config import SHARE, Observed, adapted
 
-ABOUT = "RViz, configured for the running system. Other options are passed on to RViz. ./robocop run starts it, too."
+ABOUT = "RViz, configured for the running system. Options that it does not have itself are passed on to RViz."
+OPTIONS = "[--frame FIXED_FRAME] [--config FILE] [--wait SECONDS] [--trail]"
 STDERR = 2  # file descriptor
 # Runs until roslaunch ends it: a launch file ends with RViz, so RViz's node stays where there is no RViz.
 IDLE = "setpriv --pdeathsig TERM -- sleep infinity".split()
@@ -36,11 +38,12 @@ UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for
 
 def main(arguments: Optional[List[str]] = None) -> None:
     """Replace this process by RViz, which is started again if it crashes."""
-    parser = argparse.ArgumentParser(prog="robocop_rviz.py", description=ABOUT)
-    parser.add_argument("--frame", default="map", help="RViz's Fixed Frame (default map)")
-    parser.add_argument("--config", default="", help="a configuration file of your own; empty: made for the system")
-    parser.add_argument("--wait", type=float, default=0.0, help="[s] for a simulator that is being started (default 0)")
-    parser.add_argument("--trail", action="store_true", help="of odometry: no server is there that publishes one")
+    answer_help(ABOUT, OPTIONS, others=True)
+    parser = argparse.ArgumentParser(prog="robocop_rviz.py", add_help=False)
+    parser.add_argument("--frame", default="map")
+    parser.add_argument("--config", default="")  # empty: made for the system
+    parser.add_argument("--wait", type=float, default=0.0)  # [s] for a simulator that is being started
+    parser.add_argument("--trail", action="store_true")  # of odometry: no server is there that publishes one
     options, rest = parser.parse_known_args(arguments)
     if not x_display.answers():
         print("robocop: no usable display; RViz is not started", file=sys.stderr, flush=True)
