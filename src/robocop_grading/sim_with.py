@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
-from .builds.package import Package, Started, arguments_of, find_package, started
+from .builds.package import GAZEBO, SIMULATOR, Package, Started, arguments_of, find_package, started
 from .builds.scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
 from .builds.workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 from .files.scratch import scratch_folder
@@ -31,7 +31,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     try:
         found = started(package, folder, environment, run_plain, words)
     except HostingError as error:
-        if package.starts_gazebo:
+        if GAZEBO.search(str(error)):
             raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
         raise
     if found.starts_gazebo:
@@ -74,13 +74,10 @@ def _tell(words: str) -> None:
     print(f"robocop sim: {words}", file=sys.stderr, flush=True)
 
 
-def launch_file(package: Package, folder: Path, arguments: Dict[str, str], scripts: Dict[str, str]) -> Path:
-    """A launch file that starts the package and the simulator, written into `folder`.
-
-    `scripts`: node -> script, for a package without a launch file.
-    """
+def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: Started) -> Path:
+    """A launch file that starts the package and, unless that does it, the simulator, written into `folder`."""
     parts = []
-    if not package.starts_simulator:
+    if SIMULATOR not in found.starts:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
     if package.launch_file is not None:
         copy = folder / "src" / package.name / package.launch_file.relative_to(package.path)
@@ -90,8 +87,8 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], scrip
         parts.append(f"  <include file={quoteattr(str(copy))}>{values}\n  </include>")
     else:
         parts += [
-            f'  <node pkg="{package.name}" type={quoteattr(script)} name="{node}" output="screen"/>'
-            for node, script in scripts.items()
+            f'  <node pkg="{package.name}" type={quoteattr(choice.path.name)} name="{NODE_NAMES[part]}" output="screen"/>'
+            for part, choice in found.choices.items()
         ]
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
@@ -146,8 +143,7 @@ def main() -> None:
         print(f"robocop sim: building {package.name} from {shown}", flush=True)
         with scratch_folder():
             folder, environment, found = host(package, share, state, for_package)
-        scripts = {NODE_NAMES[part]: choice.path.name for part, choice in found.choices.items()}
-        path = launch_file(package, folder, for_package, scripts)
+        path = launch_file(package, folder, for_package, found)
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)

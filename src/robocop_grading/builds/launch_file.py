@@ -1,12 +1,11 @@
 """A launch file -> the nodes and parameters that roslaunch would start and set."""
 
+import json
 import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence
-
-import yaml
 
 from aro_robocop_goto_as.errors import HostingError
 
@@ -14,9 +13,7 @@ from ..files.tree import read_bytes
 from .workspace import Environment, Run, output_of
 
 READER = Path(__file__).resolve().with_name("roslaunch_reader.py")
-MAX_DEPTH = 20  # nested lists and mappings of a parameter
-MAX_SHOWN = 200  # characters of a parameter or an error in a message
-TYPES = "expected a boolean, a 32-bit number, a string, or a list or mapping of these"
+MAX_SHOWN = 200  # characters of an error in a message
 MAX_OUTPUT = 200_000  # bytes of nodes and parameters
 VARIABLE = re.compile(r"[A-Za-z_]\w*")
 WHILE = re.compile(r"while processing (.*):\n")  # an included file
@@ -52,15 +49,6 @@ class LaunchFile:
     warnings: List[str]  # of roslaunch
 
 
-class _PlainLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no types
-    """YAML without aliases: a few lines with them can expand to more than fits into memory."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            raise HostingError("its parameters refer to one another (YAML aliases), which is not supported")
-        return super().compose_node(parent, index)
-
-
 def read(path: Path, top: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()) -> LaunchFile:
     """What roslaunch makes of a launch file of the package at `top`; `run` is the sandbox, as it may run commands.
 
@@ -74,15 +62,14 @@ def read(path: Path, top: Path, environment: Environment, run: Run, arguments: S
         reason = f"more than {MAX_OUTPUT // 1000} kB" if len(output) == MAX_OUTPUT else _last_line(errors)
         raise HostingError(f"{name}: roslaunch can't read it: {reason}")
     try:
-        values = yaml.load(output.decode(errors="replace"), _PlainLoader)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:  # ValueError: a date that does not exist
-        raise HostingError(f"{name}: its parameters can't be read: {str(error)[:MAX_SHOWN]}") from error
-    try:
+        values = json.loads(output)
         if "error" in values:
             raise HostingError(_failure(values, name, top))
         nodes = [_node(entry, top) for entry in values["nodes"]]
-        return LaunchFile(nodes, _settable(values["parameters"], name), [f"{name}: {it}" for it in values["warnings"]])
-    except (AttributeError, KeyError, TypeError) as error:  # not the reader's: a hand-in's code has printed it
+        parameters = {key: value for key, value in values["parameters"].items() if key != "/use_sim_time"}
+        return LaunchFile(nodes, parameters, [f"{name}: {it}" for it in values["warnings"]])
+    # Not the reader's: a hand-in's code has printed it.
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise HostingError(f"{name}: roslaunch can't read it: {error!r}"[:MAX_SHOWN]) from error
 
 
@@ -119,23 +106,3 @@ def _node(values: Mapping[str, Any], top: Path) -> LaunchNode:
             raise HostingError(f"{place}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
     is_own = top in Path(str(values["file"])).parents
     return LaunchNode(package, kind, name, place, namespace, arguments, environment, values["not_done"], is_own)
-
-
-def _settable(parameters: Any, name: str) -> Mapping[str, Any]:
-    """The parameters without the simulator's own; HostingError for one that can't be set."""
-    for key, value in parameters.items():
-        if not isinstance(key, str) or not _is_settable(value):
-            words = str(value)[:MAX_SHOWN]
-            raise HostingError(f"{name}: {str(key)[:MAX_SHOWN]}: {words} can't be a parameter: {TYPES}")
-    return {key: value for key, value in parameters.items() if key != "/use_sim_time"}
-
-
-def _is_settable(value: Any, depth: int = 0) -> bool:
-    """Return whether the parameter server takes a value: XML-RPC has no dates, no sets, and integers of 32 bits."""
-    if isinstance(value, list):
-        return depth < MAX_DEPTH and all(_is_settable(it, depth + 1) for it in value)
-    if isinstance(value, dict):
-        return depth < MAX_DEPTH and all(isinstance(k, str) and _is_settable(v, depth + 1) for k, v in value.items())
-    if isinstance(value, int):  # includes bool
-        return -(2**31) <= value < 2**31
-    return isinstance(value, (float, str))

@@ -1,6 +1,5 @@
 """A path on disk -> the catkin package there, with its launch file and nodes."""
 
-import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,8 +17,8 @@ from .workspace import Environment, Run
 LAUNCH_FILE = "robocop_goto_as.launch"
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
 MAX_NAMED = 10  # scripts in a message
-SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", "aro_sim"}  # packages that nothing depends on
-SIMULATOR = re.compile(r"aro_sim|robocop_sim")
+SIMULATOR = "aro_sim"  # the lab's package that starts its simulator
+SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
 GAZEBO = re.compile(r"gazebo(?!_msgs)")
 
 
@@ -37,29 +36,6 @@ class Package:
     def sources(self) -> Dict[str, Path]:
         """The packages to be built, by name."""
         return {self.name: self.path, **self.needed}
-
-    @property
-    def starts_simulator(self) -> bool:
-        """Return whether its launch file starts the lab's simulator, itself or by including others of the package."""
-        return self._starts(SIMULATOR)
-
-    @property
-    def starts_gazebo(self) -> bool:
-        """Return whether it starts Gazebo, in the same way."""
-        return self._starts(GAZEBO)
-
-    def _starts(self, names: "re.Pattern[str]") -> bool:
-        waiting, seen = [self.launch_file] if self.launch_file else [], set()
-        while waiting:
-            path = waiting.pop()
-            seen.add(path)
-            root = read_xml(path)
-            included = [include.get("file", "") for include in root.iter("include")]
-            if any(names.search(name) for name in [*included, *(node.get("pkg", "") for node in root.iter("node"))]):
-                return True
-            own = {found for name in included for found in tree.find(self.path, os.path.basename(name) or "-")}
-            waiting += sorted(path for path in own - seen if path.is_file())
-        return False
 
 
 def arguments_of(launch_file: Optional[Path]) -> List[str]:
@@ -161,7 +137,12 @@ class Started:
     choices: Mapping[str, Choice]
     parameters: Mapping[str, Any]
     notes: Sequence[str]
-    starts_gazebo: bool = False  # whether the package's own launch file has a node of Gazebo
+    starts: Collection[str] = ()  # packages of the nodes that the package's own launch file starts
+
+    @property
+    def starts_gazebo(self) -> bool:
+        """Return whether the package's own launch file has a node of Gazebo."""
+        return any(map(GAZEBO.search, self.starts))
 
 
 def started(
@@ -175,7 +156,7 @@ def started(
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}
     notes: List[str] = []
-    starts_gazebo = False
+    starts: Collection[str] = ()
     for path in package.launch_files:
         is_main = path == package.launch_file
         try:
@@ -185,8 +166,7 @@ def started(
                 raise
             continue  # it may need packages that only another machine has
         if is_main:
-            others = {node.package for node in file.nodes} - {package.name}
-            starts_gazebo = any(GAZEBO.search(other) for other in others)
+            starts = {node.package for node in file.nodes} - {package.name}
         choices = choose(copy, [*nodes, *file.nodes], relays, expects_one=False)
         if is_main or any(choice.node in file.nodes for choice in choices.values()):
             nodes += file.nodes
@@ -195,7 +175,7 @@ def started(
             notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
         if all(part in choices and choices[part].node is not None for part in PARTS.values()):
             break
-    return Started(choose(copy, nodes, relays), parameters, notes, starts_gazebo)
+    return Started(choose(copy, nodes, relays), parameters, notes, starts)
 
 
 def _not_done(

@@ -1,21 +1,23 @@
-"""Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's loader makes of a launch file, as YAML.
+"""Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's loader makes of a launch file, as JSON.
 
 It is a program of its own, as launch files can run commands. It imports nothing of the grader's.
 """
 
+import json
 import shlex
 import sys
 import traceback
+import xmlrpc.client
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 from xml.parsers import expat
 
 del sys.path[0]  # the grader's modules: not to be found in place of others
 
-import yaml  # noqa: E402
 from roslaunch.config import ROSLaunchConfig  # noqa: E402
 from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
 
+MAX_SHOWN = 100  # characters of a parameter in a message
 Tags = List[Tuple[str, Dict[str, str], int]]  # name, attributes, line
 
 
@@ -97,8 +99,15 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
         except ValueError as error:  # of shlex
             return {"error": f"args={node.args!r}: {error}", "file": node.filename, "line": line_of_node(node)}
     parameters = {str(name): parameter.value for name, parameter in config.params.items()}
+    for name, value in parameters.items():
+        try:
+            xmlrpc.client.dumps((value,))  # as the parameter server gets it
+            json.dumps(value)
+        except (TypeError, ValueError, OverflowError, RecursionError) as error:
+            shown = str(value)[:MAX_SHOWN]
+            return {"error": f"{name}: {shown} can't be a parameter: {error}", "file": path, "line": 0}
     return {"nodes": nodes, "parameters": parameters, "warnings": list(map(str, config.config_errors))}
 
 
 if __name__ == "__main__":
-    sys.stdout.write(yaml.safe_dump(read(sys.argv[1], sys.argv[2:])))
+    print(json.dumps(read(sys.argv[1], sys.argv[2:])))

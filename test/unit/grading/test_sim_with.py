@@ -2,12 +2,13 @@
 
 import os
 from pathlib import Path
+from typing import Tuple
 
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.builds.package import find_package
+from robocop_grading.builds.package import Started, find_package
 from robocop_grading.builds.scripts import Choice
 from robocop_grading.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
 
@@ -32,26 +33,16 @@ def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
 
 
 def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_path: Path) -> None:
-    gazebo = '<launch><include file="$(find gazebo_ros)/launch/empty_world.launch"/></launch>'
-    files = {"package.xml": MANIFEST.format(LAB), "launch/all.launch": gazebo, "launch/nodes.launch": "<launch/>"}
-    tree(tmp_path, files)
-    package = find_package(str(tmp_path), "all.launch")
-    assert package.starts_gazebo and not find_package(str(tmp_path), "nodes.launch").starts_gazebo
-    said = instead_of_gazebo(package)
+    files = {"package.xml": MANIFEST.format(LAB), "launch/all.launch": "<launch/>", "launch/nodes.launch": "<launch/>"}
+    said = instead_of_gazebo(find_package(str(tree(tmp_path, files)), "all.launch"))
     assert said.startswith("all.launch starts Gazebo") and "there are: nodes.launch" in said
 
 
-@pytest.mark.parametrize(
-    "text, starts",
-    [
-        ('<launch><include file="$(find aro_sim)/launch/robocop_sim.launch"/></launch>', True),
-        ("<launch/>", False),
-    ],
-)
-def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, text: str, starts: bool) -> None:
-    package = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": text})))
-    assert package.starts_simulator == starts
-    assert ("aro_sim" in launch_file(package, tmp_path, {}, {}).read_text()) != starts
+@pytest.mark.parametrize("starts", [(), ("aro_sim",)])
+def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, starts: Tuple[str, ...]) -> None:
+    package = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
+    written = launch_file(package, tmp_path, {}, Started({}, {}, (), starts)).read_text()
+    assert ("aro_sim" in written) != bool(starts)
 
 
 @pytest.mark.parametrize(
@@ -60,20 +51,6 @@ def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, text:
 def test_options_may_stand_before_or_among_the_arguments(line: str) -> None:
     args = parsed(line.split())
     assert (args.path, args.launch, args.arguments) == ("my_lab", "other.launch", ["sync:=lockstep"])
-
-
-def test_only_the_chosen_launch_file_and_what_it_includes_decide_who_starts_the_simulator(tmp_path: Path) -> None:
-    starts = '<launch><include file="$(find aro_sim)/launch/robocop_sim.launch"/></launch>'
-    files = {
-        "package.xml": MANIFEST.format(LAB),
-        "launch/robocop_goto_as.launch": "<launch><!-- without robocop_sim --></launch>",
-        "launch/lab.launch": f'<launch><include file="$(find {LAB})/launch/both.launch"/></launch>',
-        "launch/both.launch": starts,
-    }
-    tree(tmp_path, files)
-    assert not find_package(str(tmp_path)).starts_simulator
-    assert find_package(str(tmp_path), "lab.launch").starts_simulator
-    assert find_package(str(tmp_path), "both.launch").starts_simulator
 
 
 def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_the_reason(

@@ -116,17 +116,23 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
     ]
 
 
-def test_launch_file_with_a_node_of_gazebo_is_known_unless_a_condition_leaves_the_node_out(tmp_path: Path) -> None:
+def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unless_a_condition_leaves_them_out(
+    tmp_path: Path,
+) -> None:
     pytest.importorskip("roslaunch")
-    node = '<node pkg="gazebo_ros" type="gzserver" name="gazebo" if="$(arg gazebo)"/>'
+    nodes = '<node pkg="gazebo_ros" type="a" name="a" if="$(arg all)"/><node pkg="aro_sim" type="b" name="b"/>'
     files = {
         "package.xml": MANIFEST.format(LAB),
-        "launch/robocop_goto_as.launch": f'<launch><arg name="gazebo" default="true"/>{node}</launch>',
+        "launch/robocop_goto_as.launch": '<launch><arg name="all" default="1"/>'
+        '<include file="$(dirname)/nodes.launch" pass_all_args="true"/></launch>',
+        "launch/nodes.launch": f'<launch><arg name="all"/>{nodes}</launch>',
         "scripts/robocop_goto_as.py": "",
     }
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
-    for words in ([], ["gazebo:=false"]):
-        assert started(package, tmp_path, dict(os.environ), run_plain, words).starts_gazebo == (not words)
+    for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
+        found = started(package, tmp_path, dict(os.environ), run_plain, words)
+        assert found.starts == starts
+        assert found.starts_gazebo == ("gazebo_ros" in starts)
 
 
 def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
