@@ -12,7 +12,7 @@ from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableErr
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 
 from .builds.workspace import exclusive, places
-from .files import packing, tree
+from .files import tree, unpacking
 from .files.scratch import scratch_folder
 from .grader import grade as grade_submission
 from .judge import CheckResult, Grade, Outcome, printable, printable_lines, total
@@ -95,14 +95,14 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     given = Path(os.path.realpath(Path(path).expanduser()))
     if sandbox is not None:
         expect_private(given)
-    if given.is_file() and given.suffix.lower() in packing.OTHER_ARCHIVES and not packing.is_packed(given):
+    if given.is_file() and given.suffix.lower() in unpacking.OTHER_ARCHIVES and not unpacking.is_packed(given):
         raise GradingError(f"{path}: can't be unpacked: expected zip or tar")
-    if not packing.is_packed(given):
+    if not unpacking.is_packed(given):
         return path, []
-    packed = packing.pack(given)
+    unpacked = unpacking.unpack(given)
     tree.remove(folder)
-    packing.unpack(packed.archive, folder)
-    return str(folder / given.name), packed.notes
+    unpacked.write(folder / given.name)
+    return str(folder / given.name), unpacked.notes
 
 
 def main() -> None:

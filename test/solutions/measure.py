@@ -43,7 +43,7 @@ from processes import busy_processes
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_grading.classroom.hand_ins import collect, packed
+from robocop_grading.classroom.hand_ins import collect, unpacked
 from robocop_grading.classroom.main import Class
 from robocop_grading.classroom.main import grade as grade_class
 from robocop_grading.classroom.results import Results
@@ -243,7 +243,7 @@ def stub(path: Path, results: Results, checks: List[Entry]) -> None:
         report.append({**check, "outcome": "failed" if failure else "passed", "failure": failure})
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "report.json").write_text(json.dumps({"name": path.name, "checks": report, "problems": []}))
-        results.keep(path.name, packed(path).digest, Path(folder), 0.0)
+        results.keep(path.name, unpacked(path).digest, Path(folder), 0.0)
 
 
 def large_class(args: argparse.Namespace) -> int:

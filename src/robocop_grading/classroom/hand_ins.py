@@ -6,7 +6,7 @@ from typing import List, Tuple
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError, SubmissionError
 
-from ..files import packing
+from ..files import unpacking
 from ..files.archives import is_archive
 
 EXPECTED = "a folder, a zip or tar archive, or a Python file"
@@ -46,19 +46,19 @@ def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[List[HandIn],
 
 def _digest(path: Path) -> str:
     try:
-        return packed(path).digest
+        return unpacked(path).digest
     except RobocopError:  # its row says why
         return ""
 
 
-def packed(path: Path) -> packing.Packed:
+def unpacked(path: Path) -> unpacking.Unpacked:
     """What was handed in; SubmissionError if that can't be graded, or read."""
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
     if path.is_symlink() or not (path.is_dir() or is_file):
         kind = "a link" if path.is_symlink() else f"a {path.suffix or 'nameless'} file"
         raise SubmissionError(f"{kind}: expected {EXPECTED}")
     try:
-        return packing.pack(path)
+        return unpacking.unpack(path)
     except RobocopError:
         raise
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files

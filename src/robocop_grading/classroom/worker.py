@@ -8,7 +8,6 @@ from typing import List
 from aro_robocop_goto_as.errors import RobocopError, UngradableError
 
 from ..builds.workspace import places
-from ..files import packing
 from ..files.tree import temporary_folder
 from ..grader import grade
 from ..judge import Grade
@@ -17,7 +16,7 @@ from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import prepare_submission
-from .hand_ins import packed
+from .hand_ins import unpacked
 from .results import Results
 
 MAX_PROBLEM = 4_000  # characters
@@ -32,8 +31,9 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
     with temporary_folder("robocop-class-") as top:
         report = top / "report"
         try:
-            archive, digest, notes = packed(path)
-            packing.unpack(archive, top / "hand_in")
+            handed_in = unpacked(path)
+            digest, notes = handed_in.digest, handed_in.notes
+            handed_in.write(top / "hand_in" / path.name)
             submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
             submission = replace(submission, name=shown(path), notes=[*submission.notes, *notes])
             grade(Runner(plan, state, sandbox), submission, report, scratch=top)

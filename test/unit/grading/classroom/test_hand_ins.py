@@ -1,4 +1,4 @@
-"""What counts as a hand-in of a class, and when it has changed; test_packing.py tests what is in one."""
+"""What counts as a hand-in of a class, and when it has changed; test_unpacking.py tests what is in one."""
 
 import os
 import tempfile
@@ -12,15 +12,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
-from robocop_grading.classroom.hand_ins import collect, packed
+from robocop_grading.classroom.hand_ins import collect, unpacked
 from robocop_grading.files import archives
-from robocop_grading.files.packing import unpack
 
 
 def problem_of(path):
-    """Why a hand-in can't be packed."""
+    """Why a hand-in can't be unpacked."""
     with pytest.raises(RobocopError) as error:
-        packed(path)
+        unpacked(path)
     return str(error.value)
 
 
@@ -49,11 +48,10 @@ def test_digest_depends_on_contents_but_not_on_times(folder):
 def test_folder_is_unpacked_with_its_links_and_without_what_was_built(folder, tmp_path):
     (tmp_path / "secret").write_text("points")
     (folder / "anna" / "link").symlink_to(tmp_path / "secret")
-    archive = packed(folder / "anna").archive
-    unpack(archive, tmp_path / "out")
-    anna = tmp_path / "out" / "anna"
+    found, anna = unpacked(folder / "anna"), tmp_path / "out"
+    found.write(anna)
     assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
-    assert (anna / "link").is_symlink() and b"points" not in archive and not (anna / "build").exists()
+    assert (anna / "link").is_symlink() and "points" not in str(found.entries) and not (anna / "build").exists()
 
 
 def test_what_can_not_be_read_from_a_folder_states_the_reason(tmp_path):

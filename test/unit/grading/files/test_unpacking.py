@@ -10,7 +10,7 @@ import pytest
 
 from aro_robocop_goto_as.errors import GradingError, SubmissionError
 from robocop_grading.cli import unpacked_path
-from robocop_grading.files import archives, packing
+from robocop_grading.files import archives, unpacking
 
 SERVER = "robocop_goto_as.py"
 
@@ -47,14 +47,14 @@ def link(name, target, kind=tarfile.SYMTYPE):
 
 @pytest.fixture
 def unpacked(tmp_path):
-    """Write a folder of files, pack it, unpack it; then the paths of files and links below it."""
+    """Write a folder of files, unpack it; then the paths of files and links below it."""
 
     def run(files, name="anna"):
         top, out = tmp_path / "class" / name, tmp_path / "out"
         for path, content in files.items():
             (top / path).parent.mkdir(parents=True, exist_ok=True)
             (top / path).write_bytes(content)
-        packing.unpack(packing.pack(top).archive, out)
+        unpacking.unpack(top).write(out / name)
         return sorted(str(path.relative_to(out / name)) for path in (out / name).rglob("*") if not path.is_dir())
 
     return run
@@ -92,9 +92,9 @@ def test_archive_beside_other_files_is_unpacked(name, make, unpacked):
 )
 def test_archive_in_an_archive_is_unpacked(make, tmp_path):
     (tmp_path / "eve.zip").write_bytes(make())
-    packed = packing.pack(tmp_path / "eve.zip")
-    assert packed.notes == []
-    packing.unpack(packed.archive, tmp_path / "out")
+    found = unpacking.unpack(tmp_path / "eve.zip")
+    assert found.notes == []
+    found.write(tmp_path / "out")
     assert [path.name for path in (tmp_path / "out").rglob("*.py")] == [SERVER]
 
 
@@ -104,8 +104,7 @@ def test_archive_in_an_archive_is_unpacked(make, tmp_path):
 )
 def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_path):
     (tmp_path / "eve.zip").write_bytes(zipped({**beside, "old/backup.zip": zipped(ONE), "old.rar": b""}))
-    packed = packing.pack(tmp_path / "eve.zip")
-    assert packed.notes == [
+    assert unpacking.unpack(tmp_path / "eve.zip").notes == [
         "old/backup.zip was not unpacked: what is graded is outside of it",
         "old.rar was not unpacked: expected zip or tar",
     ]
@@ -142,17 +141,17 @@ def test_what_can_not_be_graded_states_what_was_found(files, problem, tmp_path, 
         (tmp_path / "eve" / name).parent.mkdir(exist_ok=True)
         (tmp_path / "eve" / name).write_bytes(content() if callable(content) else content)
     with pytest.raises(SubmissionError) as error:
-        packing.pack(tmp_path / "eve")
+        unpacking.unpack(tmp_path / "eve")
     assert problem in str(error.value)
 
 
 def test_archives_one_in_another_are_unpacked_to_a_sensible_depth(tmp_path):
     content = zipped(ONE)
-    for _ in range(packing.MAX_NESTED + 1):
+    for _ in range(unpacking.MAX_NESTED + 1):
         content = zipped({"in.zip": content})
     (tmp_path / "eve.zip").write_bytes(content)
     with pytest.raises(SubmissionError, match="only in.zip/in.zip/in.zip/in.zip; .* more than three in one another"):
-        packing.pack(tmp_path / "eve.zip")
+        unpacking.unpack(tmp_path / "eve.zip")
 
 
 @pytest.mark.parametrize(
@@ -171,7 +170,7 @@ def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
     (tmp_path / "eve.zip").write_bytes(zipped(dict.fromkeys(["x.py", "../evil.py"], b"")))
     for name in ("eve.tar", "eve.zip"):
         with pytest.raises(SubmissionError):
-            packing.pack(tmp_path / name)
+            unpacking.unpack(tmp_path / name)
 
 
 def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path):
@@ -180,8 +179,8 @@ def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_
         archive.addfile(link(SERVER, str(target)))
         archive.addfile(tarfile.TarInfo(SERVER))
     (tmp_path / "eve.tar").write_bytes(buffer.getvalue())
-    packing.unpack(packing.pack(tmp_path / "eve.tar").archive, tmp_path / "out")
-    assert (tmp_path / "out" / "eve.tar" / SERVER).is_file() and not target.exists()
+    unpacking.unpack(tmp_path / "eve.tar").write(tmp_path / "out")
+    assert (tmp_path / "out" / SERVER).is_file() and not target.exists()
 
 
 def test_links_of_archives_stay_links_and_hard_links_become_files(tmp_path):
@@ -193,7 +192,7 @@ def test_links_of_archives_stay_links_and_hard_links_become_files(tmp_path):
         archive.writestr(info, SERVER)
         archive.writestr(SERVER, "pass")
     for name in ("eve.tar", "eve.zip"):
-        packing.unpack(packing.pack(tmp_path / name).archive, tmp_path / "out")
+        unpacking.unpack(tmp_path / name).write(tmp_path / "out" / name)
     out = tmp_path / "out"
     assert (out / "eve.tar" / "src" / "CMakeLists.txt").is_symlink() and (out / "eve.tar" / "copy.py").is_file()
     assert (out / "eve.zip" / "link.py").is_symlink() and (out / "eve.zip" / "link.py").read_text() == "pass"
@@ -229,7 +228,7 @@ def test_zip_that_is_encrypted_says_so(tmp_path):
     raw[directory + 8] |= 1
     (tmp_path / "eve.zip").write_bytes(bytes(raw))
     with pytest.raises(SubmissionError, match="encrypted, password required"):
-        packing.pack(tmp_path / "eve.zip")
+        unpacking.unpack(tmp_path / "eve.zip")
 
 
 def test_archives_share_one_limit(tmp_path, monkeypatch):
@@ -239,7 +238,7 @@ def test_archives_share_one_limit(tmp_path, monkeypatch):
         with zipfile.ZipFile(tmp_path / "eve" / f"{name}.zip", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr(f"{name}.py", bytes(600))
     with pytest.raises(SubmissionError, match="b.zip: larger than"):
-        packing.pack(tmp_path / "eve")
+        unpacking.unpack(tmp_path / "eve")
 
 
 def test_script_is_found_whatever_its_neighbours_are_called(unpacked):
@@ -262,7 +261,7 @@ def test_only_a_folder_without_anything_to_grade_outside_of_its_archives_is_unpa
     for name, content in files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(content)
-    assert packing.is_packed(tmp_path) is is_packed
+    assert unpacking.is_packed(tmp_path) is is_packed
 
 
 def test_single_archive_is_graded_as_what_it_contains(tmp_path):

@@ -1,13 +1,12 @@
-"""Packs what was handed in, on disk or in archives, one inside another, as the platforms of courses export it."""
+"""Unpacks what was handed in, on disk or in archives, one inside another, as the platforms of courses export it."""
 
 import hashlib
 import io
 import os
 import re
 import stat
-import tarfile
 from pathlib import Path, PurePosixPath
-from typing import Any, Dict, List, NamedTuple
+from typing import Dict, List, NamedTuple
 
 from aro_robocop_goto_as.errors import SubmissionError
 
@@ -19,19 +18,41 @@ MAX_NAMED = 10  # files in a message
 # What is graded, also under a browser's name of a second download. Archives beside it stay as they are.
 GRADED = re.compile(r"package\.xml|robocop_(goto_as|rviz_goto_ac).*\.py")
 OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
-TYPES = {stat.S_IFREG: tarfile.REGTYPE, stat.S_IFDIR: tarfile.DIRTYPE, stat.S_IFLNK: tarfile.SYMTYPE}
+TYPES = (stat.S_IFREG, stat.S_IFDIR, stat.S_IFLNK)
 
 
-class Packed(NamedTuple):
-    """What was handed in as one tar archive, which has a single file or folder."""
+class Unpacked(NamedTuple):
+    """What was handed in, a file or a folder, in memory."""
 
-    archive: bytes
-    digest: str  # of the content
+    entries: Dict[str, Entry]  # by path; the file or folder itself has an empty one
     notes: List[str]  # about archives that were not unpacked
 
+    @property
+    def digest(self) -> str:
+        """A text that changes with the content."""
+        sums = hashlib.sha256()
+        for path, (mode, content, target) in sorted(self.entries.items()):
+            sums.update(repr((path, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
+        return sums.hexdigest()
 
-def pack(path: Path) -> Packed:
-    """Pack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
+    def write(self, top: Path) -> None:
+        """Write it to `top`, which does not exist yet; SubmissionError if that is not possible."""
+        try:
+            for path, (mode, content, target) in sorted(self.entries.items()):
+                place = top / path if path else top
+                folder = place if stat.S_ISDIR(mode) else place.parent
+                folder.mkdir(parents=True, exist_ok=True)
+                if stat.S_ISLNK(mode):
+                    place.symlink_to(target)
+                elif stat.S_ISREG(mode):
+                    place.write_bytes(content)
+                    place.chmod(stat.S_IMODE(mode))
+        except OSError as error:  # for example a name that is too long
+            raise SubmissionError(f"can't be unpacked: {error}") from error
+
+
+def unpack(path: Path) -> Unpacked:
+    """Unpack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
     contents = Contents()
     if is_archive(path.name) and path.is_file():
         contents.add("", Entry(FOLDER))
@@ -40,7 +61,7 @@ def pack(path: Path) -> Packed:
     else:
         _add_from_disk(path, contents)
     _unpack_nested(contents)
-    return _packed(path.name, contents.entries, _notes(contents.entries))
+    return Unpacked(contents.entries, _notes(contents.entries))
 
 
 def is_packed(path: Path) -> bool:
@@ -98,26 +119,3 @@ def _notes(entries: Dict[str, Entry]) -> List[str]:
         )
         raise SubmissionError("; ".join([problem, *notes]))
     return notes
-
-
-def _packed(name: str, entries: Dict[str, Entry], notes: List[str]) -> Packed:
-    sums, buffer = hashlib.sha256(), io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode="w") as archive:
-        for path, (mode, content, target) in sorted(entries.items()):
-            info = tarfile.TarInfo(f"{name}/{path}" if path else name)
-            info.mode, info.size, info.linkname = stat.S_IMODE(mode), len(content), target
-            info.type = TYPES[stat.S_IFMT(mode)]
-            archive.addfile(info, io.BytesIO(content))
-            sums.update(repr((path, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
-    return Packed(buffer.getvalue(), sums.hexdigest(), notes)
-
-
-def unpack(packed: bytes, folder: Path) -> None:
-    """Unpack to an empty folder; SubmissionError if that is not possible."""
-    # From checked names. Python 3.14's default would refuse some links and change modes.
-    options: Dict[str, Any] = {"filter": "fully_trusted"} if hasattr(tarfile, "data_filter") else {}
-    try:
-        with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
-            archive.extractall(folder, **options)
-    except (OSError, tarfile.TarError) as error:  # for example one name for a file and a folder
-        raise SubmissionError(f"can't be unpacked: {error}") from error
