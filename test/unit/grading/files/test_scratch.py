@@ -1,4 +1,4 @@
-"""The temporary folder of grade, grade-class and sim --with is removed with its program, or by the next one."""
+"""The temporary folder of grade, grade-class and sim --with is removed with its program."""
 
 import os
 import signal
@@ -10,45 +10,6 @@ from typing import Optional
 
 import pytest
 from processes import busy_processes, processes_mentioning
-
-HOLD = """
-import sys, tempfile
-from robocop_grading.files.scratch import scratch_folder
-with scratch_folder():
-    print(tempfile.mkdtemp(), flush=True)
-    sys.stdin.read()
-"""
-
-
-def holder(folder):
-    """A process in a scratch folder."""
-    return subprocess.Popen(
-        [sys.executable, "-c", HOLD],
-        env={**os.environ, "TMPDIR": str(folder)},
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-
-
-def test_folder_of_a_killed_process_is_removed_by_the_next_one_but_not_that_of_a_running_one(tmp_path):
-    killed, running, following = (holder(tmp_path) for _ in range(3))
-    with killed, running, following:
-        made = [process.stdout.readline() for process in (killed, running)]
-        assert all(made) and following.stdout.readline()
-        assert len(list(tmp_path.iterdir())) == 3
-        killed.kill()
-        killed.wait()
-        following.communicate("")
-        assert len(list(tmp_path.iterdir())) == 2
-        with holder(tmp_path) as last:
-            assert last.stdout.readline()
-            assert len(list(tmp_path.iterdir())) == 2  # the running one's and its own
-            last.communicate("")
-        assert os.path.isdir(made[1].strip()) and not os.path.exists(made[0].strip())
-        running.communicate("")
-    assert list(tmp_path.iterdir()) == []
-
 
 SCRATCH_PROGRAM = """
 import subprocess, sys, time
