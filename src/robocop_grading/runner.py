@@ -2,7 +2,6 @@
 
 import math
 import os
-import queue
 import sys
 import threading
 import time
@@ -127,24 +126,17 @@ class Runner:
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget."""
-        lines: queue.Queue[Optional[str]] = queue.Queue()
         log = out / f"{part}-session.log"
         inherited = self.viewer.descriptors if self.viewer is not None else ()
         process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
         guard = Guard(process.pid, memory=memory_group.LIMIT, processes=math.inf)  # the session limits the node's
-        threading.Thread(target=_read, args=(process, lines), daemon=True).start()
         kills = memory_group.kernel_kills()
         deadline, scenario, grace = time.monotonic() + self.budget, "start", 0.0
+        timer = threading.Timer(self.budget, child.kill_tree, [process.pid])  # ends the lines, too
+        timer.start()
         try:
-            while True:
-                try:
-                    line = lines.get(timeout=max(0.0, deadline - time.monotonic()))
-                except queue.Empty:
-                    raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario}") from None
-                if line is None:
-                    grace = END_TIMEOUT
-                    break
-                word, _, rest = line.partition(" ")
+            for line in process.stdout or ():
+                word, _, rest = line.decode(errors="replace").strip().partition(" ")
                 if word == "begin":
                     scenario = rest
                     self.on_progress(part, rest)
@@ -152,7 +144,11 @@ class Runner:
                     raise NoTimeError(f"{part}: {rest}")
                 elif word == "error":
                     raise UngradableError(rest)
+            if time.monotonic() >= deadline:
+                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario}")
+            grace = END_TIMEOUT
         finally:
+            timer.cancel()
             status = child.end(process, None, grace)
             guard.stop()
         records, problem, killed = records_in(out, part), guard.reason, ""
@@ -167,13 +163,6 @@ class Runner:
             if status in rec.KILLED:
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
         return Recorded(records, problem, killed, excused)
-
-
-def _read(process: "child.Child[bytes]", lines: "queue.Queue[Optional[str]]") -> None:
-    assert process.stdout is not None
-    for line in process.stdout:
-        lines.put(line.decode(errors="replace").strip())
-    lines.put(None)
 
 
 def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
