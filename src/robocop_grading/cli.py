@@ -15,12 +15,13 @@ from .builds.workspace import exclusive, places
 from .files import tree, unpacking
 from .files.scratch import scratch_folder
 from .grader import grade as grade_submission
-from .judge import CheckResult, Grade, Outcome, printable, printable_lines, total
+from .judge import CheckResult, Grade, Outcome, total
 from .plan import MIDDLE, Plan, load
 from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, Sandbox, expect_private, open_sandbox
 from .submission import prepare_submission
+from .texts import printable, printable_lines
 from .viewer import choose_viewer
 
 NO_GRADE = 3  # exit status: the machine had no time, or something was killed from outside

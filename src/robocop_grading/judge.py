@@ -156,16 +156,6 @@ def points_in_words(points: float, available: float, extra: float, extra_availab
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
 
 
-def printable(text: str) -> str:
-    """One line without characters that control a terminal or are not allowed in XML."""
-    return "".join(character if character.isprintable() else " " for character in text)
-
-
-def printable_lines(text: str) -> str:
-    """The same for a text that may have several lines."""
-    return "\n".join(printable(line) for line in text.split("\n"))
-
-
 def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
     """Grade the parts that have records; `problems` (part -> text) explains records that are missing."""
     checks: List[CheckResult] = []

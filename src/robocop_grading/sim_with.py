@@ -16,6 +16,7 @@ from .builds.package import GAZEBO, SIMULATOR, Package, Started, arguments_of, f
 from .builds.scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
 from .builds.workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 from .files.scratch import scratch_folder
+from .texts import printable_lines
 
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
@@ -145,7 +146,7 @@ def main() -> None:
             folder, environment, found = host(package, share, state, for_package)
         path = launch_file(package, folder, for_package, found)
     except RobocopError as error:
-        print(f"robocop sim: {error}", file=sys.stderr)
+        print(f"robocop sim: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
         ignore_all()

@@ -1,4 +1,4 @@
-"""The longer texts of causes, by their names, and sentences made of parts."""
+"""The longer texts of causes, by their names, sentences made of parts, and what can be shown of others' texts."""
 
 import functools
 from typing import Mapping
@@ -24,3 +24,13 @@ def _texts() -> Mapping[str, str]:
 def sentences(*parts: str) -> str:
     """The parts that are not empty as sentences of one paragraph."""
     return " ".join(part if part.endswith(("?", ".", '."')) else f"{part}." for part in parts if part)
+
+
+def printable(text: str) -> str:
+    """One line without characters that control a terminal or are not allowed in XML."""
+    return "".join(character if character.isprintable() else " " for character in text)
+
+
+def printable_lines(text: str) -> str:
+    """The same for a text that may have several lines."""
+    return "\n".join(printable(line) for line in text.split("\n"))

@@ -20,11 +20,12 @@ from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal,
 from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED
 from ..files.scratch import scratch_folder
-from ..judge import points_in_words, printable_lines
+from ..judge import points_in_words
 from ..plan import MAX_SEED, MIDDLE, Plan, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
+from ..texts import printable_lines
 from .child_errors import send_child_errors_to
 from .hand_ins import HandIn, collect
 from .results import Result, Results, page, seed_of, summary, write_atomically

@@ -5,8 +5,8 @@ import io
 from types import MappingProxyType
 from typing import Any, List, Mapping, Sequence
 
-from ..judge import printable
 from ..plan import PARTS, Plan
+from ..texts import printable
 from .results import NOT_HANDED_IN, Result
 
 # A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.

@@ -15,9 +15,10 @@ import jinja2
 from aro_robocop_goto_as.errors import GradingSetupError
 
 from ..checks import CHECKS
-from ..judge import CheckResult, Grade, Outcome, Records, printable, printable_lines, total
+from ..judge import CheckResult, Grade, Outcome, Records, total
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
+from ..texts import printable, printable_lines
 from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}

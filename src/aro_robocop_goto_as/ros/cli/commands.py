@@ -3,6 +3,7 @@
 The shell script `robocop` starts it when nothing may be installed yet, so it uses Python's standard library only.
 """
 
+import glob
 import os
 import subprocess
 import sys
@@ -28,12 +29,27 @@ PS1="(robocop) $PS1"
 
 def grade(arguments: List[str]) -> None:
     """Grade a submission; --watch shows it in RViz on a display of this machine, and otherwise in the web page."""
+    expect_something("grade", arguments)
     watch = []
     if "--watch" in arguments:
         # Another machine's display, as with ssh -X, can't be reached from inside the sandbox.
         watch = ["rviz" if os.environ.get("DISPLAY", "").startswith(":") and x_display.answers() else "web"]
     program.need("hosting", "grade", *watch)
     program.start_script("robocop_grade.py", *arguments)
+
+
+def grade_class(arguments: List[str]) -> None:
+    """Grade a folder of hand-ins."""
+    expect_something("grade-class", arguments)
+    program.need("hosting", "grade", "class")
+    program.start_script("robocop_grade_class.py", *arguments)
+
+
+def expect_something(command: str, arguments: List[str]) -> None:
+    """End with an error, before anything is installed, if no argument is a file, or a folder with something in it."""
+    found = any(os.path.isfile(word) or glob.glob(f"{glob.escape(word)}/*") for word in arguments)
+    if not (found or program.is_dry_run() or {"-h", "--help"} & set(arguments)):
+        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(arguments) or 'nothing'}")
 
 
 def shell(arguments: List[str]) -> None:
@@ -104,7 +120,7 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "web": to_script("robocop_web.py", "web"),
     "new": to_script("robocop_new.py"),
     "grade": grade,
-    "grade-class": to_script("robocop_grade_class.py", "hosting", "grade", "class"),
+    "grade-class": grade_class,
     "test": developer_commands.test,
     "bench": developer_commands.bench,
     "shell": shell,

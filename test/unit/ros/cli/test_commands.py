@@ -118,6 +118,16 @@ def test_unknown_launch_argument_is_refused_with_the_known_ones(command):
     assert done.stderr.endswith("; did you mean world?\n")
 
 
+@pytest.mark.parametrize("command", ["grade", "grade-class"])
+def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_path):
+    (tmp_path / "hand_ins").mkdir()
+    for words in ([], [str(tmp_path / "none.py")], [str(tmp_path / "hand_ins"), "--unsafe"]):
+        done = robocop(command, *words)
+        assert (done.returncode, done.stdout) == (1, "")
+        assert done.stderr.startswith(f"robocop: {command}: expected a file or folder with something to grade, got: ")
+        assert done.stderr.count("\n") == 1, "no other messages"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("command", [("run", "rviz:=false"), ("goto", "1", "0")])
 def test_port_that_never_answers_is_reported_within_seconds(command):
