@@ -16,7 +16,6 @@ from .builds.package import GAZEBO, SIMULATOR, Package, Started, arguments_of, f
 from .builds.scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
 from .builds.workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 from .files.scratch import scratch_folder
-from .texts import printable_lines
 
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
@@ -87,10 +86,9 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found
         )
         parts.append(f"  <include file={quoteattr(str(copy))}>{values}\n  </include>")
     else:
-        parts += [
-            f'  <node pkg="{package.name}" type={quoteattr(choice.path.name)} name="{NODE_NAMES[part]}" output="screen"/>'
-            for part, choice in found.choices.items()
-        ]
+        for part, choice in found.choices.items():
+            script = f"type={quoteattr(choice.path.name)} name={quoteattr(NODE_NAMES[part])}"
+            parts.append(f'  <node pkg="{package.name}" {script} output="screen"/>')
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
     return path
@@ -146,7 +144,7 @@ def main() -> None:
             folder, environment, found = host(package, share, state, for_package)
         path = launch_file(package, folder, for_package, found)
     except RobocopError as error:
-        print(f"robocop sim: {printable_lines(str(error))}", file=sys.stderr)
+        print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)
     except KeyboardInterrupt:
         ignore_all()
