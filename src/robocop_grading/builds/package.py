@@ -71,9 +71,11 @@ def find_package(path: str, launch: str = "") -> Package:
     launch_file, launch_files = _launch_file(folder, launch)
     if launch_file is None and not choose(folder):
         scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
+        others = ", ".join(path.name for path in launch_files[:MAX_NAMED])
         raise HostingError(
             f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
             f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
+            + (f", and launch files, of which sim --with starts one by --launch NAME: {others}" if others else "")
         )
     return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
 

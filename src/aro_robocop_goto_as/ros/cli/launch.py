@@ -127,9 +127,8 @@ def _told(error: Exception, words: List[str]) -> str:
     for word in words:
         _, separator, value = word.partition(":=")
         value = re.escape(value.strip())
-        if separator and re.search(
-            rf"(^|: ){value} is not a '", text, re.IGNORECASE
-        ):  # roslaunch writes it in lower case
+        # roslaunch writes it in lower case
+        if separator and re.search(rf"(^|: ){value} is not a '", text, re.IGNORECASE):
             refused.append(word)
     return ": ".join([*refused, text])
 

@@ -16,6 +16,8 @@ RECORDED = (
     "/(.*/)?(clock|tf|tf_static|scan|odom|ground_truth_odom|joint_states|imu|cmd_vel|map|initialpose"
     "|move_base_simple/goal|robocop_goto_as/.*|world|markers|status|rosout)"
 )
+BAG_VERSION = b"#ROSBAG V2.0\n"
+BAG_HEAD = 4096  # bytes, which hold the version and the header
 
 
 def launch(given: LaunchArguments, *words: str) -> NoReturn:
@@ -134,11 +136,24 @@ def _seconds(words: List[str]) -> str:
     refuse(f"replay: --start: expected seconds after the recording's beginning, got {' '.join(words) or 'nothing'}")
 
 
+def _require_bag(path: str) -> None:
+    """End with an error for a file that rosbag can't play; the format is that of wiki.ros.org/Bags/Format/2.0."""
+    with open(path, "rb") as file:
+        head = file.read(BAG_HEAD)
+    index = head.partition(b"index_pos=")[2][:8]  # 0 while it is being recorded
+    if not head.startswith(BAG_VERSION) or not index:
+        refuse(f"replay: {path} is no bag of ROS 1; expected a bag of ./robocop record or of a report")
+    if not 0 < int.from_bytes(index, "little") <= os.path.getsize(path):
+        refuse(f"replay: {path} is not complete; this repairs what is there: ./robocop shell rosbag reindex {path}")
+
+
 def replay(arguments: List[str]) -> None:
     """Play a bag in the web page, and in RViz if a display is available."""
     bag = arguments[0] if arguments else ""
     if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
         refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
+    if not program.is_dry_run():
+        _require_bag(bag)
     rest, option, after = _split_at(arguments[1:], "--start")
     if option:
         rest += [f"start:={_seconds(after[:1])}", *after[1:]]

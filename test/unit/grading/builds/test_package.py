@@ -39,6 +39,10 @@ def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> N
             {"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")},
             "2 packages found, give the",
         ),
+        (
+            {"package.xml": MANIFEST.format("p"), "b.launch": "<launch/>", "launch/a.launch": "<launch/>"},
+            "no Python script, and launch files, of which sim --with starts one by --launch NAME: a.launch, b.launch",
+        ),
         ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
         ({"package.xml": MANIFEST.format(LAB), "src/move.py": "print(1)"}, "action server; found: src/move.py"),
         ({"package.xml": MANIFEST.format("../../up")}, "expected a <name> of letters, digits, _ and -, got '../../up'"),

@@ -5,7 +5,9 @@ import shlex
 import socket
 
 import pytest
+import rosbag
 from command import dry_run, robocop, x_server
+from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.process.ports import free_port
 from aro_robocop_goto_as.ros.cli import program
@@ -165,8 +167,13 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     command, _, _ = dry_run("replay", f"{tmp_path}/run.bag", "--start", "12.5")
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false start:=12.5")
     assert dry_run("replay", f"{tmp_path}/run.bag", "rate:=2", "--start", "12.5")[0].endswith(" rate:=2 start:=12.5")
-    assert "--start: expected seconds" in robocop("replay", __file__, "--start", "soon").stderr
     assert "would set up: run web\n" in messages
+    assert "--start: expected seconds" in robocop("replay", "a", "--start", "soon", ROBOCOP_DRY_RUN="1").stderr
+    assert f"replay: {__file__} is no bag of ROS 1; expected" in robocop("replay", __file__).stderr
+    with rosbag.Bag(str(tmp_path / "whole.bag"), "w") as whole:
+        whole.write("/clock", Clock())
+    (tmp_path / "cut.bag").write_bytes((tmp_path / "whole.bag").read_bytes()[:4200])
+    assert "cut.bag is not complete" in robocop("replay", f"{tmp_path}/cut.bag").stderr
     done = robocop("replay", "nowhere.bag")
     assert (done.returncode, done.stdout) == (1, "")
     assert "replay: expected a bag of ./robocop record or of a report, got 'nowhere.bag'" in done.stderr
