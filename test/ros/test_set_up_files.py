@@ -21,7 +21,7 @@ def test_ended_while_the_workspace_is_set_up_it_leaves_no_temporary_file(tmp_pat
     def heed_hangups():  # also below nohup, where a shell cannot
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-    command = [ROOT / "robocop", "_start", "sleep", "600"]
+    command = [ROOT / "robocop", "shell", "sleep", "600"]
     started = subprocess.Popen(command, env=environment, start_new_session=True, preexec_fn=heed_hangups)
     try:
         end = time.monotonic() + DEADLINE
@@ -39,5 +39,5 @@ def test_a_start_removes_what_earlier_ones_that_were_killed_have_left():
     CATKINS.mkdir(exist_ok=True)
     left.touch()
     os.utime(left, (0, 0))
-    subprocess.run([ROOT / "robocop", "_start", "true"], check=True)
+    subprocess.run([ROOT / "robocop", "shell", "true"], check=True)
     assert not left.exists()

@@ -25,6 +25,15 @@ def test_shell_passes_arguments_and_exit_status_through():
     assert found.endswith("src/aro_robocop_goto_as"), done.stderr
 
 
+@pytest.mark.parametrize(
+    ("word", "status", "reason"),
+    [("no_such", 127, "No such file or directory"), ("/etc/passwd", 126, "Permission denied")],
+)
+def test_shell_tells_why_a_program_can_not_be_started(word, status, reason):
+    done = robocop("shell", word)
+    assert (done.returncode, done.stderr) == (status, f"robocop: {word}: {reason}\n")
+
+
 def test_other_python_installations_are_ignored(tmp_path):
     for name in ("python", "python3", "pip", "cmake"):
         (tmp_path / name).write_text("#!/bin/sh\nexit 77\n")

@@ -76,7 +76,7 @@ def setup(parts: List[str]) -> None:
         return
     if "grade" in parts:  # what the first grading would build: a container would repeat it at each start
         prebuild = program.module("robocop_grading.submission")
-        subprocess.run([program.SCRIPT, "_start", *prebuild], check=True)
+        subprocess.run(prebuild, env=program.workspace_environment(), check=True)
     say(f"ready in {program.state()}; ./robocop run starts the lab")
 
 

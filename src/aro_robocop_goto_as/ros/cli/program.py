@@ -1,6 +1,6 @@
 """Turns ./robocop into another program: installs what that program needs, then replaces this process by it.
 
-The shell script `robocop` is called back for both: `_set_up PART...`, and `_start PROGRAM...` in the workspace.
+The shell script `robocop` is called back for both: `_set_up PART...`, and `_environment` for that of the workspace.
 """
 
 import os
@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from typing import List, NoReturn
+from typing import Dict, List, NoReturn
 from xml.etree import ElementTree
 
 from ...names import PACKAGE
@@ -18,6 +18,7 @@ from . import doctor
 
 ROOT = Path(__file__).resolve().parents[4]
 SCRIPT = str(ROOT / "robocop")
+NOT_EXECUTABLE, NOT_FOUND = 126, 127  # exit statuses, as of a shell
 
 
 def say(text: str) -> None:
@@ -80,7 +81,21 @@ def start(*command: str) -> NoReturn:
             if name in os.environ:
                 print(f"{name}={os.environ[name]}")
         become(*command)
-    become(SCRIPT, "_start", *command)
+    sys.stdout.flush()
+    try:
+        os.execvpe(command[0], command, workspace_environment())
+    except OSError as error:
+        say(f"{command[0]}: {error.strerror}")
+        sys.exit(NOT_FOUND if isinstance(error, FileNotFoundError) else NOT_EXECUTABLE)
+
+
+def workspace_environment() -> Dict[bytes, bytes]:
+    """The environment of this process, and what the workspace's set-up files add. Ends this program on a failure."""
+    done = subprocess.run([SCRIPT, "_environment"], stdout=subprocess.PIPE)
+    if done.returncode != 0:
+        sys.exit(1)  # it has said why
+    lines = (line.partition(b"=") for line in done.stdout.split(b"\0") if line)
+    return {name: value for name, _, value in lines}
 
 
 def start_script(name: str, *arguments: str) -> NoReturn:
