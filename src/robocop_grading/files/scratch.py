@@ -19,7 +19,8 @@ def scratch_folder() -> Iterator[None]:
     """
     previous = os.environ.get("TMPDIR")
     orphans.adopt_orphans()
-    with temporary_folder("robocop-scratch-") as folder:
+    # Earlier versions remove folders called robocop-scratch-* that nobody locks.
+    with temporary_folder("robocop-temporary-") as folder:
         try:
             _set_tmpdir(str(folder))
             yield

@@ -33,7 +33,7 @@ def test_a_program_and_its_children_leave_no_temporary_files(number: Optional[in
     try:
         if number is not None:
             deadline = time.monotonic() + 60.0
-            while not list(tmp_path.glob("robocop-scratch-*/tmp.*")):
+            while not list(tmp_path.glob("robocop-temporary-*/tmp.*")):
                 assert program.poll() is None and time.monotonic() < deadline
                 time.sleep(0.01)
             with busy_processes():
