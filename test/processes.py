@@ -11,13 +11,13 @@ LOAD = 8  # busy processes
 BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass"  # ends with the process that started it
 
 
-def processes_with(setting, word=b""):
-    """Ids of processes with `setting`, bytes NAME=value, in their environment, and `word` on their command line."""
-    name, _, value = os.fsdecode(setting).partition("=")
+def processes_with(setting, word=""):
+    """Ids of processes with `setting`, NAME=value, in their environment, and `word` on their command line."""
+    name, _, value = setting.partition("=")
     processes = []
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error):  # ended meanwhile, or another user's
-            if process.environ().get(name) == value and word in os.fsencode("\0".join(process.cmdline())):
+            if process.environ().get(name) == value and word in "\0".join(process.cmdline()):
                 processes.append(process.pid)
     return processes
 

@@ -1,13 +1,15 @@
-"""A ROS master of its own, and the processes that a test starts on it, each with its output in files."""
+"""Processes that a test starts, each in a session of its own, and ROS systems of their own that they make up."""
 
 import contextlib
 import os
 import signal
 import subprocess
+import tempfile
 import xmlrpc.client
 
 import rosgraph
 import yaml
+from processes import processes_with
 from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -16,14 +18,41 @@ END_TIMEOUT = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to ki
 CALLER = "/system_test"
 
 
-def end(process, *signals):
-    """Send one signal after the other, SIGKILL last, until the process has ended; its exit status."""
-    for number in (*signals, signal.SIGKILL):
-        if process.poll() is None:
-            process.send_signal(number)
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            return process.wait(END_TIMEOUT)
-    raise AssertionError(f"process {process.pid} outlived SIGKILL: {process.args}")
+class Process(subprocess.Popen):
+    """A program whose output goes to a file; as a context manager it ends with the block."""
+
+    def __init__(self, *command, log=None, **options):
+        self._log = open(log, "w+b") if log else tempfile.TemporaryFile()
+        options = {"stdout": self._log, "stderr": self._log, **options}
+        super().__init__(list(map(str, command)), start_new_session=True, **options)
+
+    def __exit__(self, *_):
+        self.end(signal.SIGINT)
+
+    @property
+    def output(self):
+        """What it has written so far."""
+        return os.pread(self._log.fileno(), os.fstat(self._log.fileno()).st_size, 0).decode(errors="replace")
+
+    def wait_for_exit(self, deadline=DEADLINE):
+        """Wait until it ends by itself; its exit status."""
+        try:
+            return self.wait(deadline)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"{self.args} still runs after {deadline:g} s:\n{self.output}") from None
+
+    def interrupt(self, number=signal.SIGINT):
+        """Send a signal as a terminal does: also to what it has started, as a shell waits for that one's end."""
+        if self.poll() is None:
+            os.killpg(self.pid, number)
+
+    def end(self, *signals):
+        """Send one signal after the other, SIGKILL last, until it has ended; its exit status."""
+        for number in (*signals, signal.SIGKILL):
+            self.interrupt(number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                return self.wait(END_TIMEOUT)
+        raise AssertionError(f"process {self.pid} outlived SIGKILL: {self.args}")
 
 
 class System:
@@ -54,12 +83,9 @@ class System:
     # -- processes --
 
     def start(self, name, *command, signals=(signal.SIGINT, signal.SIGTERM), **options):
-        """Start a process that is ended with this system by these signals; its output goes to NAME.log and NAME.err."""
-        log, errors = (self.directory / f"{name}.{kind}" for kind in ("log", "err"))
-        with open(log, "wb") as out, open(errors, "wb") as err:
-            options = {"stdout": out, "stderr": err, "env": self.environment, **options}
-            process = subprocess.Popen(list(map(str, command)), **options)
-        process.text = lambda: log.read_text(errors="replace") + errors.read_text(errors="replace")
+        """Start a process that is ended with this system by these signals; its output goes to NAME.log."""
+        options = {"log": self.directory / f"{name}.log", "env": self.environment, **options}
+        process = Process(*command, **options)
         self.running.append((process, signals))
         return process
 
@@ -78,17 +104,25 @@ class System:
             return any(process.poll() not in (None, 0) for process in processes)
 
         return wait_for(
-            condition, lambda: "\n".join([what, *(p.text()[-3000:] for p in processes)]), poll=0.02, given_up=failed
+            condition, lambda: "\n".join([what, *(p.output[-3000:] for p in processes)]), poll=0.02, given_up=failed
         )
 
     def end_all(self, *kept):
-        """End all processes but these."""
+        """End all processes but these, and kill what they have left behind."""
         for process, signals in reversed(self.running):
             if process not in kept:
                 if process.stdin is not None:
                     process.stdin.close()
-                end(process, *signals)
+                process.end(*signals)
         self.running = [(process, signals) for process, signals in self.running if process in kept]
+        while not kept and self.processes():
+            for process in self.processes():
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+
+    def processes(self, word=""):
+        """Ids of all its processes with a word on their command line, nodes in sessions of their own included."""
+        return processes_with(f"ROS_HOME={self.environment['ROS_HOME']}", word)
 
     # -- what the master and the nodes say --
 
@@ -130,3 +164,38 @@ class System:
         except OSError:  # no master answers
             return None
         return next((node for node in nodes if node.startswith(prefix)), None)
+
+
+class Program(System):
+    """A system that one program starts, and that ends with it."""
+
+    command = ("rosrun", "aro_robocop_goto_as")
+    deadline = DEADLINE  # [s, wall] for any one condition, and for its end
+    poll = 0.01  # [s, wall]
+
+    def __init__(self, directory, *arguments, **environment):
+        super().__init__(directory, {**os.environ, **environment})
+        self.process = self.start("program", *self.command, *arguments, stdin=subprocess.DEVNULL, signals=())
+
+    @property
+    def output(self):
+        """What it has written so far."""
+        return self.process.output
+
+    def wait_until(self, condition, what):
+        """The first true value of a condition, while the program runs."""
+
+        def problem():
+            return f"{what} (exit status {self.process.poll()}): {self.output}"
+
+        return wait_for(condition, problem, self.deadline, self.poll, given_up=lambda: self.process.poll() is not None)
+
+    def wait_for_process(self, word):
+        """The id of a process with this word on its command line, once there is one."""
+        return self.wait_until(lambda: self.processes(word), f"{word} runs")[0]
+
+    def wait_for_exit(self):
+        """Its exit status; by then none of its processes may be left."""
+        status = self.process.wait_for_exit(self.deadline)
+        assert self.processes() == []
+        return status

@@ -8,7 +8,7 @@ from pathlib import Path
 from subprocess import Popen
 from typing import Any, Dict
 
-from systems import System, end
+from systems import System
 from waiting import wait_for
 
 from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
@@ -65,7 +65,7 @@ def _run(case: Case, seconds: float, checkout: Checkout, ros: System, client: Cl
     wall, simulated = time.monotonic() - start, (client.newest_ns - stamp) / NANOSECONDS
     _require_running(processes)
     cpu, client_cpu, memory = _cpu(simulator) - cpu, client.cpu - client_cpu, _peak_memory(simulator)
-    end(simulator, signal.SIGINT)
+    simulator.end(signal.SIGINT)
     expected, delivered = client.deliveries()
     if simulated <= 0.0:
         raise BenchError(f"simulated time did not advance in {wall:.1f} s")
@@ -79,13 +79,13 @@ def _node(program: str, checkout: Checkout, ros: System) -> "Popen[bytes]":
 
 def _says(process: Any, word: str) -> bool:
     """Whether a process has printed this word on a line of its own."""
-    return word in process.text().split("\n")
+    return word in process.output.split("\n")
 
 
 def _require_running(processes: Dict[str, Any]) -> None:
     for name, process in processes.items():
         if process.poll() is not None:
-            said = process.text().strip() or "its log is empty"
+            said = process.output.strip() or "its log is empty"
             raise BenchError(f"{name} ended with status {process.poll()}: {said.splitlines()[-1]}")
 
 

@@ -10,7 +10,7 @@ import subprocess
 
 import numpy as np
 import yaml
-from systems import System, end
+from systems import Process, System
 from waiting import DEADLINE
 
 
@@ -24,21 +24,19 @@ class Desktop:
         self.frame_buffer = directory / "Xvfb_screen0"
 
     def __enter__(self):
-        log = self.directory / "xvfb.log"
         from_server, to_us = os.pipe()
         # Without -noreset the server restarts when its last client leaves, and drops a client that connects meanwhile.
         command = ["Xvfb", "-displayfd", str(to_us), "-screen", "0", self.screen, "-fbdir", self.directory, "-noreset"]
-        with open(log, "wb") as output:
-            self.server = subprocess.Popen(command, pass_fds=[to_us], stdout=output, stderr=output)
+        self.server = Process(*command, pass_fds=[to_us])
         os.close(to_us)
         with open(from_server) as chosen:
             display = chosen.readline().strip()
-        assert display, f"Xvfb did not start: {log.read_text()}"
+        assert display, f"Xvfb did not start: {self.server.output}"
         self.environment = {**os.environ, "DISPLAY": f":{display}", "LIBGL_ALWAYS_SOFTWARE": "1"}
         return self
 
     def __exit__(self, *_):
-        end(self.server, signal.SIGTERM)
+        self.server.end(signal.SIGTERM)
 
     def _run(self, *command):
         """Output of an X tool; empty when it fails, as for a window that was just closed."""
@@ -145,8 +143,7 @@ class Recorder:
     def __init__(self, ros, publisher, topic):
         self.ros, self.publisher, self.topic = ros, publisher, topic
         name = f"echo{topic.replace('/', '_')}_{len(ros.running)}"  # a topic may be recorded several times
-        self.log = ros.directory / f"{name}.log"
-        self.process = ros.start(name, "rostopic", "echo", topic)
+        self.process = ros.start(name, "rostopic", "echo", topic, stderr=subprocess.DEVNULL)
 
     def connected(self):
         """Whether the publisher is connected."""
@@ -155,4 +152,4 @@ class Recorder:
 
     def messages(self):
         """The messages received so far, as dictionaries."""
-        return [yaml.safe_load(text) for text in self.log.read_text().split("\n---\n")[:-1]]
+        return [yaml.safe_load(text) for text in self.process.output.split("\n---\n")[:-1]]

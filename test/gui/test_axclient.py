@@ -5,7 +5,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from desktop import Desktop, Recorder, Ros, end
+from desktop import Desktop, Recorder, Ros
 from waiting import wait_for
 
 SUCCEEDED = 3  # actionlib_msgs/GoalStatus
@@ -76,4 +76,4 @@ def test_goal_sent_from_axclient_is_reached(tmp_path):
         wait_for(lambda: rows(desktop.pixels(window), GOAL_SUCCEEDED), "axclient shows that the goal succeeded")
 
         assert "axclient.py" in Path(f"/proc/{axclient.pid}/cmdline").read_text(), "rosrun is no longer this process"
-        assert end(axclient) == -signal.SIGKILL
+        assert axclient.end() == -signal.SIGKILL

@@ -34,7 +34,7 @@ def with_subscribers_reported(source):
 
 def test_the_page_shows_the_run_takes_no_requests_and_changes_nothing_for_the_submission(tmp_path):
     with Watched(tmp_path, NoDisplay(), change=with_subscribers_reported) as grading, chromium() as browser:
-        address = grading.wait_for(lambda: re.search(ADDRESS, grading.text()), "the page's address")
+        address = grading.wait_for(lambda: re.search(ADDRESS, grading.process.output), "the page's address")
         tab = Tab(browser, address[1])
         # Its end, which stays: the run is at real time and may be over before a slow browser draws the panel.
         tab.wait_for_text(r"subscribers \[1, 1, 1\]")
@@ -50,13 +50,13 @@ def test_report_on_a_misspelt_server_names_nothing_that_only_shows_the_run(tmp_p
         return source.replace("'robocop_goto_as', GoTo", "'robovop_goto_as', GoTo")
 
     with Watched(tmp_path, NoDisplay(), change=misspelt) as grading, chromium() as browser:
-        address = grading.wait_for(lambda: re.search(ADDRESS, grading.text()), "the page's address")
+        address = grading.wait_for(lambda: re.search(ADDRESS, grading.process.output), "the page's address")
         tab = Tab(browser, address[1])
-        assert grading.process.wait(DEADLINE) == 1, grading.text()
+        assert grading.process.wait(DEADLINE) == 1, grading.process.output
         tab.text()  # has playwright deliver its events
         assert tab.sockets, "the page was not open"
-    assert "robovop_goto_as; the handout says robocop_goto_as" in grading.text()
-    assert "robocop_watch" not in grading.text()
+    assert "robovop_goto_as; the handout says robocop_goto_as" in grading.process.output
+    assert "robocop_watch" not in grading.process.output
 
 
 def test_without_a_browser_the_run_begins_after_a_minute_and_gets_the_same_points(tmp_path):

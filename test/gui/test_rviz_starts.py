@@ -10,7 +10,6 @@ from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
 
 pytestmark = pytest.mark.slow
 TITLE = " - RViz$"
-DRAWN = 60.0  # [s, wall] for a picture to be complete on a busy machine
 ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel
 BODIES = ((0.35, 0.78, 0.98), (0.98, 0.80, 0.25), (0.60, 0.86, 0.35))  # of three robots, in any light
 CASES = pytest.mark.parametrize(
@@ -63,7 +62,7 @@ def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, ar
         ros.start("rviz", *environment_of(namespace), "rviz", "-d", config)
         wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
         ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", *arguments)
-        wait_for(lambda: complete(desktop, parts), f"{parts}", DRAWN)
+        wait_for(lambda: complete(desktop, parts), f"{parts}")
 
 
 @CASES
@@ -72,6 +71,6 @@ def test_rviz_that_is_opened_late_shows_everything(tmp_path, arguments, namespac
         wait_for(lambda: ros.subscriber(absolute(namespace, "scan"), "/"), "the server")
         rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
         ros.start("rviz", *environment_of(namespace), *rviz)
-        wait_for(lambda: complete(desktop, parts), f"{parts}", DRAWN)
+        wait_for(lambda: complete(desktop, parts), f"{parts}")
         desktop.quit_by_menu(desktop.window(TITLE))
         wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")

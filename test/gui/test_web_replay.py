@@ -20,7 +20,7 @@ from aro_robocop_goto_as.process.ports import free_port
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
 
 DURATION, RATE, SPEED = 60.0, 20, 0.1  # [s], [Hz], [m/s]
-BEGIN = 50.0  # [s] after the beginning, from where on it is played
+BEGIN = 54.0  # [s] after the beginning, from where on it is played
 START = 1_700_000_000.0  # [s]
 
 
@@ -67,7 +67,7 @@ class Shown:
 def shown(tmp_path):
     write_bag(tmp_path / "server-drive.bag")
     port = free_port()
-    arguments = [f"bag:={tmp_path / 'server-drive.bag'}", f"web_port:={port}", "rate:=0.5", f"start:={BEGIN}"]
+    arguments = [f"bag:={tmp_path / 'server-drive.bag'}", f"web_port:={port}", "rate:=0.15", f"start:={BEGIN}"]
     with Replay(tmp_path, NoDesktop(), *arguments) as ros, chromium() as browser:
         wait_for(lambda: ros.subscriber("/robocop_goto_as/result", "/replay"), "the page's node is registered")
         tab = Tab(browser, f"http://localhost:{port}")

@@ -1,10 +1,8 @@
 """`robocop grade --watch` of a right server that reaches a goal beside a wall."""
 
-import signal
-import subprocess
 from pathlib import Path
 
-from desktop import end
+from systems import System
 from waiting import DEADLINE, wait_for
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,43 +24,25 @@ checks:
 """
 
 
-class Watched:
+class Watched(System):
     """`robocop grade --watch` of the base solution, on a desktop or without one; `change` alters its source."""
 
     def __init__(self, folder, desktop, ahead=AHEAD, change=lambda source: source):
-        self.folder = folder
+        super().__init__(folder, desktop.environment)
         self.desktop = desktop
-        submission = folder / "robocop_goto_as.py"
+        submission, plan = folder / "robocop_goto_as.py", folder / "plan.yaml"
         submission.write_text(change((ROOT / "test" / "solutions" / "base_server.py.in").read_text()))
         submission.chmod(0o755)
-        (folder / "plan.yaml").write_text(PLAN.replace("AHEAD", str(ahead)))
-        self.out, self.errors = folder / "grade.log", folder / "grade.err"
-        with open(self.out, "wb") as log, open(self.errors, "wb") as errors:
-            self.process = subprocess.Popen(
-                [
-                    ROOT / "robocop",
-                    "grade",
-                    submission,
-                    "--watch",
-                    "--plan",
-                    folder / "plan.yaml",
-                    "--report",
-                    folder / "report",
-                ],
-                env=desktop.environment,
-                stdout=log,
-                stderr=errors,
-            )
-
-    def __enter__(self):
-        return self
+        plan.write_text(PLAN.replace("AHEAD", str(ahead)))
+        options = ("--watch", "--plan", plan, "--report", folder / "report")
+        self.process = self.start("grade", ROOT / "robocop", "grade", submission, *options)
 
     def __exit__(self, failure, *_):
         try:
             if failure:
                 self.desktop.save_picture()
         finally:
-            end(self.process, signal.SIGINT)
+            self.end_all()
 
     def wait_for(self, condition, what):
         """The first true value of a condition, while the grading runs."""
@@ -70,14 +50,11 @@ class Watched:
         def look():
             ended = self.process.poll() is not None
             value = condition()
-            assert value or not ended, f"the grading ended without {what}: {self.text()}"
+            assert value or not ended, f"the grading ended without {what}: {self.process.output}"
             return value
 
         return wait_for(look, what)
 
     def wait_for_full_marks(self):
-        assert self.process.wait(DEADLINE) == 0, self.text()
-        assert "1 of 1 points" in self.text()
-
-    def text(self):
-        return self.out.read_text() + self.errors.read_text()
+        assert self.process.wait(DEADLINE) == 0, self.process.output
+        assert "1 of 1 points" in self.process.output

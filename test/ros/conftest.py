@@ -1,5 +1,7 @@
 """Programs of a test; what is in nodes/ runs inside rostest, which has a master for it: test_rostests.py."""
 
+import contextlib
+
 import pytest
 
 collect_ignore = ["nodes"]
@@ -8,12 +10,5 @@ collect_ignore = ["nodes"]
 @pytest.fixture
 def started():
     """A function that returns a program; what is left of it at the end of the test is killed."""
-    programs = []
-
-    def keep(program):
-        programs.append(program)
-        return program
-
-    yield keep
-    for program in programs:
-        program.kill()
+    with contextlib.ExitStack() as programs:
+        yield programs.enter_context

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from documentation import commands, inline_commands
 from students import copy_of
-from systems import System, end
+from systems import System
 
 ROOT = Path(__file__).resolve().parents[2]
 DEADLINE = 300.0  # [s, wall] for one command on a busy machine
@@ -88,18 +88,18 @@ class Commands(System):
 
     def _type(self, command):
         name, words = f"output_{len(self.running)}", ("bash", "-c", f"exec env {command}")
-        return self.start(name, *words, cwd=self.directory, stdin=subprocess.DEVNULL, start_new_session=True)
+        return self.start(name, *words, cwd=self.directory, stdin=subprocess.DEVNULL)
 
     def serve(self, command, ready):
         """Start a command that serves until Ctrl-C, and wait until its output matches `ready`; the process."""
         process = self._type(command)
-        self.wait(lambda: re.search(ready, process.text(), re.M), command, process)
+        self.wait(lambda: re.search(ready, process.output, re.M), command, process)
         return process
 
     def run(self, command):
         """Run a command that ends by itself; its exit status and output."""
         process = self._type(command)
-        return process.wait(DEADLINE), process.text()
+        return process.wait(DEADLINE), process.output
 
 
 @pytest.fixture
@@ -135,9 +135,9 @@ def test_printed_command_runs(command, system):
     if name == "replay":
         recording = system.serve("./robocop record run.bag", SERVING["record"])
         assert system.run("./robocop goto 0.3 0 --robot robot_1")[0] == 0
-        assert {end(recording, signal.SIGINT), end(lab, signal.SIGINT)} <= INTERRUPTED
+        assert {recording.end(signal.SIGINT), lab.end(signal.SIGINT)} <= INTERRUPTED
     if name in SERVING:
-        assert end(system.serve(printed, SERVING[name]), signal.SIGINT) in INTERRUPTED
+        assert system.serve(printed, SERVING[name]).end(signal.SIGINT) in INTERRUPTED
     else:
         status, output = system.run(printed)
         assert status == (1 if command == UNFINISHED else 0), output

@@ -5,23 +5,13 @@ import socket
 
 import pytest
 import waiting
-from programs import Program
-
-from aro_robocop_goto_as.process.ports import free_port
-
-
-class Goto(Program):
-    """The command, with no master at its ROS_MASTER_URI."""
-
-    def __init__(self, folder, *arguments):
-        self.port = free_port()
-        master = f"http://localhost:{self.port}"
-        super().__init__(folder, "robocop_goto.py", *arguments, ROS_MASTER_URI=master)
+from systems import Program
 
 
 @pytest.fixture
 def goto(started, tmp_path):
-    return lambda *arguments: started(Goto(tmp_path, *arguments))
+    """The command, with no master at its ROS_MASTER_URI."""
+    return lambda *arguments: started(Program(tmp_path, "robocop_goto.py", *arguments))
 
 
 def test_goal_is_reached_in_a_system_started_for_it(goto):

@@ -64,7 +64,7 @@ class Remote:
         self.process.stdin.write(f"{request}\n".encode())
         self.process.stdin.flush()
         answer = self.process.stdout.readline()
-        assert answer, f"{self.process.text()}\n{self.simulator.text()[-3000:]}"
+        assert answer, f"{self.process.output}\n{self.simulator.output[-3000:]}"
         return json.loads(answer)
 
     def step(self, seconds):
@@ -113,7 +113,7 @@ def run_scenario(ros, **changes):
     server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
     scenario = ros.script("lockstep_scenario.py", result)
     ros.wait(lambda: scenario.poll() is not None, "the scenario's end", simulator, server, scenario)
-    assert scenario.returncode == 0, scenario.text()[-3000:]
+    assert scenario.returncode == 0, scenario.output[-3000:]
     ros.stop_nodes()
     return json.loads(result.read_text())
 
@@ -187,7 +187,7 @@ def test_controller_that_hangs_causes_one_miss_and_is_waited_for_again_when_it_c
     finally:
         controller.send_signal(signal.SIGCONT)
     assert status == {"lockstep_misses": 1, "drivers": []}
-    assert "no answer from /metronome within 0.5 s" in simulator.text()
+    assert "no answer from /metronome within 0.5 s" in simulator.output
     ros.wait(lambda: remote.step(0.1) or "/metronome" in remote.status()["drivers"], "it drives again", simulator)
 
 
@@ -201,14 +201,14 @@ def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again
     server.send_signal(signal.SIGSTOP)
     try:
         stopped = f"{SERVER} (/scan) has stopped reading"
-        ros.wait(lambda: remote.step(20.0) or stopped in simulator.text(), stopped, simulator)
+        ros.wait(lambda: remote.step(20.0) or stopped in simulator.output, stopped, simulator)
     finally:
         server.send_signal(signal.SIGCONT)
     again = f"{SERVER} (/scan) reads again"
-    ros.wait(lambda: remote.step(0.1) or again in simulator.text(), again, simulator, server)
+    ros.wait(lambda: remote.step(0.1) or again in simulator.output, again, simulator, server)
     ros.wait(
         lambda: remote.step(0.1) or SERVER in remote.status()["drivers"], "it answers each tick", simulator, server
     )
     topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
     goal = ros.start("goal", "rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
-    ros.wait(lambda: remote.step(0.5) or "REACHED" in server.text(), "the goal", simulator, server, goal)
+    ros.wait(lambda: remote.step(0.5) or "REACHED" in server.output, "the goal", simulator, server, goal)

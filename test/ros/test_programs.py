@@ -7,8 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-import rosgraph
-from programs import Program
+from systems import Program
 from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -30,20 +29,12 @@ def test_each_program_answers_help_without_a_master(name):
 class Roslaunch(Program):
     """roslaunch without a display."""
 
-    start = ("roslaunch",)
-
-    def __init__(self, folder, file, *arguments):
-        self.port = free_port()
-        super().__init__(folder, "-p", str(self.port), "aro_robocop_goto_as", file, *arguments, DISPLAY="")
-
-    @property
-    def uri(self):
-        return f"http://localhost:{self.port}"
+    command = ("roslaunch", "aro_robocop_goto_as")
 
 
 @pytest.fixture
 def roslaunch(started, tmp_path):
-    return lambda *arguments: started(Roslaunch(tmp_path, *arguments))
+    return lambda *arguments: started(Roslaunch(tmp_path, *arguments, DISPLAY=""))
 
 
 @pytest.mark.slow
@@ -51,18 +42,11 @@ def test_without_a_display_roslaunch_leaves_rviz_out_with_one_warning_and_goes_o
     launched = roslaunch("robocop_goto_as.launch", "drive:=kinematic")
     launched.wait_until(lambda: "RViz is not started" in launched.output, "the warning")
     goto = [sys.executable, launched_script("robocop_goto.py"), "--frame", "odom", "0.2", "0"]
-    done = subprocess.run(
-        goto,
-        env={**launched.environment, "ROS_MASTER_URI": launched.uri},
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE,
-    )
+    done = subprocess.run(goto, env=launched.environment, capture_output=True, text=True, timeout=DEADLINE)
     assert done.returncode == 0, done.stdout + done.stderr
     assert launched.output.count("no usable display") == 1 and "Traceback" not in launched.output
-    launched.process.send_signal(signal.SIGINT)
+    launched.process.interrupt()
     assert launched.wait_for_exit() == 0
-    assert launched.processes("sleep") == []
 
 
 def launched_script(name):
@@ -72,12 +56,10 @@ def launched_script(name):
 @pytest.mark.slow
 def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch, tmp_path):
     launched = roslaunch("robocop_sim.launch", "drive:=kinematic")
-    master = rosgraph.Master("/test", launched.uri)
-    wait_for(lambda: any("robocop_sim/reset" in name for name, _ in services(master)), lambda: launched.output)
+    launched.wait_until(lambda: launched.offers("/robocop_sim/reset"), "the simulator")
     simulator = launched.wait_for_process("robocop_sim.py")
-    environment = {**launched.environment, "ROS_MASTER_URI": launched.uri}
     second = [sys.executable, launched_script("robocop_sim.py")]
-    done = subprocess.run(second, env=environment, capture_output=True, text=True, timeout=DEADLINE)
+    done = subprocess.run(second, env=launched.environment, capture_output=True, text=True, timeout=DEADLINE)
     assert (done.returncode, "a simulator is already running as /robocop_sim" in done.stderr) == (1, True)
     assert launched.process.poll() is None and launched.processes("robocop_sim.py") == [simulator]
 
@@ -93,21 +75,11 @@ def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("name", ["robocop_goto_as.py", "robocop_rviz_goto_ac.py"])
 def test_a_program_that_waits_for_a_master_says_so_and_is_ended_by_a_signal(tmp_path, name, number):
-    program = Program(tmp_path, name, ROS_MASTER_URI=f"http://localhost:{free_port()}")
-    try:
+    with Program(tmp_path, name) as program:
         program.wait_until(lambda: "waiting for a ROS master" in program.output, "the message")
         program.process.send_signal(number)
         assert program.wait_for_exit() in (128 + number, -number)
-    finally:
-        program.kill()
-    assert "Traceback" not in program.output
-
-
-def services(master):
-    try:
-        return master.getSystemState()[2]
-    except (OSError, rosgraph.MasterException):
-        return []
+        assert "Traceback" not in program.output
 
 
 def ended(pid):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import rosbag
-from systems import System, end
+from systems import System
 from waiting import wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -49,9 +49,9 @@ def test_a_recorded_goal_is_played_again(ros, robocop, folder):
     recorder = robocop("record", "run.bag")
     wait_for((folder / "run.bag.active").exists, "the bag")
     wait_for(lambda: ros.linked(SERVER, ros.subscriber(RESULT, "/record_") or "", RESULT), "the recorder gets results")
-    assert robocop("goto", "-0.5", "0").wait(60.0) == 0
-    end(recorder, signal.SIGINT)
-    end(system, signal.SIGINT)
+    assert robocop("goto", "-0.5", "0").wait_for_exit() == 0
+    recorder.end(signal.SIGINT)
+    system.end(signal.SIGINT)
     with rosbag.Bag(folder / "run.bag") as bag:
         topics = bag.get_type_and_topic_info().topics
         assert {"/clock", "/scan", "/odom", "/tf_static", "/robocop_sim/world"} <= set(topics)
@@ -62,5 +62,5 @@ def test_a_recorded_goal_is_played_again(ros, robocop, folder):
     listener = ros.start("listener", sys.executable, "-c", LISTENER)  # before the replay, or it could miss the result
     wait_for(lambda: ros.subscriber(RESULT, "/listener"), "the listener")
     replay = robocop("replay", "run.bag", "rate:=5", "waits:=false", f"web_port:={free_port()}")
-    wait_for(lambda: "REACHED" in listener.text(), "the recorded result")
-    assert end(replay, signal.SIGINT) == 0
+    wait_for(lambda: "REACHED" in listener.output, "the recorded result")
+    assert replay.end(signal.SIGINT) == 0

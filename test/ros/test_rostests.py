@@ -1,20 +1,17 @@
 """Runs every .test file of test/ros/nodes by rostest, each with its own master and logs."""
 
-import os
 import signal
 import subprocess
 import sys
-from contextlib import suppress
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from processes import processes_with
+from systems import System
 
 DEADLINE = 800.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit.
-SHUTDOWN = 20.0  # [s, wall] for rostest to end its nodes after the deadline
 FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
-LONG = ("faults", "lab", "loop", "messages", "time_and_pose")
+LONG = ("faults", "lab", "messages", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
 SLOW = (
     *("bridge", "commands", "faults", "figures", "many_robots", "models", "navigation"),
@@ -24,30 +21,16 @@ SLOW = (
 
 def run_rostest(test_file, directory):
     """Run one file: the exit status, or None after the deadline, and the output."""
-    environment = {**os.environ, "ROS_HOSTNAME": "localhost", "ROS_HOME": str(directory / "home")}
-    environment["ROS_LOG_DIR"] = str(directory / "log")
-    for name in ("ROS_MASTER_URI", "ROS_IP", "DISPLAY"):
-        environment.pop(name, None)
-    command = [sys.executable, "-c", ROSTEST, f"--results-base-dir={directory / 'results'}", str(test_file)]
-    with open(directory / "output", "w+b") as output:
-        rostest = subprocess.Popen(command, env=environment, stdout=output, stderr=subprocess.STDOUT)
+    with System(directory) as system:
+        for name in ("ROS_MASTER_URI", "DISPLAY"):  # it starts a master of its own
+            system.environment.pop(name, None)
+        command = [sys.executable, "-c", ROSTEST, f"--results-base-dir={directory / 'results'}", test_file]
+        rostest = system.start("output", *command)
         try:
-            status = rostest.wait(DEADLINE)
+            return rostest.wait(DEADLINE), rostest.output
         except subprocess.TimeoutExpired:
-            status = None
-            rostest.send_signal(signal.SIGINT)
-            try:
-                rostest.wait(SHUTDOWN)
-            except subprocess.TimeoutExpired:
-                rostest.kill()
-                rostest.wait()
-        finally:
-            # roslaunch starts every node in its own session, so nodes are recognised by their environment.
-            for process in processes_with(b"ROS_LOG_DIR=" + os.fsencode(environment["ROS_LOG_DIR"])):
-                with suppress(ProcessLookupError):
-                    os.kill(process, signal.SIGKILL)
-        output.seek(0)
-        return status, output.read().decode(errors="replace")
+            rostest.end(signal.SIGINT)
+            return None, rostest.output
 
 
 def cases_in(result):
@@ -96,4 +79,4 @@ def test_rostest(name, tmp_path):
     elif not results:
         problems.insert(0, "no results")
     if problems:
-        pytest.fail("\n".join([*problems, "--- output", output, *logs(tmp_path / "log")]), pytrace=False)
+        pytest.fail("\n".join([*problems, "--- output", output, *logs(tmp_path / "ros" / "log")]), pytrace=False)

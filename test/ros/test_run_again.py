@@ -5,11 +5,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from processes import processes_with
 from systems import System
 
 ROBOCOP = Path(__file__).resolve().parents[2] / "robocop"
-DEADLINE = 120.0  # [s, wall]
 RUNS = "robot at x"  # in the output of a simulator that runs
 
 
@@ -22,17 +20,17 @@ def test_it_runs_again_where_the_master_still_lists_a_simulator_that_has_ended(t
             return ros.start(name, ROBOCOP, "run", "--verbose", "rviz:=false", "world:=empty", "drive:=kinematic")
 
         first = run("first")
-        ros.wait(lambda: RUNS in first.text(), "the simulator runs", first)
+        ros.wait(lambda: RUNS in first.output, "the simulator runs", first)
         second = run("second")
-        assert second.wait(DEADLINE) == 1
-        assert "a simulator is already running on" in second.text()
+        assert second.wait_for_exit() == 1
+        assert "a simulator is already running on" in second.output
 
-        for process in processes_with(b"ROS_HOME=" + os.fsencode(ros.environment["ROS_HOME"]), b"robocop_sim.py"):
+        for process in ros.processes("robocop_sim.py"):
             os.kill(process, signal.SIGKILL)  # it can't unregister
-        assert first.wait(DEADLINE) == 1
+        assert first.wait_for_exit() == 1
         assert ros.master.lookupNode("/robocop_sim"), "the master does not list it any more: this test shows nothing"
 
         third = run("third")
-        ros.wait(lambda: RUNS in third.text(), "the simulator runs again", third)
-        third.send_signal(signal.SIGINT)
-        assert third.wait(DEADLINE) == 0
+        ros.wait(lambda: RUNS in third.output, "the simulator runs again", third)
+        third.interrupt()
+        assert third.wait_for_exit() == 0

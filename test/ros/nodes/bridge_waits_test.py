@@ -11,10 +11,11 @@ import tf2_ros
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionActionGoal, GoToPositionResult
 from clicks import Clicks
 from geometry_msgs.msg import Point, Transform, TransformStamped
-from harness import ACTION, BRIDGE, Process, Recorder, run, script, wait_for, wait_for_subscriber
+from harness import ACTION, BRIDGE, Recorder, run, script, wait_for, wait_for_subscriber
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import Header
+from systems import Process
 
 MISSPELT = "robovop_goto_as"
 

@@ -2,12 +2,12 @@
 """What docs/ tells the reader to type works in a running system: shell commands as printed, Python as one session."""
 
 import itertools
-import os
 import sys
 import unittest
 
 from documentation import blocks, commands
-from harness import Process, Robot, run, wait_for
+from harness import Robot, run, wait_for
+from systems import Process
 
 # Commands, and headings of Python sections, that are not run here.
 EXCEPTIONS = {
@@ -69,7 +69,7 @@ class DocumentedCommands(unittest.TestCase):
         sections = [(heading, text) for heading, text in python_sections() if not excepted(heading)]
         self.assertGreater(len(sections), 2)
         for heading, text in sections:
-            with Process(sys.executable, "-c", text, PYTHONPATH=os.environ["PYTHONPATH"]) as process:
+            with Process(sys.executable, "-c", text) as process:
                 self.assertEqual(process.wait_for_exit(), 0, f"{heading}: {process.output}")
 
     def test_exceptions_are_still_in_the_documentation(self):

@@ -53,11 +53,6 @@ class FakeRobot:
         )
         self._bytes = self._received()  # received by the server once everything published has arrived
 
-    def links(self):
-        """The server's connections to the robot's topics; also those of a server that is ending."""
-        publishers = (self._clock, self._odom, self._scan)
-        return {link for publisher in publishers for link in publisher.impl.connections if link.endpoint_id == SERVER}
-
     # -- pose and scan --
 
     def renew(self):

@@ -19,7 +19,6 @@ from harness import (
     BRIDGE,
     SERVER,
     SIMULATOR,
-    Process,
     SystemTest,
     call_simulator,
     run,
@@ -27,6 +26,7 @@ from harness import (
     wait_for,
     wait_for_connection,
 )
+from systems import Process
 
 SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py", BRIDGE: "robocop_rviz_goto_ac.py"}
 MODE = ("_sync:=lockstep", "_real_time_factor:=10", "_drive:=kinematic", "_lockstep_timeout:=0.5", "_world:=empty")
@@ -70,7 +70,7 @@ class Faults(SystemTest):
     def restart(self, node):
         """Start a node that has ended, and wait until it serves this one."""
         former = self.start(node)
-        self.assertIsNotNone(former.process.poll())
+        self.assertIsNotNone(former.poll())
         self.wait_until_connected(node)
 
     def wait_until_connected(self, node):
@@ -87,7 +87,7 @@ class Faults(SystemTest):
         self.robot.reset()
         self.goals.send(0.2, 0.1).result("REACHED")
         for name, node in self.nodes.items():
-            self.assertIsNone(node.process.poll(), f"{name} has ended: {node.output}")
+            self.assertIsNone(node.poll(), f"{name} has ended: {node.output}")
             self.assertNotIn("Traceback", node.output)
 
     def drive(self):
@@ -106,7 +106,7 @@ class Faults(SystemTest):
 
     def test_server_is_killed(self):
         goal = self.drive()
-        self.nodes[SERVER].process.kill()
+        self.nodes[SERVER].kill()
         self.nodes[SERVER].wait_for_exit()
         self.robot.wait_for_standstill()
         self.assertEqual(goal.results(), [])
@@ -116,7 +116,7 @@ class Faults(SystemTest):
 
     def test_server_is_told_to_end(self):
         goal = self.drive()
-        self.nodes[SERVER].process.terminate()
+        self.nodes[SERVER].terminate()
         self.assertIn("the server is shutting down", goal.result("SHUTDOWN").result.message)
         self.assertEqual(self.nodes[SERVER].wait_for_exit(), 0)
         self.robot.wait_until_it_stands()
@@ -132,16 +132,16 @@ class Faults(SystemTest):
 
     def test_server_stands_still_for_three_seconds(self):
         goal = self.drive()
-        self.nodes[SERVER].process.send_signal(signal.SIGSTOP)
+        self.nodes[SERVER].send_signal(signal.SIGSTOP)
         begun = self.robot.truth.newest().header.stamp
         self.robot.truth.wait_for(lambda m: (m.header.stamp - begun).to_sec() > 3.0, "time that goes on")
         self.robot.wait_for_standstill()
-        self.nodes[SERVER].process.send_signal(signal.SIGCONT)
+        self.nodes[SERVER].send_signal(signal.SIGCONT)
         goal.result()
 
     def test_simulator_is_killed_and_the_server_ends_when_time_starts_again(self):
         goal = self.drive()
-        self.nodes[SIMULATOR].process.kill()
+        self.nodes[SIMULATOR].kill()
         self.nodes[SIMULATOR].wait_for_exit()
         self.restart(SIMULATOR)
         goal.result("SHUTDOWN")
@@ -153,7 +153,7 @@ class Faults(SystemTest):
     def test_bridge_is_killed_and_its_goal_goes_on(self):
         goal = self.click()
         self.robot.wait_until_it_drives(0.1)
-        self.nodes[BRIDGE].process.kill()
+        self.nodes[BRIDGE].kill()
         self.nodes[BRIDGE].wait_for_exit()
         self.robot.wait_until_it_drives(0.1)
         self.restart(BRIDGE)

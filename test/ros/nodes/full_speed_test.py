@@ -3,10 +3,11 @@
 
 import unittest
 
-from harness import SIMULATOR, Process, Recorder, run, script
+from harness import SIMULATOR, Recorder, run, script
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
+from systems import Process
 
 ROUNDS = 10
 

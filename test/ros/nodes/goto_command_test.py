@@ -4,7 +4,8 @@
 import signal
 
 from dynamic_reconfigure.client import Client
-from harness import SIMULATOR, Process, SystemTest, distance, run, script
+from harness import SIMULATOR, SystemTest, distance, run, script
+from systems import Process
 
 from aro_robocop_goto_as.geometry import Pose2D
 
@@ -36,7 +37,7 @@ class GotoCommand(SystemTest):
         self.addCleanup(client.update_configuration, {"real_time_factor": 4.0})  # of the launch file
         with Process(script("robocop_goto.py"), 2.0, 0.0) as command:
             self.robot.wait_until_it_drives()
-            command.process.send_signal(signal.SIGINT)
+            command.send_signal(signal.SIGINT)
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^PREEMPTED: PREEMPTED: ")
         self.robot.wait_until_it_stands()

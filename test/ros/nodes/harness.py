@@ -1,4 +1,4 @@
-"""Shared by the rostests: waits with a deadline, recorded topics, goals, the robot's ground truth, processes.
+"""Shared by the rostests: waits with a deadline, recorded topics, goals, the robot's ground truth.
 
 Every wait is for a condition and has a deadline on the wall clock, long enough for a busy machine: reaching it always
 means a failure.
@@ -8,10 +8,7 @@ import contextlib
 import itertools
 import math
 import os
-import signal
-import subprocess
 import sys
-import threading
 import unittest
 import xmlrpc.client
 from pathlib import Path
@@ -155,17 +152,6 @@ class Goal:
         """All of its feedback messages, with headers."""
         return [m for m in self.goals.feedback.messages if m.status.goal_id.id == self.id]
 
-    def wait_for_feedback(self, wanted, what):
-        """The first feedback message for which `wanted` is true."""
-        return wait_for(
-            lambda: next((m for m in self.feedback() if wanted(m.feedback)), None),
-            lambda: f"{what}; feedback so far: {[m.feedback.message for m in self.feedback()]}",
-        )
-
-    def wait_until_it_drives(self):
-        """Wait for the first feedback of driving, after the turn on the spot."""
-        self.wait_for_feedback(lambda feedback: feedback.message.startswith("driving"), f"goal {self.id} drives")
-
     def states(self):
         """Its states in the order of the status topic, without repetitions."""
         states = [s.status for m in self.goals.statuses.messages for s in m.status_list if s.goal_id.id == self.id]
@@ -226,10 +212,6 @@ class Goals:
     def of_others(self):
         """The goals of other clients, such as the bridge, in order."""
         return [Goal(self, m.goal_id.id) for m in self.sent.messages if not m.goal_id.id.startswith("test-")]
-
-    def cancel_all(self):
-        """Cancel without an id, which means every goal."""
-        self.cancel_topic.publish(GoalID())
 
     def assert_each_ended_once(self):
         """Cancel all active goals; then each has one result and one terminal state, and the server logged no error."""
@@ -323,62 +305,6 @@ def moves(odometry):
     return abs(twist.linear.x) > 0.003 or abs(twist.angular.z) > 0.02
 
 
-def in_world(spawn, point):
-    """A point in odom as one in world, without the drift of odometry."""
-    cos, sin = math.cos(spawn.yaw), math.sin(spawn.yaw)
-    return Pose2D(spawn.x + cos * point.x - sin * point.y, spawn.y + sin * point.x + cos * point.y)
-
-
 def script(name):
     """The path of one of this package's scripts."""
     return roslib.packages.find_node(PACKAGE, name)[0]
-
-
-class Process:
-    """A program in a session of its own; as a context manager it ends with the block."""
-
-    def __init__(self, *command, stdin=None, **environment):
-        self.lines = []
-        self.process = subprocess.Popen(
-            [str(word) for word in command],
-            stdin=stdin,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            start_new_session=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
-        )
-        self.pid = self.process.pid
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
-            try:
-                self.process.wait(10.0)
-            except subprocess.TimeoutExpired:
-                os.killpg(self.pid, signal.SIGKILL)
-        self.process.wait()
-        self._reader.join()
-
-    def _read(self):
-        for line in self.process.stdout:
-            self.lines.append(line)
-
-    @property
-    def output(self):
-        """Its output so far."""
-        return "".join(self.lines)
-
-    def wait_for_exit(self, deadline=DEADLINE):
-        """Wait until it ends by itself; its exit status."""
-        try:
-            status = self.process.wait(deadline)
-        except subprocess.TimeoutExpired:
-            raise AssertionError(f"{self.process.args} still runs after {deadline:g} s:\n{self.output}") from None
-        self._reader.join()
-        return status

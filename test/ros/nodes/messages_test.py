@@ -9,10 +9,10 @@ import rospy
 import tf2_ros
 from commands import Commands
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from harness import SIMULATOR, Process, Recorder, Robot, distance, run, wait_for, wait_for_subscriber
+from harness import SIMULATOR, Recorder, Robot, distance, run, wait_for, wait_for_subscriber
 from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, JointState, LaserScan
+from systems import Process
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, wrap_angle
@@ -48,7 +48,6 @@ class Messages(unittest.TestCase):
         cls.scan = Recorder("scan", LaserScan)
         cls.imu = Recorder("imu", Imu)
         cls.joints = Recorder("joint_states", JointState)
-        cls.clock = Recorder("/clock", Clock)
         cls.tf = Recorder("/tf", TFMessage)
         cls.tf_static = Recorder("/tf_static", TFMessage)
         cls.buffer = tf2_ros.Buffer()
@@ -56,7 +55,7 @@ class Messages(unittest.TestCase):
         cls.initialpose = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
         wait_for_subscriber(cls.initialpose, SIMULATOR)
         # Cleared in this order, so that whatever is published with a scan or odometry message is kept if that one is.
-        cls.recorders = (cls.imu, cls.joints, cls.clock, cls.tf, cls.robot.truth, cls.robot.odom, cls.scan)
+        cls.recorders = (cls.imu, cls.joints, cls.tf, cls.robot.truth, cls.robot.odom, cls.scan)
 
     def setUp(self):
         self.robot.reset()
@@ -85,21 +84,10 @@ class Messages(unittest.TestCase):
         self.commands.once(0.0)
         self.robot.wait_for_standstill()
 
-    def test_scan_has_360_ranges_over_one_turn_in_base_scan(self):
-        for scan in self.scan.next(3):
-            self.assertEqual(scan.header.frame_id, "base_scan")
-            self.assertEqual(len(scan.ranges), 360)
-            self.assertAlmostEqual(scan.angle_min, 0.0)
-            self.assertAlmostEqual(scan.angle_max, 6.28319, places=5)
-            self.assertAlmostEqual(scan.angle_increment, 6.28319 / 359, places=7)
-            angles = np.arange(scan.angle_min, scan.angle_max + scan.angle_increment, scan.angle_increment)
-            self.assertEqual(len(angles), 360)  # as existing lab code computes them
-            self.assertEqual((scan.time_increment, scan.scan_time), (0.0, 0.0))
-            self.assertAlmostEqual(scan.range_min, 0.12, places=6)
-            self.assertAlmostEqual(scan.range_max, 10.0, places=6)
-
     def test_scan_is_counter_clockwise_from_straight_ahead_and_noisy(self):
-        scans = np.array([scan.ranges for scan in self.scan.next(8)])
+        received = self.scan.next(8)
+        self.assertEqual({scan.header.frame_id for scan in received}, {"base_scan"})
+        scans = np.array([scan.ranges for scan in received])
         ahead, left, behind, right = (np.median(scans[:, i]) for i in (0, 90, 180, 270))
         self.assertAlmostEqual(ahead, 2.35 + 0.7 + 0.032, delta=0.03)  # the east wall
         self.assertAlmostEqual(left, 1.1 - 0.075, delta=0.03)  # the inner wall in the north west
@@ -198,21 +186,6 @@ class Messages(unittest.TestCase):
         self.assertAlmostEqual(np.mean([m.angular_velocity.z for m in self.imu.messages]), 0.5, delta=0.02)
         # Centripetal acceleration v w points to the left in a left turn.
         self.assertAlmostEqual(np.mean([m.linear_acceleration.y for m in self.imu.messages]), 0.15 * 0.5, delta=0.05)
-
-    def test_stamps_follow_the_rate_of_each_topic_and_never_go_back(self):
-        self.drive_an_arc()
-        self.robot.reset()
-        self.scan.next(2)
-        for recorder, rate in ((self.scan, 10), (self.robot.odom, 30), (self.robot.truth, 30), (self.joints, 30)):
-            stamps = [stamp_of(m) for m in recorder.messages]
-            for a, b in zip(stamps, stamps[1:]):
-                self.assertAlmostEqual((b - a) * 1e-9, 1.0 / rate, places=6, msg=recorder.topic)
-        imu, clock = [stamp_of(m) for m in self.imu.messages], [m.clock.to_nsec() for m in self.clock.messages]
-        for stamps in (imu, clock):
-            self.assertGreater(len(stamps), 20)
-            self.assertTrue(all(a < b for a, b in zip(stamps, stamps[1:])))
-        # 200 Hz do not divide the 240 Hz of physics, so only the mean rate is exact.
-        self.assertAlmostEqual((len(imu) - 1) / ((imu[-1] - imu[0]) * 1e-9), 200.0, delta=3.0)
 
     def test_all_messages_of_one_step_carry_the_same_stamp(self):
         self.drive_an_arc()

@@ -3,7 +3,8 @@
 
 import unittest
 
-from harness import Process, run, script
+from harness import run, script
+from systems import Process
 
 NODES = {  # program: (parameters, what it says of them)
     "robocop_sim.py": (

@@ -5,7 +5,8 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
-from harness import ACTION, SERVER, Process, SystemTest, run, wait_for
+from harness import ACTION, SERVER, SystemTest, run, wait_for
+from systems import Process
 
 
 def rostopic_subscribes(topic):

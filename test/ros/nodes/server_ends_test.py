@@ -4,6 +4,8 @@
 import math
 import unittest
 
+import rospy
+from actionlib_msgs.msg import GoalStatus
 from fake_robot import PERIOD, FakeRobot
 from geometry_msgs.msg import Twist
 from harness import Recorder, run, wait_for
@@ -68,6 +70,25 @@ class ServerEnds(unittest.TestCase):
         self.assertEqual(self.robot.end(goal, "PREEMPTED").header.stamp, self.robot.now)
         self.assertEqual(len(self.robot.commands), 11)  # one for each control period, and then zero
         self.assert_ended(goal, "PREEMPTED")
+
+    def test_replaced_goals_each_end_once_and_those_that_never_began_as_actionlib_ends_them(self):
+        first = self.start()
+        waiting = [self.robot.goals.send(2.0, 0.1 * number) for number in range(20)]
+        newest = self.robot.goals.send(self.robot.pose.x, self.robot.pose.y)
+        wait_for(lambda: self.robot.pass_time(PERIOD) or newest.results(), "the end of the newest goal")
+        self.assertIn("a newer goal replaced it", first.result("PREEMPTED").result.message)
+        ended = [goal.result() for goal in waiting]
+        self.assertLessEqual({m.status.status for m in ended}, {GoalStatus.PREEMPTED, GoalStatus.RECALLED})
+        recalled = [m.result.message for m in ended if m.status.status == GoalStatus.RECALLED]
+        self.assertEqual(set(recalled), {""})
+        self.assert_ended(newest, "REACHED")
+
+    def test_goal_stamped_before_the_current_one_is_recalled_and_the_current_one_goes_on(self):
+        current = self.start()
+        stamped_earlier = self.robot.goals.send(0.1, 0.1, stamp=rospy.Time(0, 1))  # of a client whose clock is behind
+        self.assertEqual(stamped_earlier.result().status.status, GoalStatus.RECALLED)
+        self.robot.follow(current)
+        self.assert_ended(current, "REACHED")
 
     def test_goal_ends_after_one_second_without_a_scan_but_not_sooner(self):
         goal = self.assert_missing_data_ends_a_goal(scan=False)

@@ -7,7 +7,8 @@ import signal
 import termios
 import unittest
 
-from harness import Process, Robot, run, script, wait_for
+from harness import Robot, run, script, wait_for
+from systems import Process
 
 TURNS = 0.5  # [rad/s]
 MOVES = 0.05  # [m/s]
@@ -67,7 +68,7 @@ class Teleop(unittest.TestCase):
     def test_interrupt_stops_the_robot_and_restores_the_terminal(self):
         with Terminal() as terminal:
             self.hold_until(terminal, "a", lambda twist: twist.angular.z > TURNS)
-            terminal.program.process.send_signal(signal.SIGINT)
+            terminal.program.send_signal(signal.SIGINT)
             self.assertEqual(terminal.program.wait_for_exit(), 0, terminal.program.output)
             self.assertEqual(termios.tcgetattr(terminal.screen), terminal.settings)
         self.robot.wait_until_it_stands()

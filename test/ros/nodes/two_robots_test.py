@@ -4,7 +4,8 @@
 import unittest
 
 from clicks import Clicks
-from harness import ACTION, SERVER, SIMULATOR, Goals, Process, Recorder, Robot, distance, run, script, wait_for
+from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, run, script, wait_for
+from systems import Process
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose

@@ -1,13 +1,14 @@
 """What holds for every engine, model and world: one check, over all of their combinations."""
 
 import math
+from dataclasses import replace
 from typing import Any, Callable, Dict, List, Tuple
 
 import numpy as np
 import pytest
-from support import everything, lean, world_named
+from support import analytic_distances, everything, lean, model_named, world_named
 
-from aro_robocop_goto_as.geometry import STANDSTILL, Twist2D, wrap_angle
+from aro_robocop_goto_as.geometry import STANDSTILL, Twist2D, compose, wrap_angle
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
@@ -16,8 +17,8 @@ ENGINES: Dict[str, Dict[str, Any]] = {
     "kinematic": {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60},
 }
 MODELS = ["burger", "burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
-WORLDS = ["empty", "stage_1", "stage_4", "maze_1"]
-CLOSED = ["stage_1", "maze_1"]  # walls all around, and nothing that moves
+WORLDS = ["empty", "world", "stage_4", "maze_1"]
+CLOSED = ["world", "maze_1"]  # walls all around, and nothing that moves
 RATES = {"scan": 10, "odom": 30, "tf": 30, "joints": 30, "ground_truth": 30, "bumper": 30}  # [Hz], by default
 SECONDS = 1  # that a run takes
 every_engine = pytest.mark.parametrize("engine", ENGINES)
@@ -25,7 +26,7 @@ every_model = pytest.mark.parametrize("model", MODELS)
 
 
 def check_simulation(make: Make, engine: str, model: str, world: str) -> None:
-    """Determinism, reset, rates and stamps, the clock, limits, and contact with walls."""
+    """Determinism, reset, scans, rates and stamps, the clock, limits, and contact with walls."""
     spawn = world_named(world).spawn
 
     def made(seed: int) -> Simulator:
@@ -40,6 +41,7 @@ def check_simulation(make: Make, engine: str, model: str, world: str) -> None:
     sim.reset()
     assert sim.world_from_footprint() == pytest.approx(spawn, abs=1e-9) and sim.stamp_ns == before
     assert _run(sim) == first, "a reset starts noise and moving obstacles anew"
+    _check_scan(sim, model)
     sim.reset()
     _check_rates(sim, everything(1))
     _check_limits(sim)
@@ -65,6 +67,16 @@ def _run(sim: Simulator) -> List[Tuple[str, bytes]]:
             seen += [(name, array.tobytes()) for name, array in rows.items() if observed.of(name)]
             seen += [("camera", image.depth.tobytes()) for image in observed.images.values() if observed.of("camera")]
     return seen
+
+
+def _check_scan(sim: Simulator, model: str) -> None:
+    """After one run, its distances are those of an analytic ray cast to where obstacles are by then."""
+    obstacles = tuple(replace(obstacle, pose=obstacle.at(SECONDS)) for obstacle in sim.world.obstacles)
+    x, y, yaw = compose(sim.world_from_footprint(), model_named(model).base_from_scan.on_plane())
+    angles = yaw + np.arange(360) * sim.lidar.spec.increment
+    expected = analytic_distances(replace(sim.world, obstacles=obstacles), x, y, angles, 10.0)
+    agree = np.isclose(sim.exact_distances(), expected, rtol=0.0, atol=1e-3)
+    assert agree.mean() > 0.98, "all but grazing beams"
 
 
 def _check_rates(sim: Simulator, subscriptions: Dict[str, Any]) -> None:

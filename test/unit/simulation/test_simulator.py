@@ -1,11 +1,11 @@
-"""The simulator, compared with an ideal differential drive and an analytic ray cast; rates, seeds and resets."""
+"""The simulator: rates, subscriptions, odometry, places, and several robots."""
 
 import math
 from typing import Callable, Dict, List, Tuple
 
 import numpy as np
 import pytest
-from support import ORIGIN, analytic_distances, drive, everything, world_named
+from support import ORIGIN, drive, everything
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
@@ -37,29 +37,6 @@ def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict
     sim.place(ORIGIN)
     sim.step({})
     assert not sim.touching() and sim.newly_placed_in_contact() == []
-
-
-@pytest.mark.parametrize("world", ["stage_4", "world", "maze_1"])
-def test_scan_and_physics_agree_with_an_analytic_ray_cast(simulator: Make, world: str) -> None:
-    description = world_named(world)
-    sim = simulator(world, description.spawn, scan_noise=0.0)
-    rng = np.random.default_rng(7)
-    half = max(abs(value) for obstacle in description.obstacles for value in obstacle.pose.position[:2])
-    tried = 0
-    while tried < 10:
-        x, y, yaw = rng.uniform(-half, half), rng.uniform(-half, half), rng.uniform(-math.pi, math.pi)
-        ring = analytic_distances(description, x, y, np.linspace(0, 2 * math.pi, 90), 50.0)
-        if not (0.3 < ring.min() and np.isfinite(ring).all()):  # too close to an obstacle, or outside the walls
-            continue
-        sim.place(Pose2D(x, y, yaw))
-        _drive_and_stop(sim, Twist2D(0.1, rng.uniform(-1.0, 1.0)), 1.0)
-        pose = sim.world_from_footprint()
-        scan_x, scan_y = pose.x - 0.032 * math.cos(pose.yaw), pose.y - 0.032 * math.sin(pose.yaw)
-        angles = pose.yaw + np.arange(360) * sim.lidar.spec.increment
-        expected = analytic_distances(description, scan_x, scan_y, angles, 10.0)
-        assert np.abs(sim.exact_distances() - expected)[np.isfinite(expected)].max() < 0.002
-        assert (np.isfinite(sim.exact_distances()) == np.isfinite(expected)).all()
-        tried += 1
 
 
 # Rates, noise, subscriptions

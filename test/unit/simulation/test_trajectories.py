@@ -14,6 +14,7 @@ from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 
 B, W, T = "burger", "waffle", "turtlebot2"
+RECORDED_AT = (3, 4, 8, 12, 16, 20)  # [s]
 CASES: Dict[str, Dict[str, Any]] = {
     "kin1": dict(world="stage_4", spawns=[(B, (-0.7, 0, 0))], seconds=12, drive="kinematic"),
     "kin4": dict(
@@ -35,13 +36,13 @@ CASES: Dict[str, Dict[str, Any]] = {
     "kin_maze": dict(
         world="maze_1",
         spawns=[(B, (0, 0, 0))],
-        seconds=15,
+        seconds=12,
         drive="kinematic",
         physics_rate=60,
         imu_rate=60,
         localization="truth",
     ),
-    "wheels1": dict(world="stage_4", spawns=[(B, (-0.7, 0, 0))], seconds=10),
+    "wheels1": dict(world="stage_4", spawns=[(B, (-0.7, 0, 0))], seconds=8),
     "wheels3": dict(
         world="stage_2",
         spawns=[(B, (-1, 0, 0)), (W, (0, 0, 1)), (T, (1, 0, 2))],
@@ -55,11 +56,12 @@ with open(os.path.join(ROOT, "test", "unit", "data", "trajectories.json")) as re
 
 
 def _run(world: str, spawns: Any, seconds: int, **params: Any) -> List[Any]:
-    """[step, "truth" or "odom", robot, [x, y, yaw, v, w]] at whole seconds; commands change 10 times a second."""
+    """[step, "truth" or "odom", robot, [x, y, yaw, v, w]] at RECORDED_AT; commands change 10 times a second."""
     robots = [RobotSpec(f"r{i}", model_named(model), Pose2D(*spawn)) for i, (model, spawn) in enumerate(spawns)]
     sim = make_simulator(SimParams.of(**params), world_named(world), robots)
     subscriptions = {sensor: range(len(robots)) for sensor in ("odom", "ground_truth")}
     record: List[Any] = []
+    recorded_steps = [second * sim.rate for second in RECORDED_AT]
     for step in range(seconds * sim.rate):
         if step % 24 == 0:
             for robot in range(len(robots)):
@@ -70,7 +72,7 @@ def _run(world: str, spawns: Any, seconds: int, **params: Any) -> List[Any]:
             sim.place(Pose2D(0.3, 0.4, 1.0))
         if step == 900:
             sim.reset()
-        if (step + 1) % sim.rate:
+        if step + 1 not in recorded_steps:
             sim.step({})
             continue
         seen = sim.step(subscriptions)
