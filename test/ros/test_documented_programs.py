@@ -35,7 +35,7 @@ EXCEPTIONS = {
     "shell python3 test/solutions/graded.py": "takes minutes: test/solutions",
     "shell python3 test/solutions/measure.py": "takes hours",
     "shell rosrun aro_robocop_goto_as robocop_rviz.py": "needs a display: test/gui/test_rviz_starts.py",
-    "teleop": "needs a keyboard: rostest teleop",
+    "teleop": "needs a keyboard: teleop_test.py",
     "test": "this suite",
 }
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(600), pytest.mark.xdist_group("hosting")]

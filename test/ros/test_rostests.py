@@ -15,7 +15,7 @@ LONG = ("faults", "lab", "messages", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
 SLOW = (
     *("bridge", "commands", "faults", "figures", "many_robots", "models", "navigation"),
-    *("parameters", "teleop", "time_and_pose", "two_robots"),
+    *("parameters", "time_and_pose", "two_robots"),
 )
 
 

@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+SETUP_TIMEOUT = 600.0  # [s, wall] for a set-up on a busy machine
 
 
 def environment(**settings):
@@ -16,7 +17,7 @@ def environment(**settings):
     return chosen
 
 
-def robocop(*arguments, root=ROOT, timeout=240.0, **settings):
+def robocop(*arguments, root=ROOT, timeout=SETUP_TIMEOUT, **settings):
     command = [str(root / "robocop"), *arguments]
     return subprocess.run(command, env=environment(**settings), capture_output=True, text=True, timeout=timeout)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from command import environment, robocop
+from command import SETUP_TIMEOUT, environment, robocop
 from fake_index import builds, source_release
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -47,6 +47,7 @@ def test_other_python_installations_are_ignored(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_without_a_display_the_lab_starts_even_if_the_web_page_can_not_be_installed(checkout, index):
     (checkout / "install" / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
     shutil.copytree(ROOT / "launch", checkout / "launch")
@@ -315,6 +316,7 @@ def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(chec
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_path_with_a_space_and_two_calls_at_once_then_broken_then_moved(checkout, index):
     """One test, as each step needs the set-up of the one before, which takes seconds."""
     cache = checkout.parent / "cache"
@@ -329,7 +331,7 @@ def test_path_with_a_space_and_two_calls_at_once_then_broken_then_moved(checkout
         )
         for _ in range(2)
     ]
-    answers = [(*call.communicate(timeout=240), call.returncode) for call in calls]
+    answers = [(*call.communicate(timeout=SETUP_TIMEOUT), call.returncode) for call in calls]
     assert [status for _, _, status in answers] == [0, 0], answers
     assert builds(checkout.parent / "index") == ["-O1 -Wno-incompatible-pointer-types"]
     assert all(out.startswith(f"{cache}/robocop/") and " " not in out for out, _, _ in answers)

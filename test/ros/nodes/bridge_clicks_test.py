@@ -29,20 +29,6 @@ class BridgeClicks(SystemTest):
             f"{count} goals from the bridge",
         )
 
-    def test_a_newer_click_cancels_the_older_goal_and_is_reached(self):
-        self.clicks.click(1.5, 0.0, "map")
-        older = self.wait_for_goals(1)[0]
-        self.robot.wait_until_it_drives(0.15)
-        self.clicks.click(-0.5, -0.2, "map")
-        newer = self.wait_for_goals(2)[1]
-        newer.result("REACHED")
-        # Cancelled by the bridge, rather than preempted by the server because of the newer goal.
-        self.assertIn("it was cancelled", older.result("PREEMPTED").result.message)
-        self.assertEqual(older.result().status.status, GoalStatus.PREEMPTED)
-        self.assertIn(older.id, [m.id for m in self.cancels.messages])
-        self.assertLess(older.result().header.stamp, newer.feedback()[0].header.stamp)
-        self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.5, -0.2)), NEAR)
-
     def test_of_several_quick_clicks_only_the_newest_is_reached_and_each_goal_ends_once(self):
         for i in range(8):
             self.clicks.click(1.5, 0.1 * i, "map")

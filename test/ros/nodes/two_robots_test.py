@@ -43,10 +43,6 @@ class TwoRobots(unittest.TestCase):
         self.assertEqual(self.goals[other].sent.messages, [])
         self.assertEqual(self.robots[other].commands.messages, [])
 
-    def test_goal_in_map_moves_only_the_robot_it_is_sent_to(self):
-        self.clicks[1].click(-1.6, -0.4, "map")
-        self.assert_only_it_arrives(1, Pose2D(-1.6, -0.4))
-
     def test_each_robot_serves_its_own_goal_at_the_same_time(self):
         targets = [Pose2D(-0.2, -0.4), Pose2D(-1.6, 0.4)]
         for clicks, target in zip(self.clicks, targets):
