@@ -4,6 +4,7 @@ So a test knows at which simulated time the server did something, however busy t
 """
 
 import contextlib
+import io
 import math
 import xmlrpc.client
 
@@ -44,12 +45,14 @@ class FakeRobot:
             wait_for_subscriber(publisher, SERVER)
         wait_for_subscriber(self._clock, rospy.get_name())
         self._server = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(SERVER))
-        self._sent = 0  # messages
+        self._bytes = 0
         self.pass_time(1.0)
         wait_for(
             lambda: [messages for _, _, messages, *_ in self._connections()] == [1, 1, 1],
             "one message of each topic at the server, and none from an earlier fake robot",
         )
+        # Bytes received by the server once everything published has arrived; rospy does not count messages it drops.
+        self._bytes = self._received()
 
     # -- pose and scan --
 
@@ -185,10 +188,12 @@ class FakeRobot:
 
     def _publish(self, publisher, message):
         publisher.publish(message)
-        self._sent += 1
+        content = io.BytesIO()
+        message.serialize(content)
+        self._bytes += 4 + content.tell()  # TCPROS sends the length before each message
 
     def _wait_for_server(self):
-        wait_for(lambda: self._received() == self._sent, "everything published at the server")
+        wait_for(lambda: self._received() == self._bytes, "everything published at the server")
 
     def _connections(self):
         """The server's connections on clock, odom and scan: id, bytes received, messages received, ..."""
@@ -201,5 +206,5 @@ class FakeRobot:
         ]
 
     def _received(self):
-        """Messages that the server has received on clock, odom and scan."""
-        return sum(connection[2] for connection in self._connections())
+        """Bytes that the server has received on clock, odom and scan."""
+        return sum(connection[1] for connection in self._connections())
