@@ -106,7 +106,8 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         if not launcher.pm.is_shutdown:
             print(overview(running, simulator, logs, not options.quiet), file=screen, flush=True)
     if not options.no_summary:
-        rlutil.check_log_disk_usage()
+        with deferred:  # one while it logs, of which the monitor's thread then waits for the lock, for 20 s
+            rlutil.check_log_disk_usage()
     launcher.spin()
     return FAILED if failed or launcher.failed else 0
 
