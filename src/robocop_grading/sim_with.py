@@ -100,7 +100,9 @@ def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> 
     for_package: Dict[str, str] = {}
     for_simulator: List[str] = []
     for word in words:
-        name, _, value = word.partition(":=")
+        name, given, value = word.partition(":=")
+        if not given:
+            raise HostingError(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
         if name in known:
             for_package[name] = value
         elif name in simulator:

@@ -1,5 +1,6 @@
 """The commands that start a ROS system, or use one that runs."""
 
+import contextlib
 import math
 import os
 import time
@@ -16,6 +17,7 @@ RECORDED = (
     "/(.*/)?(clock|tf|tf_static|scan|odom|ground_truth_odom|joint_states|imu|cmd_vel|map|initialpose"
     "|move_base_simple/goal|robocop_goto_as/.*|world|markers|status|rosout)"
 )
+MIN_RATE = 0.01  # times as fast as recorded
 BAG_VERSION = b"#ROSBAG V2.0\n"
 BAG_HEAD = 4096  # bytes, which hold the version and the header
 
@@ -126,14 +128,12 @@ def record(arguments: List[str]) -> None:
     program.start("rosrun", "rosbag", "record", "--quiet", f"--output-name={bag}", "--regex", RECORDED)
 
 
-def _seconds(words: List[str]) -> str:
-    """The number after --start."""
-    try:
-        if math.isfinite(value := float(words[0])) and value >= 0.0:
-            return words[0]
-    except (IndexError, ValueError):
-        pass
-    refuse(f"replay: --start: expected seconds after the recording's beginning, got {' '.join(words) or 'nothing'}")
+def _require_number(text: str, lowest: float, expected: str) -> None:
+    """End with an error for what rosbag would not take as a number."""
+    with contextlib.suppress(ValueError):
+        if lowest <= float(text) < math.inf:
+            return
+    refuse(f"replay: {expected}, got {text or 'nothing'}")
 
 
 def _require_bag(path: str) -> None:
@@ -156,8 +156,12 @@ def replay(arguments: List[str]) -> None:
         _require_bag(bag)
     rest, option, after = _split_at(arguments[1:], "--start")
     if option:
-        rest += [f"start:={_seconds(after[:1])}", *after[1:]]
+        rest += [f"start:={''.join(after[:1])}", *after[1:]]
     given = LaunchArguments.parse(REPLAY, rest, "--start")
+    if option or given.value("start"):
+        _require_number(given.value("start"), 0.0, "--start: expected seconds after the recording's beginning")
+    if given.value("rate"):
+        _require_number(given.value("rate"), MIN_RATE, f"rate: expected a number from {MIN_RATE:g} on")
     shown = x_display.answers()
     program.need("web", *["rviz"] * shown)
     refuse_second_simulator()

@@ -169,6 +169,7 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     assert dry_run("replay", f"{tmp_path}/run.bag", "rate:=2", "--start", "12.5")[0].endswith(" rate:=2 start:=12.5")
     assert "would set up: run web\n" in messages
     assert "--start: expected seconds" in robocop("replay", "a", "--start", "soon", ROBOCOP_DRY_RUN="1").stderr
+    assert "rate: expected a number from 0.01 on" in robocop("replay", "a", "rate:=x", ROBOCOP_DRY_RUN="1").stderr
     assert f"replay: {__file__} is no bag of ROS 1; expected" in robocop("replay", __file__).stderr
     with rosbag.Bag(str(tmp_path / "whole.bag"), "w") as whole:
         whole.write("/clock", Clock())
