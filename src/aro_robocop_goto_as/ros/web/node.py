@@ -34,7 +34,7 @@ from .view import View
 
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
-TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
+TEXTS = ("web_host", "web_origins", "replay")  # arguments that are not YAML
 SECTOR = {"free": markers.FREE, "near": markers.NEAR, "too near": markers.BLOCKED, "no scan": markers.UNKNOWN}
 ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
@@ -67,7 +67,7 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
-        parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
+        parts += [TimeControls(context), Teleop(context)]
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():
@@ -90,7 +90,7 @@ class WebNode:
         self._server = server
         self._state = SharedState(PageState(live=not p.replay and not p.view_only, recorded=bool(p.replay)))
         scene, requests = PageScene(server.scene), Requests(self._state)
-        context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
+        context = Context(server, scene, self._state, requests, FrameTree())
         set_up(server)
         cameras = Cameras(server)
         self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]

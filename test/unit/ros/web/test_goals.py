@@ -18,27 +18,26 @@ CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
 
 def made(**state):
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", pose=lifted(Pose2D(0.0, 0.0, 3.0)), **state))
-    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree())
     part, inbox = goals.Goals(context), MagicMock()
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
     part.subscribe_to_robot(inbox, "red")
     return part, context
 
 
-@pytest.mark.parametrize("simulated", [True, False])
-def test_a_click_places_the_robot_with_the_heading_that_it_has(simulated):
-    part, context = made(simulated=simulated)
-    part._mode.value = goals.PLACE_ROBOT
+@pytest.mark.parametrize("mode", [goals.PLACE_ROBOT, goals.SEND_GOAL])
+def test_a_click_is_in_the_frame_of_the_scene_and_places_the_robot_with_the_heading_that_it_has(mode):
+    part, context = made(root="red/odom")
+    part._mode.value = mode
     part._on_click(CLICK)
-    if simulated:
+    if mode == goals.PLACE_ROBOT:
         _, service, _, robot, pose = context.requests.call.call_args[0]
         assert (service, robot) == ("set_pose", "red")
+        assert pose.pose.orientation.z == pytest.approx(goals.convert.to_quaternion(3.0).z)
     else:
-        _, topic, estimate = context.requests.publish.call_args[0]
-        assert topic == "initialpose" and estimate.pose.covariance[0] == goals.POSITION_VARIANCE
-        pose = estimate
-    pose = pose.pose if simulated else pose.pose.pose
-    assert pose.orientation.z == pytest.approx(goals.convert.to_quaternion(3.0).z)
+        _, topic, pose, _ = context.requests.publish.call_args[0]
+        assert topic == "move_base_simple/goal"
+    assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("red/odom", 1.0, 2.0)
 
 
 def test_a_click_into_the_sky_requests_nothing():
