@@ -1,8 +1,9 @@
 """Parameters of the web page."""
 
 from dataclasses import dataclass
+from typing import List
 
-from .param_loading import parameter
+from .param_loading import frame_problems, parameter
 
 
 @dataclass(frozen=True)
@@ -11,7 +12,12 @@ class WebParams:
 
     web_host: str = "127.0.0.1"
     web_port: int = parameter(8080, low=1, high=65535)
+    web_frame: str = "map"
     web_origins: str = ""
     replay: str = ""
     replay_waits: bool = True
     view_only: bool = False
+
+    def conflicts(self) -> List[str]:
+        """A frame name that tf2 would refuse, in words; empty when there is none."""
+        return frame_problems("web_frame", self.web_frame)

@@ -1,4 +1,4 @@
-"""The ROS graph as the master knows it: published topics, topics between two nodes, action servers."""
+"""The ROS graph as the master knows it: published topics and action servers."""
 
 from dataclasses import dataclass
 from typing import Dict, List, Tuple
@@ -6,8 +6,8 @@ from typing import Dict, List, Tuple
 import rosgraph
 import rospy
 
-# Topics of an action's server and clients, after its name; their types end in ActionResult and ActionGoal.
-RESULT, GOAL = "/result", "/goal"
+# How a topic of an action server ends, after its name, and the type of that topic.
+RESULT, RESULT_TYPE = "/result", "Result"
 
 
 @dataclass(frozen=True)
@@ -33,27 +33,10 @@ def published_topics() -> List[Topic]:
     )
 
 
-def unpublished_topics() -> List[str]:
-    """Names of topics that another node subscribes to and nobody publishes; raises what published_topics raises."""
-    publishers, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
-    published = {topic for topic, nodes in publishers if nodes}
-    return sorted(topic for topic, nodes in subscribers if {*nodes} - {rospy.get_name()} and topic not in published)
-
-
 def action_servers() -> Dict[str, str]:
     """Action type of each action server, by name: {"/robocop_goto_as": "aro_robocop_goto_as/GoToPositionAction"}."""
-    return _actions(RESULT)
-
-
-def action_clients() -> Dict[str, str]:
-    """The same for the action servers that action clients look for, whether or not they exist."""
-    return _actions(GOAL)
-
-
-def _actions(suffix: str) -> Dict[str, str]:
-    kind = suffix[1:].capitalize()
     return {
-        topic.name[: -len(suffix)]: topic.type[: -len(kind)]
+        topic.name[: -len(RESULT)]: topic.type[: -len(RESULT_TYPE)]
         for topic in published_topics()
-        if topic.name.endswith(suffix) and topic.type.endswith(f"Action{kind}")
+        if topic.name.endswith(RESULT) and topic.type.endswith(f"Action{RESULT_TYPE}")
     }

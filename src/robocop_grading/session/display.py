@@ -34,7 +34,7 @@ class Display:
         """Start the programs; they subscribe some time later."""
         self._start(["rosrun", "robot_state_publisher", "robot_state_publisher"], "frames")
         if self.is_page:
-            arguments = [f"web_port:={self._viewer.port}", "view_only:=true"]
+            arguments = [f"web_port:={self._viewer.port}", "web_frame:=odom", "view_only:=true"]
             self._start(["rosrun", "aro_robocop_goto_as", "robocop_web.py", *arguments], "page")
             self._guard = Guard(self._processes[-1].pid, memory=PAGE_MEMORY)
         else:

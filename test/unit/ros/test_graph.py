@@ -10,14 +10,13 @@ from aro_robocop_goto_as.ros import graph
 
 TYPES = [["/odom", "nav_msgs/Odometry"], ["/go/result", "p/GoActionResult"], ["/x/result", "std_msgs/String"]]
 PUBLISHERS = [["/odom", ["/sim"]], ["/go/result", ["/server"]], ["/x/result", ["/me"]], ["/old", []], ["/new", ["/a"]]]
-SUBSCRIBERS = [["/odom", ["/server"]], ["/cmd_vel", ["/sim"]], ["/mine", ["/me"]], ["/old", ["/sim"]]]
 
 
 @pytest.fixture(autouse=True)
 def master(monkeypatch):
     known = SimpleNamespace(
         getTopicTypes=lambda: TYPES,
-        getSystemState=lambda: (PUBLISHERS, SUBSCRIBERS, []),
+        getSystemState=lambda: (PUBLISHERS, [], []),
         lookupNode=lambda _: "http://localhost:1/",
     )
     monkeypatch.setattr(rosgraph, "Master", lambda _: known)
@@ -29,10 +28,6 @@ def test_topic_without_a_publisher_is_not_published_and_one_of_unknown_type_is()
     topics = {topic.name: topic for topic in graph.published_topics()}
     assert list(topics) == ["/go/result", "/new", "/odom", "/x/result"]
     assert topics["/new"] == graph.Topic("/new", "", ("/a",))
-
-
-def test_topic_that_only_this_node_subscribes_to_is_nobody_elses_loss():
-    assert graph.unpublished_topics() == ["/cmd_vel", "/old"]
 
 
 def test_action_server_is_known_by_the_type_of_its_result():

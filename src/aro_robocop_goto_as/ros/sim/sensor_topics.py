@@ -3,13 +3,10 @@
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
-import rospy
-from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_msgs.msg import Bool
 
-from ...geometry import Pose2D
 from ...names import prefixed
 from ...robot.model import CAMERA_FRAME
 from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN
@@ -92,10 +89,3 @@ class SensorTopics:
         if p.topics.localization == "truth":
             found.append((p.frames.map_frame, self.odom_frame, observed.map_from_odom[self._robot]))
         return found
-
-    def transform_messages(self, stamp: rospy.Time) -> List[TransformStamped]:
-        """The same as single messages."""
-        return [
-            convert.to_transform(parent, child, Pose2D(*pose.tolist()), stamp)
-            for parent, child, pose in self.transforms()
-        ]

@@ -34,7 +34,7 @@ from .view import View
 
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
-TEXTS = ("web_host", "web_origins", "replay")  # arguments that are not YAML
+TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
 SECTOR = {"free": markers.FREE, "near": markers.NEAR, "too near": markers.BLOCKED, "no scan": markers.UNKNOWN}
 ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
@@ -90,7 +90,7 @@ class WebNode:
         self._server = server
         self._state = SharedState(PageState(live=not p.replay and not p.view_only, recorded=bool(p.replay)))
         scene, requests = PageScene(server.scene), Requests(self._state)
-        context = Context(server, scene, self._state, requests, FrameTree())
+        context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
         cameras = Cameras(server)
         self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]

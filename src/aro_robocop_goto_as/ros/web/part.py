@@ -14,7 +14,6 @@ from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
 from .requests import Requests
 
-MAP = "map"  # the frame that the scene is drawn in where it is known
 Handler = Callable[[float, Any], None]  # time at which a message was received [s, monotonic], the message
 
 
@@ -27,15 +26,16 @@ class Context:
     state: SharedState
     requests: Requests
     frames: FrameTree
+    fixed_frame: str  # that the scene is drawn in where it is known
 
     def locate(self, frame: str) -> Optional[Pose3D]:
         """The pose of a frame in the one that the scene is drawn in."""
         return self.frames.lookup(self.state.now.root, frame.lstrip("/"))
 
     def place(self, robot: str, x: float, y: float) -> str:
-        """A position in a robot's odom [m] in words: in map, or where that is unknown in odom, it says."""
+        """A position in a robot's odom [m] in words: in the fixed frame, or where that is unknown in odom, it says."""
         odom = self.frame_of(robot, "odom")
-        fixed_from_odom = self.frames.lookup(MAP, odom)
+        fixed_from_odom = self.frames.lookup(self.fixed_frame, odom)
         if fixed_from_odom is None:
             return f"{text.position(x, y)} in {odom}"
         x, y, _ = compose3(fixed_from_odom, Pose3D((x, y, 0.0))).position

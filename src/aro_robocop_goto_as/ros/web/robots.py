@@ -15,7 +15,7 @@ from ...web.state import PageState
 from ...web.urdf import read_links
 from ..graph import Topic, published_topics
 from .marker_shapes import to_pose
-from .part import MAP, Context, Inbox, Part
+from .part import Context, Inbox, Part
 
 DESCRIPTION, ODOM = "robot_description", "/odom"
 BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that exists
@@ -53,10 +53,10 @@ class Robots(Part):
                 self._moved.add(child)
 
     def show(self, state: PageState) -> None:
-        """Draw all robots. Where nobody publishes map, as without localization, odom takes its place."""
+        """Draw all robots. Where nobody publishes the fixed frame, as without localization, odom takes its place."""
         context = self.context
-        known = context.frames.knows(MAP)
-        context.state.change(root=MAP if known else context.frame_of(state.selected, "odom"))
+        known = context.frames.knows(context.fixed_frame)
+        context.state.change(root=context.fixed_frame if known else context.frame_of(state.selected, "odom"))
         group: Group = {}
         for robot, links in self._links.items():
             for link, shape in links.items():

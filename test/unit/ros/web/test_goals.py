@@ -18,7 +18,7 @@ CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
 
 def made(**state):
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", pose=lifted(Pose2D(0.0, 0.0, 3.0)), **state))
-    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree())
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
     part, inbox = goals.Goals(context), MagicMock()
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
     part.subscribe_to_robot(inbox, "red")

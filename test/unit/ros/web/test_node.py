@@ -18,8 +18,8 @@ def test_the_environment_chooses_the_address_unless_it_is_given(monkeypatch):
 
 
 def test_values_are_taken_as_they_are_written():
-    given = load_params(["web_host:=0.0.0.0", "web_port:=8090", "view_only:=true"])
-    assert given == WebParams(web_host="0.0.0.0", web_port=8090, view_only=True)
+    given = load_params(["web_host:=0.0.0.0", "web_port:=8090", "web_frame:=odom"])
+    assert given == WebParams(web_host="0.0.0.0", web_port=8090, web_frame="odom")
 
 
 @pytest.mark.parametrize(
@@ -29,6 +29,7 @@ def test_values_are_taken_as_they_are_written():
         ("web_port:=80.5", "web_port: expected int, got float 80.5"),
         ("web_port:=70000", "web_port: expected at most 65535"),
         ("web_port:=[", "web_port: "),
+        ("web_frame:=/map", "web_frame: expected a frame name"),
         ("8090", "expected NAME:=VALUE, got '8090'"),
     ],
 )

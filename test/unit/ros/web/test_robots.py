@@ -27,7 +27,7 @@ def transform(x):
 
 def test_odometry_is_the_transform_where_nobody_publishes_that_one():
     frames = FrameTree()
-    robots = Robots(Context(MagicMock(), MagicMock(), SharedState(PageState()), MagicMock(), frames))
+    robots = Robots(Context(MagicMock(), MagicMock(), SharedState(PageState()), MagicMock(), frames, "map"))
     robots._on_odometry(0.0, odometry(1.0))
     assert frames.lookup("odom", "base_footprint").position == (1.0, 0.0, 0.0)
     robots._on_tf(0.0, transform(2.0))

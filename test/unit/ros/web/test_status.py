@@ -21,6 +21,6 @@ from aro_robocop_goto_as.web.state import PageState, SharedState
 )
 def test_a_server_that_executes_no_goal_is_ready_unless_the_bridge_reports_something_else(bridge, shown):
     state = PageState(answering=True, executing=False)
-    status = Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree()))
+    status = Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
     status._on_bridge(0.0, MagicMock(data=bridge))
     assert status._rows(state) == [("server", shown)]

@@ -29,7 +29,7 @@ class Publishers:
 def driven(monkeypatch, publishers, **state):
     monkeypatch.setattr(teleop.rospy, "Publisher", publishers)
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", **state))
-    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree())
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
     return teleop.Teleop(context), context
 
 
