@@ -69,25 +69,36 @@ class Push:
 
 @dataclass(frozen=True)
 class Block:
-    """An obstacle that stands on the floor: a box or a cylinder."""
+    """An obstacle that stands on the floor, in odom at the scenario's start."""
 
-    kind: str  # box or cylinder
-    pose: Pose2D  # odom_from_block at the scenario's start
-    sizes: Tuple[float, ...]  # [m] length and width of a box, radius of a cylinder
+    box: Tuple[float, ...] = _numbers(5)  # x, y [m], yaw [rad], length and width [m]
+    cylinder: Tuple[float, ...] = _numbers(3)  # x, y and radius [m]
+
+    def conflicts(self) -> List[str]:
+        """What is wrong with its shape, in words."""
+        if bool(self.box) == bool(self.cylinder):
+            return ["expected one of box and cylinder"]
+        sizes = self.box[3:] or self.cylinder[2:]
+        return [] if min(sizes) > 0.0 else [f"expected sizes above 0, got {sizes}"]
+
+    @property
+    def pose(self) -> Pose2D:
+        """odom_from_block."""
+        return Pose2D(*self.box[:3]) if self.box else Pose2D(*self.cylinder[:2])
 
     @property
     def geometry(self) -> Geometry:
         """Its shape."""
-        return Box((self.sizes[0], self.sizes[1], HEIGHT)) if self.kind == "box" else Cylinder(self.sizes[0], HEIGHT)
+        return Box((self.box[3], self.box[4], HEIGHT)) if self.box else Cylinder(self.cylinder[2], HEIGHT)
 
     @property
     def outline(self) -> Tuple[float, ...]:
         """It seen from above, in odom: x, y, x, y, ... [m]."""
-        if self.kind == "box":
-            length, width = self.sizes
+        if self.box:
+            length, width = self.box[3:]
             corners = [(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
         else:
-            (radius,) = self.sizes
+            radius = self.cylinder[2]
             corners = [(radius * math.cos(n * math.pi / 8), radius * math.sin(n * math.pi / 8)) for n in range(17)]
         return tuple(round(it, 4) for corner in corners for it in compose(self.pose, Pose2D(*corner))[:2])
 
@@ -191,24 +202,6 @@ class _ScenarioEntry:
         return problems + ([] if self.script else ["script: expected steps, got none"])
 
 
-@dataclass(frozen=True)
-class _Obstacles:
-    """Obstacles in the file."""
-
-    box: Tuple[float, ...] = _numbers(5)
-    cylinder: Tuple[float, ...] = _numbers(3)
-
-    @property
-    def blocks(self) -> List[Block]:
-        """The same as blocks."""
-        boxes = [Block("box", Pose2D(*self.box[:3]), self.box[3:])] if self.box else []
-        return boxes + ([Block("cylinder", Pose2D(*self.cylinder[:2]), self.cylinder[2:])] if self.cylinder else [])
-
-    def conflicts(self) -> List[str]:
-        """What has no size, in words."""
-        return [f"{it.kind}: expected sizes above 0, got {it.sizes}" for it in self.blocks if min(it.sizes) <= 0.0]
-
-
 def load(path: Path, seed: int = MIDDLE) -> Plan:
     """Read the plan and draw its scenarios; PlanError or ParameterError names the file and the mistake in it.
 
@@ -266,13 +259,13 @@ def _scenario(raw: Any, where: str, seed: int) -> Scenario:
     obstacles = drawn(entry.obstacles or [], numbers, where)
     script = drawn(entry.script, numbers, where)
     pushes = drawn(entry.pushes or [], numbers, where)
-    blocks = [block for it in obstacles for block in _loaded(_Obstacles, it, f"{where}: obstacles").blocks]
+    blocks = tuple(_loaded(Block, it, f"{where}: obstacles") for it in obstacles)
     steps = tuple(_loaded(Step, step, f"{where}: script") for step in script)
     for number, step in enumerate(steps):
         if step.cancel and not any(earlier.goal for earlier in steps[:number]):
             raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
     moved = tuple(_push(push, f"{where}: pushes") for push in pushes)
-    return Scenario(entry.name, entry.about, steps, tuple(blocks), entry.odd_scan, moved)
+    return Scenario(entry.name, entry.about, steps, blocks, entry.odd_scan, moved)
 
 
 def _push(raw: Any, where: str) -> Push:
@@ -304,5 +297,5 @@ def world_of(plan: Plan) -> World:
     for index, scenario in enumerate(plan.scenarios, 1):
         for number, block in enumerate(scenario.obstacles):
             pose = compose3(lifted(site(index)), lifted(block.pose, HEIGHT / 2.0))
-            obstacles.append(Obstacle(f"{scenario.name}/{number}/{block.kind}", pose, block.geometry))
+            obstacles.append(Obstacle(f"{scenario.name}/{number}/block", pose, block.geometry))
     return World("grading", tuple(obstacles), Pose2D(), (), "config/grading.yaml")
