@@ -12,7 +12,7 @@ from aro_robocop_goto_as.errors import GradingError, RobocopError
 from .advice import advice, next_todo
 from .builds import workspace
 from .builds.launch_file import READER
-from .builds.package import MAX_NAMED, Package, find_package, started
+from .builds.package import MAX_NAMED, Package, Started, find_package, started
 from .builds.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
@@ -99,22 +99,19 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
     """Single files in `top`, run in place, on top of the skeleton's package."""
-    folder = top.parent if top.is_file() else top
-    scripts = [_script(part, choice, folder) for part, choice in choices.items()]
-    return Submission(
-        top.stem if top.is_file() else top.name,
-        [top, _lab_folder(state)],  # `top` may contain helper modules
-        lab_environment(share, state),
-        scripts,
-        notes=[
-            *_ungraded_bridge(choices),
-            *(
-                note
-                for script in scripts
-                for note in (*_obstacles(script.part, choices[script.part], is_loose=True), *_advice(script))
-            ),
-        ],
-    )
+    name, folder = (top.stem, top.parent) if top.is_file() else (top.name, top)
+    reads = [top, _lab_folder(state)]  # `top` may contain helper modules
+    return _ready(name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
+
+
+def _ready(
+    name: str, top: Path, reads: Sequence[Path], environment: Environment, found: Started, is_loose: bool = False
+) -> Submission:
+    scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
+    notes = [*found.notes, *_ungraded_bridge(found.choices)]
+    for script in scripts:
+        notes += [*_obstacles(script.part, found.choices[script.part], is_loose), *_advice(script)]
+    return Submission(name, reads, environment, scripts, found.parameters, notes)
 
 
 def _script(part: str, choice: Choice, top: Path) -> Script:
@@ -163,12 +160,7 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
             f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}, or started by the launch "
             f"file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
         )
-    notes = [*found.notes, *_ungraded_bridge(found.choices)]
-    scripts = []
-    for part, choice in found.choices.items():
-        scripts.append(_script(part, choice, copy))
-        notes += [*_obstacles(part, choice), *_advice(scripts[-1])]
-    return Submission(package.path.name, [folder, *below], environment, scripts, found.parameters, notes)
+    return _ready(package.path.name, copy, [folder, *below], environment, found)
 
 
 def _ungraded_bridge(choices: Mapping[str, Choice]) -> Iterator[str]:
@@ -181,7 +173,7 @@ def _advice(script: Script) -> List[str]:
     return [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
 
 
-def _obstacles(part: str, choice: Choice, is_loose: bool = False) -> Iterator[str]:
+def _obstacles(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:
     """Why roslaunch could not start a script that is started here by its interpreter.
 
     `is_loose`: it is not in a package, and what copied it may have dropped its execute bit.
