@@ -4,7 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional
+from typing import Dict, List, Mapping
 
 from aro_robocop_goto_as.errors import UngradableError
 
@@ -24,10 +24,8 @@ _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
-def grade(
-    runner: Runner, submission: Submission, folder: Path, scratch: Optional[Path] = None, keep: bool = False
-) -> Grade:
-    """Write the report, and the bags of failed scenarios, to `folder`; temporary files are in `scratch`.
+def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = False) -> Grade:
+    """Write the report, and the bags of failed scenarios, to `folder`.
 
     `keep`: the report stays in its folder, and gets the bags of all scenarios. A part that is killed is run once more.
     UngradableError if it is killed again, but may not have done so itself, or if the machine has no time for it.
@@ -35,7 +33,7 @@ def grade(
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
-    with temporary_folder("robocop-grade-", scratch) as work:
+    with temporary_folder("robocop-grade-") as work:
         notes = list(submission.notes) if plan.is_whole else [NOT_WHOLE]
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)

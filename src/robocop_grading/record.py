@@ -194,9 +194,14 @@ def results_of(record: Record, goal: Goal) -> List[Result]:
     return [result for result in record.results if result.id == goal.id]
 
 
+def feedback_of(record: Record, goal: Goal) -> List[Feedback]:
+    """The feedback about a goal in order of arrival."""
+    return [message for message in record.feedback if message.id == goal.id]
+
+
 def active_until(record: Record, goal: Goal) -> float:
     """When a goal got its first terminal state or result; infinity if it got none."""
-    ends = [result.time for result in record.results if result.id == goal.id]
+    ends = [result.time for result in results_of(record, goal)]
     ends += [change.time for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
     return min(ends, default=math.inf)
 

@@ -14,7 +14,6 @@ from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
-SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
 MAX_ID = 80  # characters that are shown of a goal's id
 NEEDS = "bridge_alive", "forwards_goal"
@@ -29,7 +28,7 @@ def _distance(goal: Goal, x: float, y: float) -> float:
     return math.hypot(goal.x - x, goal.y - y)
 
 
-@check("clicks", after=(CRASH,))
+@check("track", after=(CRASH,))
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
     if not record.clicks:
@@ -93,7 +92,7 @@ def _unconnected(record: Record) -> str:
     return text("other_action", closest(name, others) or others[0], name)
 
 
-@check("clicks", after=(CRASH,), needs=NEEDS)
+@check("track", after=(CRASH,), needs=NEEDS)
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
@@ -104,7 +103,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     return problem or PASSED
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
+@check("track", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
     if len(record.clicks) < 2:
@@ -159,7 +158,7 @@ def _not_cancelled(requests: Sequence[Cancel], older: Goal) -> str:
     return text("cancel_by_early_stamp", requests[-1].stamp)
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
+@check("track", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
@@ -172,7 +171,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     return Failed(wanted, "no goal", clicked, text("waits_for_no_server"), MISSING)
 
 
-@check("clicks")
+@check("track")
 def bridge_alive(record: Record, limits: Limits) -> Verdict:
     """The bridge runs to the end without an exception."""
     return _crash(record, limits) or PASSED
@@ -185,7 +184,7 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check("clicks", after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)), needs=NEEDS)
+@check("track", after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)), needs=NEEDS)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:

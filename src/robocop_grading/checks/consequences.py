@@ -3,7 +3,7 @@
 from typing import Mapping, Pattern
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until
+from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until, feedback_of, results_of
 from ..texts import text
 from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
 from .verdict import After, Failed
@@ -60,8 +60,8 @@ def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
 
 def silent(record: Record, goal: Goal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
-    told = {message.id for message in record.feedback} | {result.id for result in record.results}
-    return goal.id not in told and not any(command.time >= goal.time for command in record.commands)
+    told = [*feedback_of(record, goal), *results_of(record, goal)]
+    return not told and not any(command.time >= goal.time for command in record.commands)
 
 
 def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
@@ -81,14 +81,13 @@ def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an end far from the goal fits the position_error that the server reported itself."""
-    own = [message.position_error for message in record.feedback if failure.goal and message.id == failure.goal.id]
-    return bool(own) and own[-1] <= BELIEVED
+    own = feedback_of(record, failure.goal) if failure.goal else []
+    return bool(own) and own[-1].position_error <= BELIEVED
 
 
 def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether no position_error that the server reported told it that it had reached the goal."""
-    goal = failure.goal
-    own = [message for message in record.feedback if goal and message.id == goal.id]
+    own = feedback_of(record, failure.goal) if failure.goal else []
     end = end_of(record, failure)
     return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
 
@@ -101,7 +100,7 @@ def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
     goal = failure.goal
     if goal is None or failure.kind == SUCCESS:
         return False
-    own = [message for message in record.feedback if message.id == goal.id]
+    own = feedback_of(record, goal)
     end = active_until(record, goal)
     fits, number = [], 0
     for command in record.commands:

@@ -13,6 +13,7 @@ from ..record import (
     Record,
     Result,
     errors_at,
+    feedback_of,
     results_of,
     samples_between,
     status_name,
@@ -109,7 +110,7 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
-    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time <= result.time]
+    own = [it.position_error for it in feedback_of(record, goal) if it.time <= result.time]
     kind, cause = SUCCESS, text("success_too_far", GOAL_RADIUS)
     if own and own[-1] < GOAL_RADIUS:
         cause = text("success_believed", own[-1])

@@ -8,7 +8,7 @@ from typing import Callable, List, Mapping, Optional, Sequence
 import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import ERRORS, Goal, Record, active_until, errors_at, samples_between, wrapped
+from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
 from ..texts import text
 from .consequences import died, nothing_came, unpublished
 from .feedback_causes import (
@@ -51,7 +51,7 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         if end - goal.time < MIN_GOAL_TIME:
             continue
         judged = True
-        count = sum(message.id == goal.id and message.time <= end for message in record.feedback)
+        count = sum(message.time <= end for message in feedback_of(record, goal))
         rate = count / (end - goal.time)
         if limits.feedback_low <= rate <= limits.feedback_high:
             continue
@@ -183,7 +183,7 @@ def _is_shifted(record: Record, index: int) -> bool:
 def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
     """For each message while the true error changes, and each of the AGES, the difference from the error of then."""
     samples = samples_between(record, goal.time - AGES[-1] - 0.2, active_until(record, goal))
-    own = [message for message in record.feedback if message.id == goal.id]
+    own = feedback_of(record, goal)
     if len(samples) < 2 or not own:
         return np.zeros((0, len(AGES)))
     values = np.array([message.errors[index] for message in own])

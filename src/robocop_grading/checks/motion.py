@@ -13,7 +13,7 @@ from ..record import (
     Sample,
     active_until,
     errors_at,
-    results_of,
+    feedback_of,
     samples_between,
     wrapped,
 )
@@ -67,14 +67,9 @@ def _in_force(record: Record) -> Iterator[Command]:
             yield replace(newest, time=sample.time)
 
 
-def _end(record: Record, goal: Goal) -> float:
-    results = results_of(record, goal)
-    return results[0].time if results else math.inf
-
-
 def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Situation]:
     """Commands sent far from the goal, after |angle error| was within [low, high] for a WINDOW."""
-    end = _end(record, goal) - 1e-6
+    end = active_until(record, goal) - 1e-6
     situations = []
     for command in _in_force(record):
         if not goal.time + WINDOW < command.time < end:
@@ -152,7 +147,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
 
 def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
     """A robot that did not head for the goal and got no command to turn."""
-    end = _end(record, goal)
+    end = active_until(record, goal)
     start = samples_between(record, goal.time, goal.time)
     if not start or end - goal.time < 1.0:
         return None
@@ -250,7 +245,7 @@ def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Lim
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
         return "turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS
-    own = [it.position_error for it in record.feedback if it.id == goal.id and it.time < end - ITERATION]
+    own = [it.position_error for it in feedback_of(record, goal) if it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
         return "unaware_of_goal", GOAL_RADIUS, own[-1]
     return "goes_on", GOAL_RADIUS
@@ -270,7 +265,7 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
 
 def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     """A robot that turned by much more than it needed to, until it came to the goal."""
-    samples = samples_between(record, goal.time, _end(record, goal))
+    samples = samples_between(record, goal.time, active_until(record, goal))
     there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
     samples = samples[:there]
     total = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
@@ -297,7 +292,7 @@ def already_there(record: Record, limits: Limits) -> Verdict:
 
 def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
     """A robot that takes long or moves although it is at the goal."""
-    end = _end(record, goal)
+    end = active_until(record, goal)
     samples = samples_between(record, goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
     if end - goal.time <= AT_ONCE and moved <= 0.05:

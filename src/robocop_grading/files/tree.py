@@ -53,9 +53,9 @@ def remove(path: Path) -> None:
 
 
 @contextlib.contextmanager
-def temporary_folder(prefix: str, parent: Optional[Path] = None) -> Iterator[Path]:
-    """A new folder in `parent` (default: TMPDIR), removed at the end."""
-    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
+def temporary_folder(prefix: str) -> Iterator[Path]:
+    """A new folder in TMPDIR, removed at the end."""
+    folder = Path(tempfile.mkdtemp(prefix=prefix))
     try:
         yield folder
     finally:

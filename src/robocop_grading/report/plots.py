@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MultipleLocator
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, STOP_DISTANCE
-from ..record import TERMINAL, Goal, Record, Sample, errors_at, results_of, status_name
+from ..record import TERMINAL, Goal, Record, Sample, active_until, errors_at, status_name
 
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
@@ -167,8 +167,7 @@ def _on_way(record: Record) -> List[Tuple[Sample, Goal]]:
     """Samples with the goal that was active."""
     pairs = []
     for goal, newer in zip(record.goals, [*record.goals[1:], None]):
-        ends = [result.time for result in results_of(record, goal)[:1]] + ([newer.time] if newer else [])
-        end = min(ends, default=math.inf)
+        end = min(active_until(record, goal), newer.time if newer else math.inf)
         pairs += [(sample, goal) for sample in record.samples if goal.time <= sample.time <= end]
     return pairs
 
@@ -244,5 +243,4 @@ PLOTS: Dict[str, Plot] = {
     "distances": Plot(_distances, 2.2),
     "speeds": Plot(_speeds, 2.0),
     "states": Plot(_states, 1.5, left=LEFT_OF_NAMES),
-    "clicks": Plot(_track, 3.6),
 }

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tempfile
 
 import pytest
 
@@ -34,8 +35,9 @@ def test_deeply_nested_folders_are_removed(nested):
     assert not nested.exists()
 
 
-def test_temporary_folder_is_removed_whatever_is_in_it(tmp_path):
-    with tree.temporary_folder("made-", tmp_path) as folder:
+def test_temporary_folder_is_removed_whatever_is_in_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with tree.temporary_folder("made-") as folder:
         subprocess.run([sys.executable, "-c", NESTED], cwd=folder, check=True, timeout=TIMEOUT)
     assert list(tmp_path.iterdir()) == []
 
