@@ -1,8 +1,7 @@
 """Collects the hand-ins of a folder, each with a digest of its content."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Tuple
+from typing import Dict, List, Tuple
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError, SubmissionError
 
@@ -13,32 +12,21 @@ EXPECTED = "a folder, a zip or tar archive, or a Python file"
 EXPORTED = ("submission_metadata.yml",)  # written by Gradescope itself into what it exports
 
 
-@dataclass(frozen=True)
-class HandIn:
-    """A folder, archive or Python file; without a digest, it can't be read."""
+def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[Dict[str, str], List[str]]:
+    """The digests of hand-ins by their names, sorted; what can't be read has an empty one.
 
-    path: Path
-    digest: str
-
-    @property
-    def name(self) -> str:
-        """Its name in the folder of the class."""
-        return self.path.name
-
-
-def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[List[HandIn], List[str]]:
-    """The hand-ins sorted by name: whatever is not hidden, except files that are `reserved` or made by the platform.
-
-    With the names of those. GradingSetupError if there is no hand-in.
+    A hand-in is whatever is not hidden, except files that are `reserved` or made by the platform, whose names are the
+    second value. GradingSetupError if there is no hand-in.
     """
     if not folder.is_dir():
         raise GradingSetupError(f"{folder}: expected a folder with {EXPECTED} for each hand-in")
-    hand_ins, others = [], []
+    hand_ins: Dict[str, str] = {}
+    others = []
     for path in sorted(folder.iterdir()):
         if path.name in (*reserved, *EXPORTED) and path.is_file():
             others.append(path.name)
         elif not path.name.startswith(".") and path.name != "__MACOSX":
-            hand_ins.append(HandIn(path, _digest(path)))
+            hand_ins[path.name] = _digest(path)
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected {EXPECTED} for each")
     return hand_ins, others

@@ -10,7 +10,7 @@ import sys
 import time
 from functools import partial
 from pathlib import Path
-from typing import Callable, Collection, Dict, List, Optional, Sequence, Set
+from typing import Callable, Collection, Dict, List, Mapping, Optional, Sequence, Set
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
@@ -27,8 +27,8 @@ from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
 from ..texts import printable_lines
 from .child_errors import send_child_errors_to
-from .hand_ins import HandIn, collect
-from .results import Result, Results, page, seed_of, summary, write_atomically
+from .hand_ins import collect
+from .results import WAITING, Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
@@ -45,16 +45,18 @@ class Class:
     """The hand-ins of one folder and the results so far."""
 
     def __init__(
-        self, folder: Path, results: Results, plan: Plan, hand_ins: List[HandIn], again: Collection[str]
+        self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str], again: Collection[str]
     ) -> None:
-        self.title, self.plan, self.results = folder.name, plan, results
+        self.folder, self.plan, self.results = folder, plan, results
         self.count = len(hand_ins)
         self.done: Dict[str, Result] = {
-            it.name: results.read(it.name) for it in hand_ins if it.name not in again and results.has(it)
+            name: results.read(name)
+            for name, digest in hand_ins.items()
+            if name not in again and results.has(name, digest)
         }
         self._again = again
-        left = [it for it in hand_ins if it.name not in self.done]
-        self.waiting = {it.name: it for it in sorted(left, key=lambda it: it.name not in again)}
+        left = [name for name in hand_ins if name not in self.done]
+        self.waiting = {name: hand_ins[name] for name in sorted(left, key=lambda name: name not in again)}
         self.problems: Dict[str, str] = {}
         self._started, self._before = time.monotonic(), len(self.done)
         self._next_write = 0.0  # [s, wall]
@@ -62,7 +64,7 @@ class Class:
     @property
     def figures(self) -> Summary:
         """How many are judged so far, and their points."""
-        return summary(list(self.done.values()), self.plan, self.problems)
+        return summary(list(self.done.values()), self.plan, len(self.problems))
 
     @property
     def pace(self) -> str:
@@ -96,16 +98,16 @@ class Class:
 
         Of those that are graded again, an older result is stored, too.
         """
-        for hand_in in [it for it in self.waiting.values() if it.name not in self._again]:
-            if self.results.has(hand_in):
-                self.add(hand_in.name, "")
+        for name, digest in list(self.waiting.items()):
+            if name not in self._again and self.results.has(name, digest):
+                self.add(name, "")
 
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
         results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems))
-        waiting = {name: self.problems.get(name, "waiting") for name in self.waiting}
-        write_atomically(folder / HTML, page(self.title, results, self.plan, waiting, running, self.figures, self.pace))
+        waiting = {name: self.problems.get(name, WAITING) for name in self.waiting}
+        write_atomically(folder / HTML, page(self.folder.name, results, self.plan, waiting, running, self.pace))
         self._next_write = time.monotonic() + PERIOD
 
 
@@ -139,7 +141,7 @@ def main() -> None:
         if not args.unsafe:
             expect_private(folder)
         hand_ins, others = collect(folder, (CSV, HTML))
-        for name in {hand_in.name for hand_in in hand_ins} & {CSV, HTML}:
+        for name in hand_ins.keys() & {CSV, HTML}:
             raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
         for name in others:
             print(f"ignored: {one_line(name)}, which is no hand-in", flush=True)
@@ -172,12 +174,11 @@ def main() -> None:
     sys.exit(1 if group.figures.not_judged else 0)
 
 
-def chosen(again: Optional[Sequence[str]], hand_ins: Sequence[HandIn]) -> Set[str]:
+def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
     """The names of the hand-ins to be graded again, all if none is given; GradingSetupError for one that is unknown."""
-    known = [hand_in.name for hand_in in hand_ins]
-    names = known if again is not None and not again else [Path(name).name for name in again or ()]
-    for name in {*names} - {*known}:
-        close = difflib.get_close_matches(name, known, 1)
+    names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
+    for name in {*names} - {*hand_ins}:
+        close = difflib.get_close_matches(name, hand_ins, 1)
         advice = f"; did you mean {close[0]}?" if close else ""
         raise GradingSetupError(f"--again {name}: no hand-in of this name{advice}")
     return {*names}
@@ -196,7 +197,7 @@ def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], Non
         if group.waiting:
             from .cluster import connected, done  # importing dask takes half a second
 
-            paths = [hand_in.path for hand_in in group.waiting.values()]
+            paths = [group.folder / name for name in group.waiting]
             with connected(scheduler, min(workers, len(paths))) as client:
                 for path, problem in done(client, task, paths):
                     reraise_if_interrupted()

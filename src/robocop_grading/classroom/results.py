@@ -8,14 +8,12 @@ import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..files import tree
 from ..judge import alike, total
 from ..plan import PARTS, Plan
 from ..report.write import render
-from .hand_ins import HandIn
 from .summary import Summary
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
@@ -24,6 +22,7 @@ REFRESH = 5.0  # [s] while grading is in progress ...
 REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
 SHOWN = 200  # hand-ins until one asks for more
 MAX_CAUSES = 3
+WAITING = "waiting"  # the reason why a hand-in has no result yet
 SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: "–"}
 
 
@@ -92,13 +91,13 @@ class Results:
         for unfinished in folder.glob(".new-*"):  # left by an interrupted run
             tree.remove(unfinished)
 
-    def has(self, hand_in: HandIn) -> bool:
-        """Return whether the hand-in was graded with its present content, plan and grader."""
+    def has(self, name: str, digest: str) -> bool:
+        """Return whether a hand-in was graded with its present content, plan and grader."""
         try:
-            stamp = json.loads((self.folder / hand_in.name / STAMP).read_text())
+            stamp = json.loads((self.folder / name / STAMP).read_text())
         except (OSError, ValueError):
             return False
-        return bool(stamp.get("made_from") == self._from(hand_in.digest))
+        return bool(stamp.get("made_from") == self._from(digest))
 
     def _from(self, digest: str) -> Dict[str, Any]:
         return {**self._made_with, "digest": digest}
@@ -134,10 +133,10 @@ def write_atomically(path: Path, text: str) -> None:
     os.replace(new, path)
 
 
-def summary(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> Summary:
-    """The class in a few figures; `problems` has the names that have no result."""
+def summary(results: Sequence[Result], plan: Plan, problems: int) -> Summary:
+    """The class in a few figures; so many more hand-ins had problems for which they have no result."""
     judged = [result.points for result in results if result.is_judged]
-    return Summary(judged, len(results) - len(judged) + len(problems), plan.points)
+    return Summary(judged, len(results) - len(judged) + problems, plan.points)
 
 
 def page(
@@ -146,13 +145,9 @@ def page(
     plan: Plan,
     waiting: Mapping[str, str],
     running: bool,
-    figures: Optional[Summary] = None,
     pace: str = "",
 ) -> str:
-    """The overview; `waiting` maps the names that have no result yet to the reason, `pace` says how fast it goes on.
-
-    Without `figures` they are those of the results.
-    """
+    """The overview; `waiting` maps the names that have no result yet to the reason, `pace` says how fast it goes on."""
     return render(
         "overview.html",
         title=title,
@@ -161,7 +156,7 @@ def page(
         parts=PARTS,
         waiting=waiting,
         running=running,
-        figures=figures or summary(results, plan),
+        figures=summary(results, plan, sum(why != WAITING for why in waiting.values())),
         pace=pace,
         refresh=round(REFRESH + REFRESH_EACH * len(results)),
         shown=SHOWN,

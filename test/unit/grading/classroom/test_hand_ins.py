@@ -27,8 +27,8 @@ def test_folders_and_python_files_are_hand_ins_and_whatever_else_is_there_has_th
     for name in ("eve.rar", "fred.7z", "gina.ipynb", "hana.py.txt", "README", "grades.csv", "submission_metadata.yml"):
         (folder / name).write_text("")
     hand_ins, others = collect(folder, ("grades.csv",))
-    assert [hand_in.name for hand_in in hand_ins if hand_in.digest] == ["anna", "ben.py"]
-    unread = [hand_in.path for hand_in in hand_ins if not hand_in.digest]
+    assert [name for name, digest in hand_ins.items() if digest] == ["anna", "ben.py"]
+    unread = [folder / name for name, digest in hand_ins.items() if not digest]
     problems = {path.name: problem_of(path).partition(": expected a folder, a zip or tar")[0] for path in unread}
     kinds = {"eve.rar": ".rar", "fred.7z": ".7z", "gina.ipynb": ".ipynb", "hana.py.txt": ".txt", "list.csv": ".csv"}
     expected = {name: f"a {kind} file" for name, kind in kinds.items()}
@@ -39,10 +39,10 @@ def test_folders_and_python_files_are_hand_ins_and_whatever_else_is_there_has_th
 def test_digest_depends_on_contents_but_not_on_times(folder):
     before, _ = collect(folder)
     os.utime(folder / "ben.py", (0, 0))
-    assert [hand_in.digest for hand_in in collect(folder)[0]] == [hand_in.digest for hand_in in before]
+    assert collect(folder)[0] == before
     (folder / "anna" / "scripts" / "robocop_goto_as.py").write_text("One")
     after, _ = collect(folder)
-    assert after[0].digest != before[0].digest and after[1].digest == before[1].digest
+    assert after["anna"] != before["anna"] and after["ben.py"] == before["ben.py"]
 
 
 def test_folder_is_unpacked_with_its_links_and_without_what_was_built(folder, tmp_path):
@@ -85,9 +85,10 @@ def test_no_zip_stops_the_class(files, noise, tmp_path):
         for name, content in files.items():
             archive.writestr(name.encode("utf-8", "replace").decode(), content)
     (tmp_path / "carl.zip").write_bytes(noise)
-    carl, eve = collect(tmp_path)[0]
-    assert problem_of(carl.path)
-    assert eve.digest or problem_of(eve.path)
+    hand_ins, _ = collect(tmp_path)
+    assert list(hand_ins) == ["carl.zip", "eve.zip"]
+    assert problem_of(tmp_path / "carl.zip")
+    assert hand_ins["eve.zip"] or problem_of(tmp_path / "eve.zip")
 
 
 TIMEOUT = 20.0  # [s, wall]; reading 150,000 entries takes minutes
@@ -111,6 +112,6 @@ def test_hand_in_has_as_many_entries_as_it_may_have(tmp_path, monkeypatch):
         for index in range(3):  # and their folder
             (tmp_path / "eve" / f"{index}.py").touch()
             archive.writestr(f"{index}.py", b"")
-    assert all(hand_in.digest for hand_in in collect(tmp_path)[0])
+    assert all(collect(tmp_path)[0].values())
     (tmp_path / "eve" / "4").touch()
     assert problem_of(tmp_path / "eve") == TOO_MANY

@@ -3,7 +3,6 @@
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 from class_records import PLAN, keep, keep_report
@@ -11,7 +10,6 @@ from class_records import PLAN, keep, keep_report
 from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.builds.workspace import exclusive
 from robocop_grading.classroom import main as classroom
-from robocop_grading.classroom.hand_ins import HandIn
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.plan import MAX_SEED
@@ -48,7 +46,7 @@ def test_new_class_gets_a_seed_that_draws(tmp_path):
 @pytest.fixture
 def group(tmp_path):
     """A class of four: Anna is judged, Ben is not gradable, the others have no result yet."""
-    hand_ins = [HandIn(Path(name), f"digest of {name}") for name in ("anna", "ben", "carl.zip", "řehoř")]
+    hand_ins = {name: f"digest of {name}" for name in ("anna", "ben", "carl.zip", "řehoř")}
     results = Results(tmp_path, {})
     keep(results, "anna", 0.5)
     keep_report(results, "ben", {"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]})
