@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from functools import partial
-from typing import Callable, List, Mapping, Optional, Sequence
+from typing import List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from .feedback_causes import (
     UNITS,
     Pair,
     likely_cause,
+    longest,
+    misses,
 )
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
@@ -85,30 +87,18 @@ def _compared(index: int, record: Record) -> List[Pair]:
     return [pair for pair in _pairs(record) if index == POSITION or pair.truth[POSITION] > NEAR]
 
 
-def _wrong(pairs: Sequence[Pair], error: Callable[[Pair], float], tolerance: float) -> List[Pair]:
-    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
-    wrong: List[Pair] = []
-    longest, row = 0.0, math.inf  # [s] how long a row of wrong messages was, when the present one began
-    for pair in pairs:
-        if error(pair) > tolerance:
-            wrong.append(pair)
-            row = min(row, pair.feedback.time)
-            longest = max(longest, pair.feedback.time - row)
-        else:
-            row = math.inf
-    return wrong if len(wrong) > MAX_WRONG * len(pairs) or longest >= MAX_WRONG_TIME else []
-
-
 def _deviation(index: int, pair: Pair) -> float:
     """Distance [m], [rad] of an error from the interval of recent true values; infinity for NaN."""
-    value, truths = pair.feedback.errors[index], [errors_at(sample, pair.goal)[index] for sample in pair.samples]
-    if not math.isfinite(value):
-        return math.inf
-    turned: Callable[[float], float] = wrapped if index == ANGLE else lambda it: it
-    spread = [turned(truth - truths[0]) for truth in truths]  # around the first one
-    middle = truths[0] + (min(spread) + max(spread)) / 2.0
     inexact = INEXACT / max(NEAR, pair.truth[POSITION]) if index == ANGLE else 0.0
-    return max(0.0, abs(turned(value - middle)) - (max(spread) - min(spread)) / 2.0 - inexact)
+    return misses(index, [pair], lambda it: it.truth[index])[0] - inexact
+
+
+def _wrong(index: int, pairs: Sequence[Pair], tolerance: float) -> List[Pair]:
+    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
+    deviations = [_deviation(index, pair) for pair in pairs]
+    wrong = [pair for pair, deviation in zip(pairs, deviations) if deviation > tolerance]
+    is_much = len(wrong) > MAX_WRONG * len(pairs) or longest(deviations, pairs, tolerance) >= MAX_WRONG_TIME
+    return wrong if is_much else []
 
 
 def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
@@ -116,8 +106,7 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     if failure.kind != UNTRUE:
         return failure
     scenarios = [_compared(index, records[name]) for name in names]
-    tolerance = TOLERANCES[index]
-    wrong = [pair for pairs in scenarios for pair in _wrong(pairs, partial(_deviation, index), tolerance)]
+    wrong = [pair for pairs in scenarios for pair in _wrong(index, pairs, TOLERANCES[index])]
     cause, found = likely_cause(index, wrong, scenarios)
     silent = unpublished(records, POSE_TOPIC)
     if found & UNCHANGED and silent:
@@ -201,7 +190,7 @@ def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
 
 def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:
     """The first wrong value; `_explained` names its cause."""
-    wrong = _wrong(pairs, partial(_deviation, index), tolerance)
+    wrong = _wrong(index, pairs, tolerance)
     if not wrong:
         return None
     first = wrong[0]

@@ -167,19 +167,18 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
 
 def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[str]:
     """The names of the hypotheses that fit, the best one first."""
-    positions = [_misses(POSITION, pairs, lambda p: p.truth[POSITION], 1.0) for pairs in scenarios]
-    knows_position = all(_fits(misses, POSITION, 0.5) for misses in positions)
+    positions = [misses(POSITION, pairs, lambda p: p.truth[POSITION]) for pairs in scenarios]
+    knows_position = all(_fits(it, POSITION, 0.5) for it in positions)
     found: List[Tuple[float, str]] = []
     for cause, predict in CAUSES[index]:
         if cause == FROM_ORIGIN and knows_position:
             continue
-        if not _fits(_misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
+        if not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
             continue
-        misses = [_misses(index, pairs, predict, scale) for pairs in scenarios]
-        if all(
-            _fits(it, index) and _longest(it, pairs, index) < MAX_WRONG_TIME for it, pairs in zip(misses, scenarios)
-        ):
-            found.append((_mean(misses), cause))
+        missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
+        rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]
+        if max(rows) < MAX_WRONG_TIME and all(_fits(it, index) for it in missed):
+            found.append((_mean(missed), cause))
     return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
 
 
@@ -189,8 +188,7 @@ def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     if index == ANGLE:
         differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
     middle = median(differences)
-    misses = [abs(difference - middle) for difference in differences]
-    if abs(middle) > OFFSET and _fits(misses, index):
+    if abs(middle) > OFFSET and _fits([abs(difference - middle) for difference in differences], index):
         word = "large" if middle > 0.0 else "small"
         return f"{ERRORS[index]} is always {abs(middle):.2f} {UNITS[index]} too {word}"
     both = [it for pairs in scenarios for it in pairs if abs(it.truth[index]) > SCALED]
@@ -206,27 +204,28 @@ def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:
     return sum(miss > TOLERANCES[index] for miss in misses) <= most * len(misses)
 
 
-def _longest(misses: Sequence[float], pairs: Sequence[Pair], index: int) -> float:
+def longest(misses: Sequence[float], pairs: Sequence[Pair], tolerance: float) -> float:
     """How long [s] the longest row of values is that do not fit."""
-    longest, began = 0.0, math.inf
+    longest_row, began = 0.0, math.inf
     for miss, pair in zip(misses, pairs):
-        began = min(began, pair.feedback.time) if miss > TOLERANCES[index] else math.inf
-        longest = max(longest, pair.feedback.time - began)
-    return longest
+        began = min(began, pair.feedback.time) if miss > tolerance else math.inf
+        longest_row = max(longest_row, pair.feedback.time - began)
+    return longest_row
 
 
-def _misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], scale: float) -> List[float]:
-    """How far each value is from what is predicted for any of the samples that it may be based on."""
-    misses = []
+def misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], scale: float = 1.0) -> List[float]:
+    """How far each value is from what is predicted for any of the samples that it may be based on; infinity for NaN."""
+    found = []
     for pair in pairs:
         value = pair.feedback.errors[index]
         each = [value - predict(pair._replace(samples=[sample])) for sample in pair.samples]
-        turns = index == ANGLE and abs(value) < 4.0
+        turns = index == ANGLE and scale == 1.0
         if turns:
             each = [wrapped(miss) for miss in each]
         between = min(each) <= 0.0 <= max(each) and not (turns and max(each) - min(each) > math.pi)
-        misses.append(0.0 if between else min(abs(miss) for miss in each) * scale)
-    return misses
+        miss = 0.0 if between else min(abs(miss) for miss in each) * scale
+        found.append(miss if math.isfinite(value) else math.inf)
+    return found
 
 
 def _mean(scenarios: Sequence[Sequence[float]]) -> float:
