@@ -154,7 +154,7 @@ def started(
     until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
     """
     copy = folder / "src" / package.name
-    relays = [path for path in tree.find(folder / "devel" / "lib" / package.name, "*") if path.is_file()]
+    relays = [path for path in files_below(folder / "devel" / "lib" / package.name) if path.is_file()]
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}
     notes: List[str] = []

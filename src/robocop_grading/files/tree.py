@@ -5,7 +5,6 @@ walk() gives up before, and remove() leaves it to another program.
 """
 
 import contextlib
-import fnmatch
 import os
 import stat
 import subprocess
@@ -33,16 +32,6 @@ def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Tuple[Path, Lis
         links = {name for name in folders if os.path.islink(os.path.join(path, name))}
         folders[:] = sorted({*folders} - links - {*leave_out})
         yield Path(path), folders, sorted([*files, *links])
-
-
-def find(top: Path, pattern: str) -> List[Path]:
-    """Everything below `top` whose name matches a pattern such as *.launch, sorted."""
-    return sorted(
-        folder / name
-        for folder, folders, files in walk(top)
-        for name in (*folders, *files)
-        if fnmatch.fnmatchcase(name, pattern)
-    )
 
 
 def remove(path: Path) -> None:
@@ -82,14 +71,14 @@ def read_bytes(path: Path, top: Optional[Path] = None) -> bytes:
     return content
 
 
-def read_text(path: Path, top: Optional[Path] = None) -> str:
+def read_text(path: Path) -> str:
     """The file as text; invalid UTF-8 is replaced."""
-    return read_bytes(path, top).decode(errors="replace")
+    return read_bytes(path).decode(errors="replace")
 
 
-def read_xml(path: Path, top: Optional[Path] = None) -> ElementTree.Element:
+def read_xml(path: Path) -> ElementTree.Element:
     """The file's XML root; HostingError says where it is malformed."""
     try:
-        return ElementTree.fromstring(read_bytes(path, top))
+        return ElementTree.fromstring(read_bytes(path))
     except (ElementTree.ParseError, ValueError, LookupError) as error:  # the last two: encodings
         raise HostingError(f"{path}: not XML that can be read: {error}") from error
