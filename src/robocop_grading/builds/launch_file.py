@@ -97,12 +97,10 @@ def _place(file: str, line: int, top: Path) -> str:
     return f"{shown}, line {line}" if line else str(shown)
 
 
-def _node(values: Mapping[str, Any], top: Path) -> LaunchNode:
-    package, kind, name, namespace = (str(values[key]) for key in ("package", "type", "name", "namespace"))
-    place, arguments = _place(str(values["file"]), int(values["line"]), top), list(map(str, values["arguments"]))
-    environment: Dict[str, str] = {str(name): str(value) for name, value in values["environment"].items()}
-    for variable, value in environment.items():
+def _node(values: Dict[str, Any], top: Path) -> LaunchNode:
+    file, line = values.pop("file"), values.pop("line")
+    node = LaunchNode(place=_place(file, line, top), is_own=top in Path(file).parents, **values)
+    for variable, value in node.environment.items():
         if not VARIABLE.fullmatch(variable) or "\0" in value:
-            raise HostingError(f"{place}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
-    is_own = top in Path(str(values["file"])).parents
-    return LaunchNode(package, kind, name, place, namespace, arguments, environment, values["not_done"], is_own)
+            raise HostingError(f"{node.place}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
+    return node
