@@ -31,17 +31,18 @@ class Received:
     wall: float
     stamp_ns: int
     period_ns: float  # the shortest so far
+    clearance: Optional[float]  # [m] to the nearest obstacle ahead, of a scan that has a beam ahead
 
     def age(self) -> float:
         """ROS time [s] since its arrival."""
         return rospy.get_rostime().to_sec() - self.at
 
 
-def _received(message: Any, previous: Optional[Received]) -> Received:
+def _received(message: Any, previous: Optional[Received], clearance: Optional[float] = None) -> Received:
     stamp_ns, period_ns = convert.to_ns(message.header.stamp), math.inf
     if previous is not None and stamp_ns > previous.stamp_ns:
         period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
-    return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns)
+    return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns, clearance)
 
 
 class Inputs:
@@ -64,7 +65,7 @@ class Inputs:
         """Store a scan; a callback."""
         clearance = self._clearance_in(message)
         with self._arrived:
-            self.scan = _received(message, self.scan)
+            self.scan = _received(message, self.scan, clearance)
             if clearance is None or not math.isnan(clearance):
                 self.valid_scan = self.scan
             self._arrived.notify_all()
@@ -120,20 +121,19 @@ class Inputs:
             pose = convert.from_pose_msg(odom.message.pose.pose)
         except FrameError as error:
             raise RobocopError(f"{rospy.resolve_name('odom')} holds an impossible pose: {error}") from error
-        clearance = self._clearance_in(scan.message)
-        if clearance is None:
+        if scan.clearance is None:
             s, cone = scan.message, math.degrees(self._tuning.params.obstacle_half_angle)
             angles = f"angles {s.angle_min:g} to {s.angle_max:g} rad, increment {s.angle_increment:g} rad"
             raise RobocopError(
                 f"{rospy.resolve_name('scan')} has no beam within {cone:.0f} degrees of straight ahead "
                 f"({len(s.ranges)} beams, {angles})"
             )
-        return pose, clearance
+        return pose, scan.clearance
 
     def clearance(self) -> Optional[float]:
         """Distance to the nearest obstacle ahead [m]; None without a recent valid scan or without a beam ahead."""
         scan = self.valid_scan
-        return self._clearance_in(scan.message) if scan is not None and self._is_recent(scan) else None
+        return scan.clearance if scan is not None and self._is_recent(scan) else None
 
     def _clearance_in(self, s: LaserScan) -> Optional[float]:
         if s.angle_increment * (s.angle_max - s.angle_min) < 0.0:  # so it is not known which beams are ahead

@@ -59,36 +59,42 @@ class GotoNode:
     # -- one goal --
 
     def execute(self, goal: GoToPositionGoal) -> None:
-        """The handout's loop: one control period after another, until the goal gets its one terminal state."""
+        """Drive to a goal, then to one that has come meanwhile: actionlib looks for it only 0.1 s [wall] later."""
         with self.executing:
-            execution = GoalExecution(goal, self.inputs)
-            ending = execution.refusal()
-            try:
-                if ending is None:
-                    self.display.newest = execution
-                    rospy.loginfo("goal accepted: %s", execution.where())
-                while ending is None:
-                    # The next one, or the one that was due when this goal came.
-                    tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
-                    if self.stop_reason:
-                        ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
-                    elif self.server.is_preempt_requested():
-                        replaced = self.server.is_new_goal_available()
-                        reason = "a newer goal replaced it" if replaced else "it was cancelled"
-                        ending = execution.stopped_early(Outcome.PREEMPTED, reason)
-                    else:
-                        ending = self.control_period(execution, tick)
-                        if ending is None:
-                            self.ticks.answer(tick)
-            except RobocopError as error:  # odometry or a scan can't be used
-                ending = Ending(Outcome.ERROR, str(error))
-            except Exception as error:  # a fault of this program: also then the goal ends below, once
-                rospy.logerr(traceback.format_exc())
-                ending = Ending(Outcome.ERROR, f"{type(error).__name__}: {error}")
-            finally:
-                self.drive(STANDSTILL)
-            self.set_terminal_state(execution, ending)
-            self.ticks.answer(self.ticks.newest())
+            self.go_to(goal)
+            while self.server.is_new_goal_available():
+                self.go_to(self.server.accept_new_goal())
+
+    def go_to(self, goal: GoToPositionGoal) -> None:
+        """The handout's loop: one control period after another, until the goal gets its one terminal state."""
+        execution = GoalExecution(goal, self.inputs)
+        ending = execution.refusal()
+        try:
+            if ending is None:
+                self.display.newest = execution
+                rospy.loginfo("goal accepted: %s", execution.where())
+            while ending is None:
+                # The next one, or the one that was due when this goal came.
+                tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
+                if self.stop_reason:
+                    ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
+                elif self.server.is_preempt_requested():
+                    replaced = self.server.is_new_goal_available()
+                    reason = "a newer goal replaced it" if replaced else "it was cancelled"
+                    ending = execution.stopped_early(Outcome.PREEMPTED, reason)
+                else:
+                    ending = self.control_period(execution, tick)
+                    if ending is None:
+                        self.ticks.answer(tick)
+        except RobocopError as error:  # odometry or a scan can't be used
+            ending = Ending(Outcome.ERROR, str(error))
+        except Exception as error:  # a fault of this program: also then the goal ends below, once
+            rospy.logerr(traceback.format_exc())
+            ending = Ending(Outcome.ERROR, f"{type(error).__name__}: {error}")
+        finally:
+            self.drive(STANDSTILL)
+        self.set_terminal_state(execution, ending)
+        self.ticks.answer(self.ticks.newest())
 
     def is_interrupted(self) -> bool:
         """Return whether the goal has to end before its next control period."""

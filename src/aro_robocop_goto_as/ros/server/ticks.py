@@ -15,6 +15,7 @@ from ...geometry import STANDSTILL, Twist2D
 from ...simulation.schedule import NANOSECONDS
 from .. import convert
 from ..graph import published_topics
+from ..publishing.publisher import publisher
 
 
 class Ticks:
@@ -38,7 +39,7 @@ class Ticks:
         self._changed = threading.Condition()
         self._clock = rospy.Time()
         self._is_simulated = rospy.get_param("/use_sim_time", False)
-        self.answers = rospy.Publisher("tick_answer", TickAnswer, queue_size=10)
+        self.answers = publisher("tick_answer", TickAnswer)  # sends at once: simulated time stands meanwhile
         self.answered = self.newest()  # the newest tick [ns] that is done
         if self._is_simulated:  # rospy sets its time before it calls this, as its own subscriber was there first
             rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)

@@ -34,7 +34,7 @@ class Time:
         monkeypatch.setattr(
             rospy, "Subscriber", lambda topic, kind, callback, **_: setattr(self, "_callback", callback)
         )
-        monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: self)
+        monkeypatch.setattr(ticks, "publisher", lambda *_: self)
         self.connections = {"answers": 1, "odom": 1}
         odom: Any = SimpleNamespace(get_num_connections=lambda: self.connections["odom"])
         self.ticks = Ticks(rate, [odom], self.set_back.append)
