@@ -60,17 +60,3 @@ def differences(old: GotoParams, new: GotoParams) -> List[str]:
     """Each parameter that differs, with both values, in words."""
     pairs = [(spec.name, getattr(old, spec.name), getattr(new, spec.name)) for spec in fields(GotoParams)]
     return [f"{name} {after:g}, was {before:g}" for name, before, after in pairs if after != before]
-
-
-def clamped_values(changes: Mapping[str, Any]) -> List[str]:
-    """For each number beyond a bound, the bound that dynamic_reconfigure sets instead, in words."""
-    notes = []
-    for spec in fields(GotoParams):
-        value, low, high = changes.get(spec.name), spec.metadata["low"], spec.metadata["high"]
-        if not isinstance(value, (int, float)):
-            continue
-        if high is not None and value > high:
-            notes.append(f"{spec.name}: expected at most {high:g}, got {value:g}; set to {high:g}")
-        elif low is not None and value < low:
-            notes.append(f"{spec.name}: expected at least {low:g}, got {value:g}; set to {low:g}")
-    return notes

@@ -53,11 +53,9 @@ class ServerTuning(unittest.TestCase):
         goal.cancel()
         self.robot.end(goal, "PREEMPTED")
 
-    def test_a_value_beyond_its_bounds_becomes_the_bound_and_is_logged(self):
+    def test_a_value_beyond_its_bounds_becomes_the_bound(self):
         self.assertEqual(self.change(angular_gain=1e9)["angular_gain"], 100.0)
-        self.wait_for_log("angular_gain: expected at most 100, got 1e+09; set to 100")
         self.assertEqual(self.change(angle_tolerance=-1.0)["angle_tolerance"], 0.001)
-        self.wait_for_log("angle_tolerance: expected at least 0.001, got -1; set to 0.001")
 
     def test_values_that_contradict_each_other_are_refused_and_the_tools_show_the_former_ones(self):
         shown = self.change(min_linear_velocity=0.5, linear_gain=1.0)

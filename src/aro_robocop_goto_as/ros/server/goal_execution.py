@@ -15,8 +15,6 @@ from ...goto_params import GotoParams
 from ...names import place
 from .inputs import Inputs
 
-MAX_JUMPS = 10  # of odometry in one goal; after each of these, progress and turning start anew, as after a reset
-
 
 @dataclass(frozen=True)
 class Ending:
@@ -45,7 +43,6 @@ class GoalExecution:
         self._now = 0.0  # time of the newest control period
         self._progress: Optional[Progress] = None
         self._errors: Optional[Errors] = None  # of the previous step
-        self._jumps = 0
         self._turning = Turning()
 
     def refusal(self) -> Optional[Ending]:
@@ -67,8 +64,8 @@ class GoalExecution:
     def decide(self, pose: Pose2D, clearance: float, p: GotoParams) -> Decision:
         """Rotate, drive or end: sets `twist`."""
         errors = goto.errors_to(self.goal, pose)
-        if self._errors is not None and self._jumps < MAX_JUMPS and goto.has_jumped(self._errors, errors, p):
-            self._jumps, self._progress, self._turning = self._jumps + 1, None, Turning()
+        if self._errors is not None and goto.has_jumped(self._errors, errors, p):  # start anew, as after a reset
+            self._progress, self._turning = None, Turning()
         self._errors = errors
         decision = goto.decide(pose, clearance, self.goal, p, self._turning)
         turning = self._turning.after(decision)

@@ -1,6 +1,6 @@
 """Gains, tolerances and speeds of the action server, changed by dynamic_reconfigure while it runs."""
 
-from typing import Any, Mapping
+from typing import Any
 
 import rospy
 from dynamic_reconfigure.server import Server
@@ -8,19 +8,9 @@ from dynamic_reconfigure.server import Server
 from aro_robocop_goto_as.cfg import GotoConfig
 
 from ...errors import ParameterError
-from ...goto_params import GotoParams, clamped_values, differences, tuned
+from ...goto_params import GotoParams, differences, tuned
 
 NAMES = tuple(GotoConfig.defaults)
-
-
-class _Server(Server):
-    """Logs which values dynamic_reconfigure clamps to their bounds, which it does silently."""
-
-    def update_configuration(self, changes: Mapping[str, Any]) -> Any:
-        """Called for each request, with the values that it contains."""
-        for note in clamped_values(changes):
-            rospy.logwarn("%s", note)
-        return super().update_configuration(changes)
 
 
 class Tuning:
@@ -33,7 +23,7 @@ class Tuning:
         self.params = p
         for name in NAMES:  # from which the server of dynamic_reconfigure starts, and which it wants to be floats
             rospy.set_param(f"~{name}", getattr(p, name))
-        self._server = _Server(GotoConfig, self._on_change)
+        self._server = Server(GotoConfig, self._on_change)
 
     def _on_change(self, config: Any, _level: int) -> Any:
         """Adopt the requested values, or refuse all of them; returns the values in force, which tools then show."""
