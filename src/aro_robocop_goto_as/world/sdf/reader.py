@@ -20,6 +20,7 @@ from .shapes import read_shape
 from .state import SavedPoses, state_poses
 
 SPAWN_FRAME = "robot_spawn"
+MOTION = "motion of models that are not static"
 MAX_DEPTH = 20  # of models within models
 MAX_MODELS = 5000  # as a file that includes another one twice, which includes a third one twice, ...
 
@@ -229,8 +230,8 @@ class _Reader:
         if not parent.names:
             self.models[name] = pose
         motion = motion_of(model, pose) or parent.motion
-        if not (static or parent.names or motion):
-            self.report(f"motion of model '{name}', which is not static", model)
+        if not (static or parent.names or motion or any(it.startswith(MOTION) for it in self.ignored)):
+            self.report(f"{MOTION}, such as '{name}'", model)
         inherited = _Parent(pose, names, motion, bool(static) or parent.static)
         for link in model.iterchildren("link"):
             self.link(link, inherited)
