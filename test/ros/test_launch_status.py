@@ -102,3 +102,29 @@ def test_launch_interrupted_while_it_starts_a_process_leaves_none_behind(launch,
     for number in (signal.SIGTERM, signal.SIGINT):
         launched.process.send_signal(number)
     assert launched.wait_for_exit() == 0  # a node whose interpreter is just starting may have printed a traceback
+
+
+# Interrupts the program that its arguments name, while that one's main thread has the lock of a log.
+LOGGING = """
+import logging, os, runpy, signal, sys
+emit = logging.StreamHandler.emit
+def interrupted(handler, record):
+    if "Checking log directory" in record.getMessage():
+        logging.StreamHandler.emit = emit
+        os.kill(os.getpid(), signal.SIGINT)
+    emit(handler, record)
+logging.StreamHandler.emit = interrupted
+runpy.run_path(sys.argv.pop(1), run_name="__main__")
+"""
+
+
+class LaunchThatLogs(Launch):
+    command = (sys.executable, "-c", LOGGING, *Launch.command[1:])
+
+
+@pytest.mark.slow
+def test_launch_interrupted_while_it_logs_does_not_wait_for_itself(started, tmp_path):
+    launched = started(LaunchThatLogs(tmp_path, "--quiet", "world:=empty"))
+    assert launched.wait_for_exit() == 0
+    logged = "".join(path.read_text() for path in tmp_path.rglob("roslaunch-*.log"))
+    assert "ProcessMonitor.shutdown" in logged and "shutdown failed" not in logged

@@ -131,7 +131,6 @@ def command(*arguments):
     return subprocess.run(["rosrun", "aro_robocop_goto_as", *arguments], capture_output=True, text=True, timeout=250)
 
 
-@pytest.mark.slow
 def test_reference_solution_gets_full_marks_and_the_extra_point(tmp_path):
     done = command("robocop_grade.py", str(SHARE), "--report", str(tmp_path))
     assert done.returncode == 0, done.stdout + done.stderr
@@ -171,7 +170,7 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
             stderr=output,
             env={**os.environ, "TMPDIR": str(scratch)},
         )
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + 240.0  # [s, wall] on a busy machine
     # The first scenario is over, the second has begun. Not by glob: folders come and go meanwhile.
     while not any("server-start.record" in files for _, _, files in os.walk(scratch)):
         assert grading.poll() is None and time.monotonic() < deadline, (tmp_path / "output").read_text()
@@ -179,7 +178,7 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
     with busy_processes():
         for number in numbers:
             grading.send_signal(number)
-        assert grading.wait(60.0) == INTERRUPTED, (tmp_path / "output").read_text()
+        assert grading.wait(240.0) == INTERRUPTED, (tmp_path / "output").read_text()
     assert "Traceback" not in (tmp_path / "output").read_text()
     assert list(scratch.iterdir()) == []
     assert processes_mentioning(scratch) == []
