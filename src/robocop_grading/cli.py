@@ -19,7 +19,8 @@ from .judge import CheckResult, Grade, Outcome, total
 from .plan import MIDDLE, Plan, load
 from .report.write import make_report_folder
 from .runner import Runner
-from .sandbox.bubblewrap import CPU_TIME, WATCHED_CPU_TIME, Sandbox, expect_private, open_sandbox
+from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
+from .sandbox.limits import MAX_CPU_TIME, MAX_WATCHED_CPU_TIME
 from .submission import prepare_submission
 from .texts import printable, printable_lines
 from .viewer import choose_viewer
@@ -125,7 +126,7 @@ def main() -> None:
         plan_file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
         plan = load(plan_file, args.seed).restricted(args.only)
         given = make_report_folder(Path(args.report)) if args.report else None
-        cpu_time = WATCHED_CPU_TIME if args.watch else CPU_TIME
+        cpu_time = MAX_WATCHED_CPU_TIME if args.watch else MAX_CPU_TIME
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
         viewer = choose_viewer(sandbox) if args.watch else None
         if viewer is not None and viewer.is_page:

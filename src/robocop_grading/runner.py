@@ -21,6 +21,7 @@ from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
 from .sandbox.guard import Guard
+from .sandbox.limits import MAX_SESSION_MEMORY
 from .submission import AGENT, Script, Submission
 from .viewer import Viewer
 
@@ -125,13 +126,17 @@ class Runner:
         return environment
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
-        """Start a session, follow what it reports on its standard output, and end it after the budget."""
+        """Start a session, follow what it reports on its standard output, and end it after the budget.
+
+        UngradableError, or NoTimeError, for what a submission has no part in: only a session that ends in another way
+        once it has begun a scenario is judged.
+        """
         log = out / f"{part}-session.log"
         inherited = self.viewer.descriptors if self.viewer is not None else ()
         process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
-        guard = Guard(process.pid, memory=memory_group.LIMIT, processes=math.inf)  # the session limits the node's
+        guard = Guard(process.pid, memory=MAX_SESSION_MEMORY, processes=math.inf)  # the session limits the node's
         kills = memory_group.kernel_kills()
-        deadline, scenario, grace = time.monotonic() + self.budget, "start", 0.0
+        deadline, scenario, grace = time.monotonic() + self.budget, "", 0.0
         timer = threading.Timer(self.budget, child.kill_tree, [process.pid])  # ends the lines, too
         timer.start()
         try:
@@ -140,27 +145,27 @@ class Runner:
                 if word == "begin":
                     scenario = rest
                     self.on_progress(part, rest)
-                elif word == "busy":
-                    raise NoTimeError(f"{part}: {rest}")
                 elif word == "error":
                     raise UngradableError(rest)
             if time.monotonic() >= deadline:
-                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario}")
+                where = scenario or "its start"
+                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {where}")
             grace = END_TIMEOUT
         finally:
             timer.cancel()
             status = child.end(process, None, grace)
             guard.stop()
+        last = " | ".join(map(str.strip, log.read_text(errors="replace").splitlines()[-LOG_LINES:]))[-600:]
+        if not scenario:
+            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {last}")
         records, problem, killed = records_in(out, part), guard.reason, ""
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
         excused = memory_group.kernel_kills() > kills
         if not problem and status != 0:
-            end = log.read_text(errors="replace").splitlines()[-LOG_LINES:]
-            last = " | ".join(line.strip() for line in end)[-600:]
             problem = f"the run was cut short during {scenario} (status {status}): {last}"
-            if status in rec.KILLED:
+            if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
         return Recorded(records, problem, killed, excused)
 

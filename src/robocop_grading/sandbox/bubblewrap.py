@@ -2,8 +2,7 @@
 
 The probe runs in its own network namespace, loopback only. The submission runs in another one, with its own processes
 and files, as a user who owns nothing: it sees neither the grader's processes, records and points nor other submissions.
-A build runs the submission's code, so it is done in the sandbox too. The limits set here are the kernel's, per process
-or user; guard.py limits the memory of all processes together, and runner.py the wall time.
+A build runs the submission's code, so it is done in the sandbox too. limits.py has the limits.
 """
 
 import importlib.util
@@ -18,21 +17,16 @@ from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, NoTimeError
 
-ADDRESS_SPACE = 4 * 1024**3  # bytes of each process; numpy alone reserves more than one GB
-FILES = 256  # open ones of each process: what waits in its pipes and sockets is nobody's memory
-TASKS = 200  # processes and threads; a rospy node has some 30
-FILE_SIZE = 64 * 1024**2  # bytes of a file
-SPACE = 64 * 1024**2  # bytes of each writable place, all in memory
-CPU_TIME = 200  # [s] of each process
-CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
-WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
+from . import limits
+
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
 SYSTEM = "/usr /bin /sbin /lib /lib32 /lib64 /opt /etc".split()
 NAME = "student"  # of the user in the sandbox; libraries look up the current user, such as getpass and matplotlib
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
-# Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit.
-SEALED = ("--remount-ro", "/", "--remount-ro", "/dev")
+# Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit, and to its
+# oom_score_adj.
+SEALED = ("--remount-ro", "/", "--remount-ro", "/dev", "--remount-ro", "/proc")
 TRIAL_TIME = 600.0  # [s, wall] also on a busy machine
 # Files that docker and podman make in every container.
 CONTAINER_MARKS = ("/.dockerenv", "/run/.containerenv")
@@ -44,7 +38,7 @@ class Sandbox:
     """Builds the command lines that start the probe, a node or a build in the sandbox."""
 
     reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
-    cpu_time: int = CPU_TIME
+    cpu_time: int = limits.MAX_CPU_TIME
 
     def probe_command(self, command: Sequence[str]) -> List[str]:
         """Command line that starts the probe in its own network and PID namespace; all else is shared."""
@@ -62,7 +56,7 @@ class Sandbox:
     ) -> List[str]:
         """Command line of a build: as node_command(), without network; `folder` is writable, its owner is user()."""
         place = ["--unshare-net", *_mounts("--bind", [folder])]
-        return self._inside(command, environment, CPU_TIME, reads, folder, place)
+        return self._inside(command, environment, limits.MAX_CPU_TIME, reads, folder, place)
 
     def _inside(
         self,
@@ -122,12 +116,11 @@ def change_owner(folder: Path, owner: int) -> None:
 def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
     environment = {"USER": NAME, "LOGNAME": NAME, **environment}
-    limits = {"as": ADDRESS_SPACE, "nproc": TASKS, "nofile": FILES, "fsize": FILE_SIZE, "core": 0}
-    limits_of = [f"--{name}={limit}" for name, limit in limits.items()]
     drop = ["--clear-groups", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
     return [
         *(["setpriv", f"--reuid={user()}", f"--regid={group()}", *drop, "--"] if os.geteuid() == 0 else []),
-        *["prlimit", *limits_of, f"--cpu={cpu_time}:{cpu_time + CPU_GRACE}", "--"],
+        *["prlimit", f"--as={limits.MAX_ADDRESS_SPACE}", f"--nproc={limits.MAX_TASKS}", f"--nofile={limits.MAX_FILES}"],
+        *[f"--fsize={limits.MAX_FILE_SIZE}", "--core=0", f"--cpu={cpu_time}:{cpu_time + limits.CPU_GRACE}", "--"],
         *["env", "-i", *(f"{name}={value}" for name, value in environment.items())],
     ]
 
@@ -166,14 +159,14 @@ def _parents(paths: Sequence[Path]) -> List[Path]:
 
 
 def _writable(place: str) -> List[str]:
-    return ["--perms", "0777", "--size", str(SPACE), "--tmpfs", place]
+    return ["--perms", "0777", "--size", str(limits.MAX_SPACE), "--tmpfs", place]
 
 
 def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
     return [word for path in paths for word in (option, str(path), str(path))]
 
 
-def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = CPU_TIME) -> Optional[Sandbox]:
+def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = limits.MAX_CPU_TIME) -> Optional[Sandbox]:
     """The sandbox, or None if `unsafe`. GradingError where bubblewrap can't run, NoTimeError if that takes too long."""
     if unsafe:
         return None

@@ -13,10 +13,8 @@ from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, ru
 from . import memory_group
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
+from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE
 
-MAX_SOURCE = 64 * 1024**2  # bytes of a package
-BUILD_TIME = 180.0  # [s] of processor time
-MAX_TIME = 900.0  # [s, wall]; a command that waits for something that does not come uses no processor time
 PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables passed on; the others may be private
 PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
 
@@ -45,11 +43,11 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path]) -
         change_owner(folder, user())
         inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
-        guard = Guard(process.pid, folder, processor_time=BUILD_TIME)
+        guard = Guard(process.pid, folder, processor_time=MAX_BUILD_CPU_TIME)
         try:
-            status = process.wait(MAX_TIME)
+            status = process.wait(BUILD_TIMEOUT)
         except subprocess.TimeoutExpired as error:
-            raise GradingError(f"{name} was not done within {MAX_TIME:g} s") from error
+            raise GradingError(f"{name} was not done within {BUILD_TIMEOUT:g} s") from error
         finally:
             child.end(process, None, 0.0)
             guard.stop()

@@ -1,4 +1,4 @@
-"""Kill a process tree that exceeds its limit of memory, processor time, processes or disk, and record why.
+"""Looks at a process tree: kills it when it exceeds a limit, and notes for how long nothing of it runs.
 
 The kernel's limits are per process. A limit for many of them needs a control group (memory_group.py), which not every
 system lets its users make. What the kernel keeps for sockets, pipes and entries of folders is nobody's here; only a
@@ -6,9 +6,11 @@ control group counts it.
 """
 
 import contextlib
+import glob
 import math
 import os
 import threading
+import time
 from pathlib import Path
 from typing import List, Optional, Sequence
 
@@ -18,16 +20,15 @@ from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
 
 from ..files import tree
+from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
-MAX_MEMORY = 2 * 1024**3  # bytes of all processes together; a node with numpy and OpenCV takes some 200 MB
-MAX_DISK = 512 * 1024**2  # bytes that a build may write; the lab's takes 2 MB
-MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
 MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
+WORKS = "RD"  # states of a thread that runs or waits for the processor, and of one that waits for a disk; see proc(5)
 
 
 class Guard:
-    """Watches a process and its descendants until `stop`; `reason` says why they were killed, if they were."""
+    """Watches a process and its descendants until `stop`."""
 
     def __init__(
         self,
@@ -39,7 +40,8 @@ class Guard:
         processes: float = MAX_PROCESSES,
     ) -> None:
         """`memory` and `disk` (of the folder) [bytes], `processor_time` [s], `processes`: limits of all processes."""
-        self.reason = ""
+        self.reason = ""  # why they were killed, if they were
+        self.idle = 0.0  # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer
         self._processor_time, self._most = processor_time, processes
         self._pid, self._folder, self._memory, self._disk = pid, folder, memory, disk
         self._stopped = threading.Event()
@@ -52,13 +54,18 @@ class Guard:
         self._thread.join()
 
     def _watch(self) -> None:
+        looked, used = time.monotonic(), 0.0
         while not self._stopped.wait(PERIOD):
             processes = _processes(self._pid)
+            since, looked = looked, time.monotonic()
+            before, used = used, sum(map(_processor_time, processes))
+            if not any(map(_works, processes)):
+                self.idle += max(0.0, looked - since - max(0.0, used - before))
             if _exceeds(processes, self._memory):
                 self.reason = exceeded_memory(self._memory)
             elif len(processes) > self._most:
                 self.reason = f"it started more than {self._most} processes"
-            elif sum(map(_processor_time, processes)) > self._processor_time:
+            elif used > self._processor_time:
                 self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
             elif self._folder is not None:
                 self.reason = _too_large(self._folder, self._disk)
@@ -87,6 +94,15 @@ def _processor_time(process: "psutil.Process") -> float:
         return float(sum(process.cpu_times()[:4]))
     except (psutil.NoSuchProcess, psutil.AccessDenied):
         return 0.0
+
+
+def _works(process: "psutil.Process") -> bool:
+    """Return whether one of its threads does something now."""
+    for file in glob.iglob(f"/proc/{process.pid}/task/*/stat"):
+        with contextlib.suppress(OSError):  # the thread has ended
+            if Path(file).read_text().rpartition(")")[2].split()[0] in WORKS:
+                return True
+    return False
 
 
 def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:

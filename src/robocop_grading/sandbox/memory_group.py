@@ -11,9 +11,9 @@ from pathlib import Path
 from subprocess import DEVNULL
 from typing import Tuple
 
-from .guard import MAX_MEMORY
+from .guard import exceeded_memory
+from .limits import MAX_SESSION_MEMORY
 
-LIMIT = MAX_MEMORY + 1024**3  # bytes: the submission, and the probe, which takes some 150 MB
 TRIAL_TIME = 5.0  # [s, wall]
 GROUPS, OWN = Path("/sys/fs/cgroup"), Path("/proc/self/cgroup")
 COUNTERS = Path("/proc/vmstat")
@@ -25,8 +25,9 @@ def prefix() -> Tuple[str, ...]:
 
     Delegate=yes: after the kernel has killed a process, systemd leaves the others alone.
     """
+    properties = f"MemoryMax={MAX_SESSION_MEMORY}", "MemorySwapMax=0", "Delegate=yes"
     command = ["systemd-run", "--scope", "--quiet", "--collect", "--description=robocop"]
-    command += [f"--property=MemoryMax={LIMIT}", "--property=MemorySwapMax=0", "--property=Delegate=yes", "--"]
+    command += [*(f"--property={it}" for it in properties), "--"]
     if os.getuid():
         command = ["env", f"XDG_RUNTIME_DIR=/run/user/{os.getuid()}", command[0], "--user", *command[1:]]
     read = ("/bin/sh", "-c", f"cat {GROUPS}$(sed -n s/^0:://p {OWN})/memory.max")
@@ -34,20 +35,22 @@ def prefix() -> Tuple[str, ...]:
         trial = subprocess.run([*command, *read], stdin=DEVNULL, capture_output=True, text=True, timeout=TRIAL_TIME)
     except (OSError, subprocess.TimeoutExpired):
         return ()
-    return tuple(command) if trial.stdout.strip() == str(LIMIT) else ()
+    return tuple(command) if trial.stdout.strip() == str(MAX_SESSION_MEMORY) else ()
 
 
-def has_killed() -> bool:
-    """Return whether the kernel has killed a process of the caller's group because the group exceeded LIMIT."""
+def reason() -> str:
+    """Why the kernel has killed a process of the caller's group, if that was because the group took too much memory."""
     try:
         (name,) = [line[3:] for line in OWN.read_text().splitlines() if line.startswith("0::")]
         group = Path(f"{GROUPS}{name}")
-        if (group / "memory.max").read_text().strip() != str(LIMIT):
-            return False  # the group of a container or a session: what it lacks is not the submission's fault
+        if (group / "memory.max").read_text().strip() != str(MAX_SESSION_MEMORY):
+            return ""  # the group of a container or a session: what it lacks is not the submission's fault
         events = dict(line.split() for line in (group / "memory.events").read_text().splitlines())
-        return int(events["oom"]) > 0 and int(events["oom_kill"]) > 0  # the latter also counts the machine's own lack
+        # Kills are counted also where the machine lacked memory, and not the group.
+        has_killed = int(events["oom"]) > 0 and int(events["oom_kill"]) > 0
+        return exceeded_memory(MAX_SESSION_MEMORY) if has_killed else ""
     except (OSError, ValueError, KeyError):
-        return False
+        return ""
 
 
 def kernel_kills() -> int:

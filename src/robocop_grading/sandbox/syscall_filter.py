@@ -13,6 +13,7 @@ bwrap's option --ro-bind-data has a text here in place of a descriptor.
 It imports nothing of this package, because the environment of bubblewrap is bare.
 """
 
+import contextlib
 import errno
 import os
 import socket
@@ -140,7 +141,9 @@ def _write(text: str, file: Any) -> None:
 
 
 def main() -> None:
-    """Become bubblewrap."""
+    """Become bubblewrap, and what the kernel ends first if memory runs out: not the grader."""
+    with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:
+        file.write("1000")
     program, *arguments = sys.argv[1:]
     arguments = with_descriptors(arguments)
     os.execvp(program, [program, "--seccomp", str(filter_file()), *arguments])

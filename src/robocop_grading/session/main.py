@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from aro_robocop_goto_as.errors import GraderLostError, NoTimeError, WatchError
+from aro_robocop_goto_as.errors import GraderLostError, WatchError
 
 from ..record import read
 from ..runner import Job
@@ -25,9 +25,7 @@ def main() -> None:
         status = 0
     except GraderLostError as error:
         print(error, file=sys.stderr)
-    except NoTimeError as error:
-        progress.tell(f"busy {error}")
-    except WatchError as error:
+    except (OSError, WatchError) as error:  # a full disk, for example: nothing that a node can bring about
         progress.tell(f"error {error}")
     sys.stdout.flush()
     sys.stderr.flush()

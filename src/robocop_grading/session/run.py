@@ -15,8 +15,6 @@ from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
 from ..runner import Job
-from ..sandbox import memory_group
-from ..sandbox.guard import exceeded_memory
 from . import progress
 from .node import Node
 from .services import Services
@@ -26,11 +24,6 @@ from .topics import NodeTopic
 TICK = 0.1  # [s]
 MAX_ENTRIES = 50  # of each kind at one tick, and
 MAX_LINES = 20_000  # in one record, as a traceback comes at once
-ROS_PARAMETERS = {
-    "/use_sim_time": True,
-    # rospy asks the master for it with every line it logs, unless it is set.
-    "/rosout_disable_topics_generation": True,
-}
 
 
 class Run:
@@ -111,22 +104,12 @@ class Run:
     def launch(self) -> None:
         """Start the node that is graded."""
         self.death_recorded = False
-        self.stage.node = Node(
-            self.job.command,
-            self.job.environment,
-            self.job.folder,
-            self._on_line,
-            self.topics,
-            self.services,
-            {**ROS_PARAMETERS, **self.job.parameters},
-            self.stage.sim.stamp_ns,
-            self.stage.clock_ns,
-            self.job.cpu_time,
-        )
+        stage = self.stage
+        stage.node = Node(self.job, self.topics, self.services, self._on_line, stage.sim.stamp_ns, stage.clock_ns)
 
     def is_dead(self) -> bool:
         """Return whether there is no node, or it has ended."""
-        return self.stage.node is None or self.stage.node.status() is not None
+        return self.stage.node is None or self.stage.node.is_over()
 
     def close(self) -> None:
         """End the node."""
@@ -135,17 +118,10 @@ class Run:
             self.stage.node = None
 
     def _record_death(self) -> None:
-        node = self.stage.node
-        status = None if node is None or self.death_recorded else node.status()
-        if node is None or status is None:
-            return
-        self.death_recorded = True
-        reason = node.guard.reason or node.ended
-        if not reason and status in rec.OUT_OF_TIME:
-            reason = "it used more processor time than a node may"
-        elif not reason and status in rec.KILLED and memory_group.has_killed():
-            reason = exceeded_memory(memory_group.LIMIT)
-        self.add("deaths", rec.Death(self.stage.now, status, reason))
+        death = self.stage.node.death(self.stage.now) if self.stage.node is not None else None
+        if death is not None and not self.death_recorded:
+            self.death_recorded = True
+            self.add("deaths", death)
 
     # -- time --
 

@@ -2,24 +2,31 @@
 
 import contextlib
 import io
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Tuple, TypeVar
 
+from aro_robocop_goto_as.simulation.jobs import Clock, Jobs
 from aro_robocop_goto_as.simulation.running import Simulation
 
 from ..agent import wire
 from .topics import header
 
 REFUSAL = "the judge decides where the robot and the models of the world are"  # to calls that change them
-LOOK = 0.001  # [s, wall]
+T = TypeVar("T")
+
+
+class _AtOnce(Jobs):
+    """Jobs of the owner of the simulation itself, which answers the node's requests."""
+
+    def call(self, function: Callable[[], T]) -> T:
+        """Run a function."""
+        return function()
 
 
 class Services:
-    """What the node can call; the thread that owns the simulation answers."""
+    """What the node can call."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._thread = ThreadPoolExecutor(1)  # services ask the owner
+        simulation.jobs = _AtOnce(Clock())
         self._offered: Dict[str, Tuple[Any, Callable[[Any], Any]]] = {}
         with contextlib.suppress(ImportError):
             from aro_robocop_goto_as.ros.sim.gazebo_services import GazeboServices
@@ -38,10 +45,7 @@ class Services:
         body = io.BytesIO()
         try:
             kind, answer = self._offered[name]
-            future = self._thread.submit(answer, kind._request_class().deserialize(request[wire.LENGTH.size :]))
-            while not future.done():
-                self._simulation.jobs.run_next(LOOK)
-            response = future.result()
+            response = answer(kind._request_class().deserialize(request[wire.LENGTH.size :]))
             if isinstance(response, dict):
                 response = kind._response_class(**response)
             elif isinstance(response, tuple):

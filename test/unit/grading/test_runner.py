@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from aro_robocop_goto_as.errors import GradingError, NoTimeError
+from aro_robocop_goto_as.errors import GradingError, NoTimeError, UngradableError
 from robocop_grading.plan import load
 from robocop_grading.runner import Runner
 
@@ -21,18 +21,26 @@ def supervised(script, folder):
     return runner.supervise(command, {"PATH": "/usr/bin:/bin"}, folder, "server"), announced
 
 
-@pytest.mark.parametrize(
-    "script, reason",
-    [
-        ("echo begin far; sleep 60", "^server: not done within 1 s, stopped at far$"),
-        ("echo busy no ROS master within 600 s; sleep 60", "^server: no ROS master within 600 s$"),
-    ],
-)
-def test_session_for_which_the_machine_has_no_time_gets_no_grade(script, reason, tmp_path):
-    with pytest.raises(NoTimeError, match=reason):
+@pytest.mark.parametrize("script, where", [("echo begin far; sleep 60", "far"), ("sleep 60", "its start")])
+def test_session_for_which_the_machine_has_no_time_gets_no_grade(script, where, tmp_path):
+    with pytest.raises(NoTimeError, match=f"^server: not done within 1 s, stopped at {where}$"):
         supervised(script, tmp_path)
 
 
 def test_failure_to_show_the_run_is_an_error_and_not_blamed_on_the_submission(tmp_path):
     with pytest.raises(GradingError, match="^RViz did not come up: no display$"):
         supervised("echo error RViz did not come up: no display; sleep 60", tmp_path)
+
+
+@pytest.mark.parametrize("end, status", [("exit 3", 3), ("kill -9 $$", -9)])
+def test_session_that_does_not_start_is_not_blamed_on_the_submission(end, status, tmp_path):
+    with pytest.raises(
+        UngradableError, match=rf"^server: the grader's session did not start \(status {status}\): no x$"
+    ):
+        supervised(f"echo no x >&2; {end}", tmp_path)
+
+
+def test_session_that_fails_later_may_do_so_because_of_the_submission(tmp_path):
+    recorded, _ = supervised("echo begin far; echo it lies >&2; exit 1", tmp_path)
+    assert recorded.problem == "the run was cut short during far (status 1): it lies"
+    assert not recorded.killed

@@ -11,6 +11,6 @@ def test_command_that_waits_for_something_that_does_not_come_is_ended(sandbox, t
     (tmp_path / "workspace").mkdir()
     run = build.runner_in(sandbox, tmp_path / "workspace", [])
     assert output_of(run, ["echo", "done"], {}) == (0, b"done\n", "")
-    monkeypatch.setattr(build, "MAX_TIME", 1.0)
+    monkeypatch.setattr(build, "BUILD_TIMEOUT", 1.0)
     with pytest.raises(GradingError, match="sleep was not done within 1 s"):
         output_of(run, ["sleep", "600"], {})

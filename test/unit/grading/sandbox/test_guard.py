@@ -1,15 +1,21 @@
-"""The guard kills a process tree that exceeds its limit, says why, and counts shared memory once."""
+"""The guard kills a process tree that exceeds its limit, says why, and counts shared memory once.
+
+It is idle only while none of its threads runs or wants to, whatever load the machine has.
+"""
 
 import subprocess
 import sys
 
+import psutil
 import pytest
+from waiting import wait_for
 
 from aro_robocop_goto_as.process.child import kill_tree
 from robocop_grading.sandbox.guard import Guard
 
 MB = 1024**2
 TIMEOUT = 120.0  # [s, wall]
+ENOUGH = 0.5  # [s, wall]
 # Children that allocate memory of their own, besides what they share with their parent, and then sleep.
 FAMILY = """
 import os, time
@@ -68,3 +74,47 @@ def test_a_process_whose_folder_grows_too_large_is_killed(tmp_path):
 def test_process_that_ends_by_itself_is_reported_without_a_reason(code):
     status, reason = watched(code)
     assert (status, reason) == (3 if code else 0, "")
+
+
+@pytest.fixture
+def started():
+    """Starts a guarded program, which prints a line when it is ready; its process and its guard."""
+    processes = []
+
+    def start(code):
+        process = subprocess.Popen(
+            [sys.executable, "-c", f"print(1, flush=True)\n{code}"], stdout=subprocess.PIPE, start_new_session=True
+        )
+        assert process.stdout is not None
+        process.stdout.readline()
+        processes.append((process, Guard(process.pid)))
+        return processes[-1]
+
+    yield start
+    for process, guard in processes:
+        guard.stop()
+        kill_tree(process.pid)
+        process.stdout.close()
+        process.wait()
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import time; time.sleep(600)",
+        "import subprocess; subprocess.run(['sleep', '60'])",
+        "import time\nfrom threading import Thread\ndef run():\n    while True: time.sleep(0.01)\n"
+        "Thread(target=run).start()\nrun()",
+        "import os, signal\nos.kill(os.getpid(), signal.SIGSTOP)",
+    ],
+)
+def test_process_that_sleeps_again_and_again_with_its_threads_and_children_is_idle(code, started):
+    _, guard = started(code)
+    wait_for(lambda: guard.idle > ENOUGH, "idle")
+
+
+def test_process_that_computes_is_not_idle_whatever_else_the_processor_does(started):
+    code = "import os\nos.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\nwhile True: pass"
+    (first, guard), *_ = (started(code) for _ in range(3))
+    wait_for(lambda: psutil.Process(first.pid).cpu_times().user > ENOUGH, "has run")
+    assert guard.idle < ENOUGH

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from robocop_grading.sandbox import memory_group
+from robocop_grading.sandbox.limits import MAX_SESSION_MEMORY
 
-OURS = f"{memory_group.LIMIT}\n"
+OURS = f"{MAX_SESSION_MEMORY}\n"
 
 
 @pytest.fixture(name="group")
@@ -39,13 +40,13 @@ def test_only_the_limit_of_its_own_group_is_blamed_on_a_submission(
     (group / "memory.events").write_text(
         f"low 0\nhigh 0\nmax 1530\noom {reached}\noom_kill {kills}\noom_group_kill 0\n"
     )
-    assert memory_group.has_killed() is blamed
+    assert memory_group.reason() == ("its processes together took more than 3072 MB of memory" if blamed else "")
 
 
 @pytest.mark.parametrize("text", ["9:name=systemd:/\n4:memory:/x\n", "0::/not/there\n", ""])
 def test_without_a_group_nothing_is_blamed(group: Path, text: str) -> None:
     memory_group.OWN.write_text(text)
-    assert not memory_group.has_killed()
+    assert memory_group.reason() == ""
 
 
 def test_where_systemd_makes_no_group_commands_run_without_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,3 +95,11 @@ def test_files_of_etc_that_not_everybody_may_read_are_hidden(inside):
     lines = output(inside(["/usr/bin/python3", "-c", code])).splitlines()
     assert "refused /etc/shadow" in lines
     assert not [line for line in lines if line.startswith("SUCCESS")]
+
+
+def test_the_kernel_ends_what_is_inside_first_if_memory_runs_out(inside):
+    code = (
+        "file = '/proc/self/oom_score_adj'\nprint(open(file).read().strip())\n"
+        "try:\n    open(file, 'w').write('0')\nexcept OSError:\n    print('refused')\n"
+    )
+    assert output(inside(["/usr/bin/python3", "-c", code])).splitlines() == ["1000", "refused"]

@@ -1,0 +1,24 @@
+"""What a hand-in may take while it is built and run. The kernel limits what one process takes, guard.py the rest."""
+
+MB = 1024**2
+
+# -- one process --
+MAX_ADDRESS_SPACE = 4096 * MB  # bytes; numpy alone reserves more than one GB
+MAX_FILES = 256  # open ones: what waits in its pipes and sockets is nobody's memory
+MAX_FILE_SIZE = 64 * MB  # bytes
+MAX_CPU_TIME = 200  # [s]
+MAX_WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
+CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
+
+# -- all processes together; the nodes' processor time has the same limit as that of one process --
+MAX_TASKS = 200  # processes and threads of a user; a rospy node has some 30
+MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
+MAX_MEMORY = 2048 * MB  # bytes; a node with numpy and OpenCV takes some 200 MB
+MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB; of a control group, too
+MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
+
+# -- a build --
+MAX_SOURCE = 64 * MB  # bytes of a package
+MAX_DISK = 512 * MB  # bytes that it may write; the lab's takes 2 MB
+MAX_BUILD_CPU_TIME = 180.0  # [s] of each command, all of its processes together
+BUILD_TIMEOUT = 900.0  # [s, wall] likewise; a command that waits for something that does not come uses no processor
