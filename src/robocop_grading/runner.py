@@ -107,7 +107,7 @@ class Runner:
         )
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
-            session = [*memory_group.prefix(), *self.sandbox.probe_command(session)]
+            session = [*memory_group.prefix(), *self.sandbox.session_command(session)]
         return self.supervise(session, environment, out, script.part)
 
     def _environment(self, out: Path) -> Dict[str, str]:

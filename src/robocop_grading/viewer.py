@@ -1,6 +1,6 @@
 """What shows a watched run: RViz if it can open a window here, otherwise the web page.
 
-Both run in the probe's network, which has the ROS master and which nothing else can reach. RViz gets to its display
+Both run in the session's network, which has the ROS master and which nothing else can reach. RViz gets to its display
 through a Unix socket; the page is handed a listening socket that was opened here, in the machine's own network.
 """
 
@@ -37,7 +37,7 @@ class Viewer:
 
     @property
     def descriptors(self) -> Tuple[int, ...]:
-        """Files that the probe inherits."""
+        """Files that the session inherits."""
         return (self.page_socket,) if self.is_page else ()
 
 
@@ -48,7 +48,7 @@ def choose_viewer(sandbox: Optional[Sandbox]) -> Viewer:
     """
     command = [sys.executable, "-IS", x_display.__file__]
     if sandbox is not None:
-        command = sandbox.probe_command(command)  # without a network: the display of ssh -X does not answer
+        command = sandbox.session_command(command)  # without a network: the display of ssh -X does not answer
     if os.environ.get("DISPLAY") and shutil.which("rviz") is not None:
         if subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True).returncode == 0:
             return Viewer()

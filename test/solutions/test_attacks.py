@@ -103,7 +103,7 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places(tm
         "sandbox = Sandbox(())\n"
         "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
         "touch /tmp/here && echo fine']\n"
-        "sys.exit(subprocess.call(sandbox.probe_command(sandbox.node_command(command, {}, (), Path('/tmp/home')))))"
+        "sys.exit(subprocess.call(sandbox.session_command(sandbox.node_command(command, {}, (), Path('/tmp/home')))))"
     )
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     done = subprocess.run(

@@ -1,7 +1,7 @@
 """bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
 
-The probe runs in its own network namespace, loopback only. The submission runs in another one, with its own processes
-and files, as a user who owns nothing: it sees neither the grader's processes, records and points nor other submissions.
+The session runs in its own network namespace, loopback only. The node runs in another one, with its own processes and
+files, as a user who owns nothing: it sees neither the grader's processes, records and points nor other submissions.
 A build runs the submission's code, so it is done in the sandbox too. limits.py has the limits.
 """
 
@@ -35,13 +35,13 @@ CONTAINER_OPTIONS = " ".join(f"--security-opt {it}=unconfined" for it in ("secco
 
 @dataclass(frozen=True)
 class Sandbox:
-    """Builds the command lines that start the probe, a node or a build in the sandbox."""
+    """Builds the command lines that start a session, a node or a build in the sandbox."""
 
     reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
     cpu_time: int = limits.MAX_CPU_TIME
 
-    def probe_command(self, command: Sequence[str]) -> List[str]:
-        """Command line that starts the probe in its own network and PID namespace; all else is shared."""
+    def session_command(self, command: Sequence[str]) -> List[str]:
+        """Command line of a session, in its own network and PID namespace; all else is shared."""
         namespaces = ["--die-with-parent", "--unshare-net", "--unshare-pid"]
         return ["bwrap", *namespaces, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
 
@@ -49,27 +49,26 @@ class Sandbox:
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path
     ) -> List[str]:
         """Command line of a node: reads the system and its own files, writes to a small home in memory."""
-        return self._inside(command, environment, self.cpu_time, reads, home, ["--unshare-net", *_writable(str(home))])
+        return self._inside(command, environment, reads, home, _writable(str(home)))
 
     def build_command(
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
     ) -> List[str]:
-        """Command line of a build: as node_command(), without network; `folder` is writable, its owner is user()."""
-        place = ["--unshare-net", *_mounts("--bind", [folder])]
-        return self._inside(command, environment, limits.MAX_CPU_TIME, reads, folder, place)
+        """Command line of a build: as node_command(), but it writes to `folder`, whose owner is user()."""
+        return self._inside(command, environment, reads, folder, _mounts("--bind", [folder]))
 
     def _inside(
         self,
         command: Sequence[str],
         environment: Mapping[str, str],
-        cpu_time: int,
         reads: Sequence[Path],
         folder: Path,
         place: Sequence[str],
     ) -> List[str]:
         """Command line that starts in a writable folder, for which `place` has bubblewrap's options."""
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
-        wrap += ["bwrap", "--die-with-parent", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--cap-drop", "ALL"]
+        wrap += ["bwrap", "--die-with-parent", "--cap-drop", "ALL"]
+        wrap += ["--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
         if os.geteuid() == 0:
             # For setpriv, which gives all of them up: SETPCAP is needed to empty the bounding set (util-linux 2.41).
             wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
@@ -81,7 +80,7 @@ class Sandbox:
         wrap += [*_mounts("--ro-bind-try", map(Path, SYSTEM)), *_mounts("--ro-bind", [*self.reads, *reads])]
         wrap += [*_hidden(Path("/etc")), *_accounts(environment.get("HOME", str(folder)))]
         wrap += [*place, *SEALED, "--chdir", str(folder), "--"]
-        return [*wrap, *_restrictions(environment, cpu_time), *command]
+        return [*wrap, *_restrictions(environment, self.cpu_time), *command]
 
 
 def expect_private(path: Path) -> None:
@@ -176,7 +175,7 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = limit
     if importlib.util.find_spec("seccomp") is None:
         raise GradingError(f"python3-seccomp is not installed; {advice}")
     empty = Sandbox(())
-    trial = empty.probe_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
+    trial = empty.session_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
     try:
         done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     except subprocess.TimeoutExpired as error:

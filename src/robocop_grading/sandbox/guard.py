@@ -12,7 +12,7 @@ import os
 import threading
 import time
 from pathlib import Path
-from typing import List, Optional, Sequence
+from typing import Callable, List, Optional, Sequence
 
 import psutil
 
@@ -58,10 +58,10 @@ class Guard:
         while not self._stopped.wait(PERIOD):
             processes = _processes(self._pid)
             since, looked = looked, time.monotonic()
-            before, used = used, sum(map(_processor_time, processes))
+            before, used = used, _sum(processes, _processor_time)
             if not any(map(_works, processes)):
                 self.idle += max(0.0, looked - since - max(0.0, used - before))
-            if _exceeds(processes, self._memory):
+            if all(_sum(processes, memory) > self._memory for memory in (_resident, _proportional)):
                 self.reason = exceeded_memory(self._memory)
             elif len(processes) > self._most:
                 self.reason = f"it started more than {self._most} processes"
@@ -88,12 +88,31 @@ def _processes(pid: int) -> List["psutil.Process"]:
         return []
 
 
+def _sum(processes: Sequence["psutil.Process"], of: Callable[["psutil.Process"], float]) -> float:
+    """What `of` says of all processes together."""
+    total = 0.0
+    for process in processes:
+        with contextlib.suppress(psutil.Error):  # it has ended
+            total += of(process)
+    return total
+
+
 def _processor_time(process: "psutil.Process") -> float:
     """Processor time [s] of a process and of its children that have ended."""
+    return float(sum(process.cpu_times()[:4]))
+
+
+def _resident(process: "psutil.Process") -> float:
+    """Bytes of memory that a process uses; a page that others use, too, counts for each of them."""
+    return float(process.memory_info().rss)
+
+
+def _proportional(process: "psutil.Process") -> float:
+    """Bytes of memory, where a page that n processes use counts one n-th for each; the kernel takes long for it."""
     try:
-        return float(sum(process.cpu_times()[:4]))
-    except (psutil.NoSuchProcess, psutil.AccessDenied):
-        return 0.0
+        return float(process.memory_full_info().pss)
+    except psutil.AccessDenied:
+        return _resident(process)
 
 
 def _works(process: "psutil.Process") -> bool:
@@ -105,42 +124,15 @@ def _works(process: "psutil.Process") -> bool:
     return False
 
 
-def _exceeds(processes: Sequence["psutil.Process"], limit: int) -> bool:
-    """Return whether processes use more than `limit` bytes of memory together.
-
-    Resident sizes (RSS) count a shared page once for each process; the slower proportional sizes (PSS), which count it
-    once, are only read when the resident sizes exceed the limit.
-    """
-    return all(sum(_memory(process, exact) for process in processes) > limit for exact in (False, True))
-
-
-def _memory(process: "psutil.Process", proportional: bool) -> int:
-    try:
-        with contextlib.suppress(psutil.AccessDenied):
-            if proportional:
-                return int(process.memory_full_info().pss)
-        return int(process.memory_info().rss)
-    except psutil.NoSuchProcess:
-        return 0
-
-
 def _too_large(folder: Path, limit: int) -> str:
-    """Why a folder is too large, or nothing."""
+    """Why a folder takes more than `limit` bytes of disk, or nothing; links are not followed."""
+    used = 0
     try:
-        return f"it wrote more than {limit / 1024**2:g} MB" if disk_usage(folder) > limit else ""
+        for path, folders, files in tree.walk(folder):
+            used += MIN_FILE * len(folders)
+            for name in files:
+                with contextlib.suppress(OSError):  # it has been removed
+                    used += max(MIN_FILE, os.lstat(path / name).st_blocks * 512)
     except HostingError:
         return f"it made more than {tree.MAX_DEPTH} nested folders"
-
-
-def disk_usage(folder: Path) -> int:
-    """Bytes of disk that a folder's content occupies, at least MIN_FILE for each entry; links are not followed.
-
-    HostingError if it is nested too deep to be looked at.
-    """
-    total = 0
-    for path, folders, files in tree.walk(folder):
-        total += MIN_FILE * len(folders)
-        for name in files:
-            with contextlib.suppress(OSError):  # it has been removed
-                total += max(MIN_FILE, os.lstat(path / name).st_blocks * 512)
-    return total
+    return f"it wrote more than {limit / 1024**2:g} MB" if used > limit else ""

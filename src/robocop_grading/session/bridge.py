@@ -1,7 +1,7 @@
 """The bridge's scenarios: clicks as RViz publishes them, and an action server controlled by the grader."""
 
 from functools import partial
-from typing import Any, Dict, Optional, Set
+from typing import Any, Optional, Set
 
 import roslib.message
 from actionlib_msgs.msg import GoalID, GoalStatusArray
@@ -50,7 +50,6 @@ class BridgeRun(Run):
         self.accepts = True
         self.topics.listen(f"{ACTION}/cancel", GoalID, self._on_cancel)
         self.topics.advertise(CLICKS, PoseStamped)
-        self.running: Dict[str, GoalID] = {}  # of goals that have not ended, by id
         self.server: Optional[Goals] = None
         self.reports: Set[str] = set()  # topics
         self._ticks = 0
@@ -78,7 +77,6 @@ class BridgeRun(Run):
         self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
         self._note_if_cancelled(message.goal_id)
         if self.server.add(message):
-            self.running[name] = message.goal_id
             self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
             self._note_if_cancelled(message.goal_id)
             if self.accepts:
@@ -102,21 +100,19 @@ class BridgeRun(Run):
             return
         self.server.request_cancel(message)
         for goal in self.parts["goals"]:
-            known = self.running.get(goal.id)
+            known = self.server.running().get(goal.id)
             everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
             earlier = bool(message.stamp) and known is not None and known.stamp <= message.stamp
             if known is not None and (message.id == goal.id or everything or earlier):
                 self.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
                 self.server.cancel(goal.id, GoToPositionResult(False, "cancelled"))
-                del self.running[goal.id]
 
     def _finish_goals(self) -> None:
         """Let all goals succeed."""
         assert self.server is not None
-        for name in self.running:
+        for name in self.server.running():
             self.server.succeed(name)
             self.add("statuses", rec.Status(self.stage.now, name, rec.SUCCEEDED))
-        self.running.clear()
 
     # -- clicks --
 

@@ -1,6 +1,6 @@
 """The programs that show a watched run: RViz or the web page, and robot_state_publisher for the robot's links.
 
-They are children of the probe, as only the probe's network has the ROS master, which the submission can't reach.
+They are children of the session, as only its network has the ROS master, which the submission can't reach.
 """
 
 import os
@@ -42,7 +42,7 @@ class Display:
             self._start([*restarted, "rosrun", "rviz", "rviz", "-d", f"{self._share}/rviz/grading_watch.rviz"], "rviz")
 
     def _start(self, command: Sequence[str], name: str) -> None:
-        """Start a node in the probe's session, which the grader ends as a whole."""
+        """Start a node in the session's process group, which the grader ends as a whole."""
         with open(self._log, "ab") as log:
             process = child.start(
                 [*command, f"__name:={name}"],

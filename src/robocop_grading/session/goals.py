@@ -54,6 +54,10 @@ class Goals:
             return False
         return True
 
+    def running(self) -> Dict[str, GoalID]:
+        """Those that have not ended, by id."""
+        return {name: status.goal_id for name, status in self._statuses.items() if name not in self._ended}
+
     def accept(self, name: str) -> None:
         """It is ACTIVE."""
         self._statuses[name].status, self._statuses[name].text = GoalStatus.ACTIVE, ACCEPTED

@@ -94,7 +94,7 @@ class Node:
         self._output.close()
         self._channel.close()
 
-    def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object] = lambda: None) -> None:
+    def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object]) -> None:
         """Let the node live until a simulated time [ns]; when this returns, all that it did until then is handled.
 
         `clock_ns`: the time on /clock, which its loops see when they have handled all messages. `meanwhile` is called

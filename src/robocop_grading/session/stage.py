@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, Dict, Optional
+from typing import Any, Callable, Dict, Optional
 
 import numpy as np
 import rospy
@@ -124,17 +124,19 @@ class Stage:
             if observed is not None:
                 self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
-                self.node.go_on(self.sim.stamp_ns, self.clock_ns)
+                self.digest()
         return self.sample()
 
     def _step_at(self, stamp_ns: int) -> int:
         """The first step that is not before a simulated time [ns]."""
         return -(-stamp_ns * self.sim.rate // NANOSECONDS)
 
-    def digest(self) -> None:
-        """Let the node do what it does at once, in no simulated time."""
+    def digest(self, meanwhile: Callable[[], object] = lambda: None) -> None:
+        """Let the node do what it does until now; `meanwhile` is called once, while it works."""
         if self.node is not None:
-            self.node.go_on(self.sim.stamp_ns, self.clock_ns)
+            self.node.go_on(self.sim.stamp_ns, self.clock_ns, meanwhile)
+        else:
+            meanwhile()
 
     def _subscriptions(self) -> Subscriptions:
         """The node's and the viewer's; odometry and transforms always, for the bag."""
@@ -153,11 +155,7 @@ class Stage:
             self.clock_ns = self.sim.stamp_ns
         if self.watch is not None:
             self.watch.observe(observed, self._real_time)
-        keep = partial(self.bag.write_step, observed.stamp_ns, messages)
-        if self.node is None:
-            keep()
-        else:
-            self.node.go_on(observed.stamp_ns, self.clock_ns, meanwhile=keep)
+        self.digest(partial(self.bag.write_step, observed.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""

@@ -5,8 +5,9 @@ Messages are as on TCPROS: each with its length, and after one that could not be
 
 import io
 import json
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Set, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Set, Tuple
 
 import genpy
 
@@ -31,10 +32,43 @@ class NodeTopic(NamedTuple):
     checksum: str
 
 
-class _Heard(NamedTuple):
+@dataclass
+class _Topic:
     kind: Any
+    header: Dict[str, str]  # of its connections
+
+
+@dataclass
+class _Sent(_Topic):
+    """One that the grader publishes."""
+
+    is_latched: bool
+    last: bytes = b""  # message, if it is latched
+    count: int = 0  # of messages
+
+
+@dataclass
+class _Heard(_Topic):
+    """One that the grader subscribes to."""
+
     handler: Handler
     of: Callable[[Any], Any]
+    stream: bytearray = field(default_factory=bytearray)  # what has come of a message
+
+    def bodies(self, data: bytes) -> Iterator[bytes]:
+        """Its messages that are whole now."""
+        self.stream += data
+        start = 0
+        while len(self.stream) - start >= wire.LENGTH.size:
+            (size,) = wire.LENGTH.unpack_from(self.stream, start)
+            body, end = start + wire.LENGTH.size, start + wire.LENGTH.size + size
+            if end > len(self.stream):
+                break
+            start = end
+            yield bytes(self.stream[body:end])
+        del self.stream[:start]
+        if len(self.stream) > MAX_BYTES:
+            self.stream.clear()
 
 
 def trimmed(message: Any) -> Any:
@@ -63,13 +97,10 @@ class Topics:
         self.published: Dict[str, NodeTopic] = {}  # by the node
         self.subscribed: Dict[str, NodeTopic] = {}  # likewise
         self.programs: Set[str] = set()  # of ROS that the node has started, which find no master
-        self._sent: Dict[str, Any] = {}  # topic -> type of what the grader publishes
-        self._latched: Dict[str, bytes] = {}  # topic -> the last message, of those that keep it
-        self._heard: Dict[str, _Heard] = {}
-        self._numbers: Dict[str, int] = {}  # of messages
+        self._sent: Dict[str, _Sent] = {}  # by name
+        self._heard: Dict[str, _Heard] = {}  # likewise
         self._outgoing: List[wire.Message] = []
         self._new: List[Dict[str, str]] = []  # headers
-        self._streams: Dict[str, bytearray] = {}
         self._arrived: List[Tuple[str, Callable[[], object]]] = []  # topic, and what handles a message
         self._decoded = 0  # bytes of them
 
@@ -77,15 +108,13 @@ class Topics:
 
     def advertise(self, name: str, kind: Any, latch: bool = False) -> None:
         """Begin to publish a topic; with `latch` its last message is sent to each new subscriber."""
-        self._sent[name] = kind
-        if latch:
-            self._latched[name] = b""
-        self._new.append(self._sent_header(name))
+        self._sent[name] = _Sent(kind, header(kind, topic=name, latching=str(int(latch))), latch)
+        self._new.append(self._sent[name].header)
 
     def listen(self, name: str, kind: Any, handler: Handler, of: Callable[[Any], Any] = trimmed) -> None:
         """Have `handler` called with what arrives on a topic; `of` reduces a message to what is kept of it."""
-        self._heard[name] = _Heard(kind, handler, of)
-        self._new.append(header(kind, topic=name))
+        self._heard[name] = _Heard(kind, header(kind, topic=name), handler, of)
+        self._new.append(self._heard[name].header)
 
     def listens_to(self, name: str) -> bool:
         """Return whether the grader wants what is published on a topic."""
@@ -99,23 +128,25 @@ class Topics:
         """Send a message."""
         body = io.BytesIO()
         if getattr(message, "_has_header", False):
-            message.header.seq = self._numbers[name] = self._numbers.get(name, 0) + 1
+            self._sent[name].count += 1
+            message.header.seq = self._sent[name].count
         message.serialize(body)
         self.send(name, wire.LENGTH.pack(body.tell()) + body.getvalue())
 
     def send(self, name: str, data: bytes) -> None:
         """Send a serialized message, with its length."""
-        if name in self._latched:
-            self._latched[name] = data
-        if name in self._latched or self.reaches(name):
+        sent = self._sent[name]
+        if sent.is_latched:
+            sent.last = data
+        if sent.is_latched or self.reaches(name):
             self._outgoing.append((name, data))
 
     # -- who is connected --
 
     def reaches(self, name: str) -> bool:
         """Return whether the node gets what the grader publishes on a topic."""
-        kind, used = self._sent.get(name), self.subscribed.get(name)
-        return kind is not None and used is not None and used.checksum in ("*", kind._md5sum)
+        sent, used = self._sent.get(name), self.subscribed.get(name)
+        return sent is not None and used is not None and used.checksum in ("*", sent.kind._md5sum)
 
     def hears(self, name: str) -> bool:
         """Return whether the grader gets what the node publishes on a topic that it listens to."""
@@ -123,11 +154,11 @@ class Topics:
 
     def other_types(self) -> Tuple[Tuple[str, str, str], ...]:
         """The topics that the node uses with another type than the grader: name, its type, and the grader's."""
-        kinds = {**{name: heard.kind for name, heard in self._heard.items()}, **self._sent}
+        ours: Dict[str, _Topic] = {**self._heard, **self._sent}
         return tuple(
-            (name, used.type, kinds[name]._type)
+            (name, used.type, ours[name].kind._type)
             for name, used in [*self.published.items(), *self.subscribed.items()]
-            if name in kinds and used.checksum not in ("*", kinds[name]._md5sum)
+            if name in ours and used.checksum not in ("*", ours[name].kind._md5sum)
         )
 
     def unpublished(self) -> List[str]:
@@ -139,15 +170,10 @@ class Topics:
     def begin(self) -> List[Dict[str, str]]:
         """A new node is started: the headers of all topics."""
         self.published, self.subscribed, self.programs, self._new = {}, {}, set(), []
-        self._streams.clear()
-        self._outgoing = [(name, data) for name, data in self._latched.items() if data]
-        return [
-            *(self._sent_header(name) for name in self._sent),
-            *(header(heard.kind, topic=name) for name, heard in self._heard.items()),
-        ]
-
-    def _sent_header(self, name: str) -> Dict[str, str]:
-        return header(self._sent[name], topic=name, latching=str(int(name in self._latched)))
+        for heard in self._heard.values():
+            heard.stream.clear()
+        self._outgoing = [(name, sent.last) for name, sent in self._sent.items() if sent.last]
+        return [*(sent.header for sent in self._sent.values()), *(heard.header for heard in self._heard.values())]
 
     def take(self) -> Tuple[List[Dict[str, str]], List[wire.Message]]:
         """The headers of new topics, and the messages, since the last time."""
@@ -175,27 +201,16 @@ class Topics:
         heard = self._heard.get(name)
         if heard is None:
             return
-        stream = self._streams.setdefault(name, bytearray())
-        stream += data
-        start = 0
-        while len(stream) - start >= wire.LENGTH.size:
-            (size,) = wire.LENGTH.unpack_from(stream, start)
-            end = start + wire.LENGTH.size + size
-            if end > len(stream):
-                break
-            body, start = bytes(stream[start + wire.LENGTH.size : end]), end
+        for body in heard.bodies(data):
             if len(self._arrived) >= MAX_WAITING or self._decoded >= MAX_DECODED:
                 continue
-            self._decoded += size
+            self._decoded += len(body)
             try:
                 message = heard.of(heard.kind().deserialize(body))
             except Exception:  # genpy does not document its errors; as rospy, which connects anew
-                stream.clear()
+                heard.stream.clear()
                 return
             self._arrived.append((name, partial(heard.handler, message)))
-        del stream[:start]
-        if len(stream) > MAX_BYTES:
-            stream.clear()
 
     def handle_arrived(self) -> None:
         """Handle what has arrived."""

@@ -18,7 +18,7 @@ def outcome(result):
 def run(sandbox, code):
     """Output of a Python program in the sandbox."""
     command = ["/usr/bin/python3", "-c", CALLS + textwrap.dedent(code)]
-    inside = sandbox.probe_command(sandbox.node_command(command, {"HOME": "/tmp"}, (), Path("/tmp/home")))
+    inside = sandbox.session_command(sandbox.node_command(command, {"HOME": "/tmp"}, (), Path("/tmp/home")))
     done = subprocess.run(inside, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
     return done.stdout.strip()
 

@@ -41,7 +41,7 @@ print(json.dumps(failures))
 def inside(sandbox):
     """Makes the command line that runs a command in the sandbox."""
     environment = {"HOME": "/tmp/home", "PATH": "/usr/bin:/bin"}
-    return lambda command: sandbox.probe_command(sandbox.node_command(command, environment, (), Path("/tmp/home")))
+    return lambda command: sandbox.session_command(sandbox.node_command(command, environment, (), Path("/tmp/home")))
 
 
 def output(command):
