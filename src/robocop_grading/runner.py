@@ -155,19 +155,22 @@ class Runner:
             timer.cancel()
             status = child.end(process, None, grace)
             guard.stop()
-        last = " | ".join(map(str.strip, log.read_text(errors="replace").splitlines()[-LOG_LINES:]))[-600:]
         if not scenario:
-            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {last}")
+            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}")
         records, problem, killed = records_in(out, part), guard.reason, ""
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
         excused = memory_group.kernel_kills() > kills
         if not problem and status != 0:
-            problem = f"the run was cut short during {scenario} (status {status}): {last}"
+            problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
         return Recorded(records, problem, killed, excused)
+
+
+def _end_of(log: Path) -> str:
+    return " | ".join(map(str.strip, log.read_text(errors="replace").splitlines()[-LOG_LINES:]))[-600:]
 
 
 def records_in(out: Path, part: str) -> Dict[str, rec.Record]:

@@ -8,7 +8,7 @@ import attacks
 import pytest
 from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan import load
@@ -87,6 +87,16 @@ def test_processes_that_together_exceed_the_memory_limit_are_killed_with_a_reaso
     run, _ = attacked(attacks.MEMORY, tmp_path / "mine")
     reasons = {death.reason for record in run.records.values() for death in record.deaths}
     assert reasons == {"its processes together took more than 2048 MB of memory"}, run.problem
+
+
+def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):
+    out = tmp_path / "mine" / "out"
+
+    def remove_folder(_scenario):
+        out.rename(tmp_path / "gone")
+
+    with pytest.raises(UngradableError, match="No such file or directory: .*/out/server-start"):
+        recorded(RIGHT["base_server"].read_text(), tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
 
 
 def test_flood_of_log_messages_is_truncated(tmp_path):

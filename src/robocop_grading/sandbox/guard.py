@@ -38,10 +38,15 @@ class Guard:
         disk: int = MAX_DISK,
         processor_time: float = math.inf,
         processes: float = MAX_PROCESSES,
+        used: float = 0.0,
     ) -> None:
-        """`memory` and `disk` (of the folder) [bytes], `processor_time` [s], `processes`: limits of all processes."""
+        """`memory` and `disk` (of the folder) [bytes], `processor_time` [s], `processes`: limits of all processes.
+
+        `used`: processor time [s] that others have used, and that counts, too.
+        """
         self.reason = ""  # why they were killed, if they were
         self.idle = 0.0  # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer
+        self.used = used
         self._processor_time, self._most = processor_time, processes
         self._pid, self._folder, self._memory, self._disk = pid, folder, memory, disk
         self._stopped = threading.Event()
@@ -54,18 +59,18 @@ class Guard:
         self._thread.join()
 
     def _watch(self) -> None:
-        looked, used = time.monotonic(), 0.0
+        looked, earlier = time.monotonic(), self.used
         while not self._stopped.wait(PERIOD):
             processes = _processes(self._pid)
             since, looked = looked, time.monotonic()
-            before, used = used, _sum(processes, _processor_time)
+            before, self.used = self.used, max(self.used, earlier + _sum(processes, _processor_time))
             if not any(map(_works, processes)):
-                self.idle += max(0.0, looked - since - max(0.0, used - before))
+                self.idle += max(0.0, looked - since - (self.used - before))
             if all(_sum(processes, memory) > self._memory for memory in (_resident, _proportional)):
                 self.reason = exceeded_memory(self._memory)
             elif len(processes) > self._most:
                 self.reason = f"it started more than {self._most} processes"
-            elif used > self._processor_time:
+            elif self.used > self._processor_time:
                 self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
             elif self._folder is not None:
                 self.reason = _too_large(self._folder, self._disk)

@@ -5,7 +5,7 @@ import select
 import socket
 import struct
 from subprocess import PIPE, STDOUT
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, NamedTuple, Optional
 
 from aro_robocop_goto_as.errors import GraderLostError
 from aro_robocop_goto_as.process import child
@@ -15,6 +15,7 @@ from ..agent import wire
 from ..runner import Job
 from ..sandbox import memory_group
 from ..sandbox.guard import Guard
+from ..sandbox.limits import MAX_IDLE, MAX_PART_IDLE
 from ..submission import CHANNEL
 from .channel import UNREADABLE, Channel
 from .output import Output
@@ -24,13 +25,19 @@ from .topics import Topics
 NEVER = 1 << 62  # [ns]
 MAX_LAST_READS = 1000  # of what an ended node has sent; its child may go on
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
-MAX_IDLE = 45.0  # [s, wall] in which the node does nothing, until its answer is not waited for any more
 CHILD = "rospy in a child process"
 ROS_PARAMETERS = {
     "/use_sim_time": True,
     # rospy asks the master for it with every line it logs, unless it is set.
     "/rosout_disable_topics_generation": True,
 }
+
+
+class Spent(NamedTuple):
+    """What the nodes of a part have taken so far."""
+
+    processor_time: float = 0.0  # [s]
+    idle: float = 0.0  # [s, wall] in which they did nothing while the grader waited for them
 
 
 class Node:
@@ -47,7 +54,9 @@ class Node:
         on_line: Callable[[str], object],
         now_ns: int,
         clock_ns: int,
+        spent: Spent,
     ) -> None:
+        """`spent`: by the part's nodes before it."""
         mine, theirs = socket.socketpair()
         self._process = child.start(
             [f"{theirs.fileno()},{clock_ns}" if word == CHANNEL else word for word in job.command],
@@ -65,7 +74,8 @@ class Node:
         self.next_ns = now_ns  # when the node will do something without having received a message
         self._is_over = False
         self._given_up = ""  # why the grader has ended it, if it has
-        self._guard = Guard(self._process.pid, processor_time=job.cpu_time)
+        self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
+        self._idle = spent.idle
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -85,6 +95,10 @@ class Node:
         elif not reason and status in rec.KILLED:
             reason = memory_group.reason()
         return rec.Death(now, status, reason)
+
+    def spent(self) -> Spent:
+        """What this node and those before it have taken."""
+        return Spent(self._guard.used, self._idle)
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -108,13 +122,17 @@ class Node:
             self._channel.send(wire.TOPIC, pickle.dumps(header))
         self._channel.send(wire.GO, wire.go(until_ns - self._started_ns, clock_ns, messages))
         meanwhile()
-        self._live(until_ns - self._started_ns)
+        idle = self._guard.idle
+        self._live(until_ns - self._started_ns, idle)
+        self._idle += self._guard.idle - idle
         self._topics.handle_arrived()
         self._output.pass_on()
 
-    def _live(self, until_ns: int) -> None:
-        """Handle what the node sends, until it says that it has lived for so long or has ended."""
-        idle = self._guard.idle
+    def _live(self, until_ns: int, idle: float) -> None:
+        """Handle what the node sends, until it says that it has lived for so long or has ended.
+
+        `idle`: for how long [s, wall] it had done nothing before.
+        """
         while True:
             for kind, body in self._channel.frames():
                 if kind == wire.DONE and len(body) == wire.ANSWER.size:
@@ -126,7 +144,8 @@ class Node:
                 self._handle(kind, body)
             if not self._has_more() and self._has_ended():
                 break
-            if self._guard.idle - idle > MAX_IDLE:
+            waited = self._guard.idle - idle
+            if waited > MAX_IDLE or self._idle + waited > MAX_PART_IDLE:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
                 self._given_up = f"it {did} the grader, which has ended it"
                 self.end()

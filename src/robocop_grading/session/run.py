@@ -16,7 +16,7 @@ from ..handout import ACTION
 from ..record import Record
 from ..runner import Job
 from . import progress
-from .node import Node
+from .node import Node, Spent
 from .services import Services
 from .stage import Stage
 from .topics import NodeTopic
@@ -38,6 +38,7 @@ class Run:
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
+        self._spent = Spent()
         self.topics.listen("/cmd_vel", Twist, self._on_command)
         self.topics.listen("/rosout", Log, self._on_log)
 
@@ -105,7 +106,8 @@ class Run:
         """Start the node that is graded."""
         self.death_recorded = False
         stage = self.stage
-        stage.node = Node(self.job, self.topics, self.services, self._on_line, stage.sim.stamp_ns, stage.clock_ns)
+        now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
+        stage.node = Node(self.job, self.topics, self.services, self._on_line, now_ns, clock_ns, self._spent)
 
     def is_dead(self) -> bool:
         """Return whether there is no node, or it has ended."""
@@ -115,7 +117,7 @@ class Run:
         """End the node."""
         if self.stage.node is not None:
             self.stage.node.end()
-            self.stage.node = None
+            self._spent, self.stage.node = self.stage.node.spent(), None
 
     def _record_death(self) -> None:
         death = self.stage.node.death(self.stage.now) if self.stage.node is not None else None

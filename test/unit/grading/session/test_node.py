@@ -1,0 +1,120 @@
+"""A node's turns and its end, with a program in place of the agent."""
+
+import os
+import sys
+from types import SimpleNamespace
+
+import pytest
+from std_msgs.msg import String
+from support import ROOT
+
+from aro_robocop_goto_as.errors import GraderLostError
+from robocop_grading.runner import Job
+from robocop_grading.session import node as module
+from robocop_grading.session.node import Node, Spent
+from robocop_grading.session.topics import Topics
+from robocop_grading.submission import CHANNEL
+
+TURN = 10**7  # [ns]
+NOTHING = Spent()
+# Answers each request to go on, after something that it does.
+AGENT = """
+import os, sys, time
+sys.path.insert(0, SRC)
+from robocop_grading.agent import wire
+channel = int(sys.argv[1].split(",")[0])
+requests = os.fdopen(channel, "rb", closefd=False)
+def request():
+    size, kind = wire.HEAD.unpack(requests.read(wire.HEAD.size))
+    return kind, requests.read(size)
+while True:
+    kind, body = request()
+    if kind == wire.GO:
+        until, _ = wire.TIMES.unpack_from(body)
+        TURN
+        os.write(channel, wire.frame(wire.DONE, wire.ANSWER.pack(until, until + 5, False)))
+"""
+
+
+class Watched(Node):
+    """A node that is `do`, with the lines that it prints and the texts that it publishes on /said."""
+
+    def __init__(self, folder, do, cpu_time=60.0, spent=NOTHING):
+        self.lines, self.said, self.now, topics = [], [], 0, Topics()
+        topics.listen("/said", String, lambda message: self.said.append(message.data))
+        text = AGENT.replace("SRC", repr(os.path.join(ROOT, "src"))).replace("TURN", do)
+        command = (sys.executable, "-u", "-c", text, CHANNEL)
+        job = Job("server", command, dict(os.environ), folder, folder, None, {}, cpu_time)
+        services = SimpleNamespace(headers=lambda: [])
+        super().__init__(job, topics, services, self.lines.append, 0, 0, spent)
+
+    def turn(self):
+        """One turn; the reason why it is over, if it is."""
+        self.now += TURN
+        self.go_on(self.now, self.now, lambda: None)
+        death = self.death(self.now / 1e9)
+        return None if death is None else death.reason
+
+
+@pytest.fixture
+def started(tmp_path):
+    """Starts nodes."""
+    nodes = []
+
+    def start(do, **options):
+        nodes.append(Watched(tmp_path, do, **options))
+        return nodes[-1]
+
+    yield start
+    for node in nodes:
+        node.end()
+
+
+def test_a_node_lives_until_the_time_that_it_is_told(started):
+    node = started("print(until)")
+    assert [node.turn() for _ in range(3)] == [None] * 3
+    assert node.lines == [str(number * TURN) for number in (1, 2, 3)] and node.next_ns == 3 * TURN + 5
+
+
+def test_what_a_node_says_before_it_ends_by_itself_counts(started):
+    last = r"os.write(channel, wire.frame(wire.MESSAGE, wire.named('/said', b'\x06\0\0\0\2\0\0\0ab')))"
+    node = started(f"{last}; print('bye'); sys.exit(3)")
+    assert node.turn() == "" and node.death(1.0).status == 3
+    assert (node.said, node.lines) == (["ab"], ["bye"])
+    calls = []
+    node.go_on(2 * TURN, 0, lambda: calls.append("as ever"))
+    assert calls == ["as ever"]
+
+
+@pytest.mark.parametrize(
+    "do, did",
+    [("time.sleep(600)", "stopped answering"), ("os.close(channel); time.sleep(600)", "closed its connection to")],
+)
+def test_a_node_that_does_nothing_is_ended_with_the_reason(do, did, started, monkeypatch):
+    monkeypatch.setattr(module, "MAX_IDLE", 0.5)
+    assert started(do).turn() == f"it {did} the grader, which has ended it"
+
+
+def test_nodes_that_are_silent_for_a_while_each_time_are_ended_after_all_of_it(started, monkeypatch):
+    monkeypatch.setattr(module, "MAX_PART_IDLE", 1.0)
+    node = started("time.sleep(0.3)")
+    for _ in range(60):
+        if node.turn() is not None:
+            break
+    assert node.death(0.0).reason == "it stopped answering the grader, which has ended it"
+    assert started("time.sleep(600)", spent=node.spent()).turn() == node.death(0.0).reason
+
+
+def test_processor_time_of_earlier_nodes_counts(started):
+    node = started("while True: pass", cpu_time=100.0, spent=Spent(99.5))
+    assert node.turn() == "its processes together used more than 100 s of processor time"
+    assert 100.0 < node.spent().processor_time < 110.0
+
+
+LIES = "wire.HEAD.pack(2**31, wire.DONE)", "wire.frame(77, b'')", "wire.frame(wire.DONE, wire.ANSWER.pack(1, 2, False))"
+
+
+@pytest.mark.parametrize("answer", LIES)
+def test_an_answer_that_no_agent_gives_ends_the_run(answer, started):
+    with pytest.raises(GraderLostError, match="can't be read|did not go on"):
+        started(f"os.write(channel, {answer})").turn()
