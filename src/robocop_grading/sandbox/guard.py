@@ -35,12 +35,11 @@ class Guard:
         pid: int,
         folder: Optional[Path] = None,
         memory: int = MAX_MEMORY,
-        disk: int = MAX_DISK,
         processor_time: float = math.inf,
         processes: float = MAX_PROCESSES,
         used: float = 0.0,
     ) -> None:
-        """`memory` and `disk` (of the folder) [bytes], `processor_time` [s], `processes`: limits of all processes.
+        """`memory` [bytes], `processor_time` [s], `processes`: limits of all processes; a build's folder has its own.
 
         `used`: processor time [s] that others have used, and that counts, too.
         """
@@ -48,7 +47,7 @@ class Guard:
         self.idle = 0.0  # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer
         self.used = used
         self._processor_time, self._most = processor_time, processes
-        self._pid, self._folder, self._memory, self._disk = pid, folder, memory, disk
+        self._pid, self._folder, self._memory = pid, folder, memory
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
@@ -73,7 +72,7 @@ class Guard:
             elif self.used > self._processor_time:
                 self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
             elif self._folder is not None:
-                self.reason = _too_large(self._folder, self._disk)
+                self.reason = _too_large(self._folder)
             if self.reason:
                 kill_tree(self._pid)
                 return
@@ -129,8 +128,8 @@ def _works(process: "psutil.Process") -> bool:
     return False
 
 
-def _too_large(folder: Path, limit: int) -> str:
-    """Why a folder takes more than `limit` bytes of disk, or nothing; links are not followed."""
+def _too_large(folder: Path) -> str:
+    """Why a folder takes more disk than a build may, or nothing; links are not followed."""
     used = 0
     try:
         for path, folders, files in tree.walk(folder):
@@ -140,4 +139,4 @@ def _too_large(folder: Path, limit: int) -> str:
                     used += max(MIN_FILE, os.lstat(path / name).st_blocks * 512)
     except HostingError:
         return f"it made more than {tree.MAX_DEPTH} nested folders"
-    return f"it wrote more than {limit / 1024**2:g} MB" if used > limit else ""
+    return f"it wrote more than {MAX_DISK / 1024**2:g} MB" if used > MAX_DISK else ""

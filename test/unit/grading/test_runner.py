@@ -44,3 +44,8 @@ def test_session_that_fails_later_may_do_so_because_of_the_submission(tmp_path):
     recorded, _ = supervised("echo begin far; echo it lies >&2; exit 1", tmp_path)
     assert recorded.problem == "the run was cut short during far (status 1): it lies"
     assert not recorded.killed
+
+
+def test_session_that_is_killed_is_not_blamed_on_the_submission(tmp_path):
+    recorded, _ = supervised("echo begin far; kill -9 $$", tmp_path)
+    assert recorded.killed == "the grader's own process was killed in scenario far" and recorded.excused

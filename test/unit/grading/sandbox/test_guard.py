@@ -11,6 +11,7 @@ import pytest
 from waiting import wait_for
 
 from aro_robocop_goto_as.process.child import kill_tree
+from robocop_grading.sandbox import guard as module
 from robocop_grading.sandbox.guard import Guard
 
 MB = 1024**2
@@ -63,9 +64,10 @@ def test_shared_memory_counts_once(tmp_path):
     assert watched(code, memory=250 * MB)[1] == ""
 
 
-def test_a_process_whose_folder_grows_too_large_is_killed(tmp_path):
+def test_a_process_whose_folder_grows_too_large_is_killed(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "MAX_DISK", 4 * MB)
     code = "import time\nopen('big', 'wb').write(bytes(5 * 2 ** 20))\ntime.sleep(600.0)"
-    status, reason = watched(code, tmp_path, disk=4 * MB)
+    status, reason = watched(code, tmp_path)
     assert status < 0
     assert reason == "it wrote more than 4 MB"
 
