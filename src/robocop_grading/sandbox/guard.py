@@ -12,7 +12,7 @@ import os
 import threading
 import time
 from pathlib import Path
-from typing import Callable, List, Optional, Sequence
+from typing import Callable, List, Optional, Sequence, Set
 
 import psutil
 
@@ -24,7 +24,7 @@ from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
-WORKS = "RD"  # states of a thread that runs or waits for the processor, and of one that waits for a disk; see proc(5)
+RUNS, BLOCKED = "R", "D"  # states of a thread that has or wants the processor, and that waits for a disk; see proc(5)
 
 
 class Guard:
@@ -44,7 +44,9 @@ class Guard:
         `used`: processor time [s] that others have used, and that counts, too.
         """
         self.reason = ""  # why they were killed, if they were
-        self.idle = 0.0  # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer
+        # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer,
+        self.still = 0.0
+        self.idle = 0.0  # and none waited for a disk
         self.used = used
         self._processor_time, self._most = processor_time, processes
         self._pid, self._folder, self._memory = pid, folder, memory
@@ -63,8 +65,10 @@ class Guard:
             processes = _processes(self._pid)
             since, looked = looked, time.monotonic()
             before, self.used = self.used, max(self.used, earlier + _sum(processes, _processor_time))
-            if not any(map(_works, processes)):
-                self.idle += max(0.0, looked - since - (self.used - before))
+            rest = looked - since - (self.used - before)
+            states = set().union(*map(_states, processes)) if rest > 0.0 else {RUNS}
+            self.still += rest if RUNS not in states else 0.0
+            self.idle += rest if states.isdisjoint({RUNS, BLOCKED}) else 0.0
             if all(_sum(processes, memory) > self._memory for memory in (_resident, _proportional)):
                 self.reason = exceeded_memory(self._memory)
             elif len(processes) > self._most:
@@ -119,13 +123,13 @@ def _proportional(process: "psutil.Process") -> float:
         return _resident(process)
 
 
-def _works(process: "psutil.Process") -> bool:
-    """Return whether one of its threads does something now."""
+def _states(process: "psutil.Process") -> Set[str]:
+    """What its threads do now, as letters."""
+    states = set()
     for file in glob.iglob(f"/proc/{process.pid}/task/*/stat"):
         with contextlib.suppress(OSError):  # the thread has ended
-            if Path(file).read_text().rpartition(")")[2].split()[0] in WORKS:
-                return True
-    return False
+            states.add(Path(file).read_text().rpartition(")")[2].split()[0])
+    return states
 
 
 def _too_large(folder: Path) -> str:

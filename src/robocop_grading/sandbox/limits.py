@@ -19,7 +19,7 @@ MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
 MAX_IDLE = 45.0  # [s, wall] in which a node does nothing, until one answer is not waited for any more
-MAX_PART_IDLE = 900.0  # [s, wall] likewise for all answers of a part; a usual one's come to a few seconds
+MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, also if it waits for a disk; usual are a few seconds
 
 # -- a build --
 MAX_SOURCE = 64 * MB  # bytes of a package

@@ -15,7 +15,7 @@ from ..agent import wire
 from ..runner import Job
 from ..sandbox import memory_group
 from ..sandbox.guard import Guard
-from ..sandbox.limits import MAX_IDLE, MAX_PART_IDLE
+from ..sandbox.limits import MAX_IDLE, MAX_STILL
 from ..submission import CHANNEL
 from .channel import UNREADABLE, Channel
 from .output import Output
@@ -37,7 +37,7 @@ class Spent(NamedTuple):
     """What the nodes of a part have taken so far."""
 
     processor_time: float = 0.0  # [s]
-    idle: float = 0.0  # [s, wall] in which they did nothing while the grader waited for them
+    still: float = 0.0  # [s, wall] in which none of their threads ran or wanted to, while the grader waited for them
 
 
 class Node:
@@ -75,7 +75,7 @@ class Node:
         self._is_over = False
         self._given_up = ""  # why the grader has ended it, if it has
         self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
-        self._idle = spent.idle
+        self._still = spent.still
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -98,7 +98,7 @@ class Node:
 
     def spent(self) -> Spent:
         """What this node and those before it have taken."""
-        return Spent(self._guard.used, self._idle)
+        return Spent(self._guard.used, self._still)
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -122,18 +122,15 @@ class Node:
             self._channel.send(wire.TOPIC, pickle.dumps(header))
         self._channel.send(wire.GO, wire.go(until_ns - self._started_ns, clock_ns, messages))
         meanwhile()
-        idle = self._guard.idle
-        self._live(until_ns - self._started_ns, idle)
-        self._idle += self._guard.idle - idle
+        self._live(until_ns - self._started_ns)
         self._topics.handle_arrived()
         self._output.pass_on()
 
-    def _live(self, until_ns: int, idle: float) -> None:
-        """Handle what the node sends, until it says that it has lived for so long or has ended.
-
-        `idle`: for how long [s, wall] it had done nothing before.
-        """
+    def _live(self, until_ns: int) -> None:
+        """Handle what the node sends, until it says that it has lived for so long or has ended."""
+        idle, still = self._guard.idle, self._guard.still - self._still
         while True:
+            self._still = self._guard.still - still
             for kind, body in self._channel.frames():
                 if kind == wire.DONE and len(body) == wire.ANSWER.size:
                     done_ns, next_ns, _ = wire.ANSWER.unpack(body)
@@ -144,8 +141,7 @@ class Node:
                 self._handle(kind, body)
             if not self._has_more() and self._has_ended():
                 break
-            waited = self._guard.idle - idle
-            if waited > MAX_IDLE or self._idle + waited > MAX_PART_IDLE:
+            if self._guard.idle - idle > MAX_IDLE or self._still > MAX_STILL:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
                 self._given_up = f"it {did} the grader, which has ended it"
                 self.end()

@@ -115,8 +115,15 @@ def test_process_that_sleeps_again_and_again_with_its_threads_and_children_is_id
     wait_for(lambda: guard.idle > ENOUGH, "idle")
 
 
+def test_process_that_waits_for_a_disk_is_still_but_not_idle(started, tmp_path):
+    spawn = "os.posix_spawn('/bin/true', ['true'], {}, file_actions=[(os.POSIX_SPAWN_OPEN, 0, 'pipe', os.O_RDONLY, 0)])"
+    # A parent waits for what it spawns as if for a disk, and its child for somebody who writes.
+    _, guard = started(f"import os\nos.chdir({str(tmp_path)!r})\nos.mkfifo('pipe')\n{spawn}")
+    wait_for(lambda: guard.still > guard.idle + ENOUGH, "still")
+
+
 def test_process_that_computes_is_not_idle_whatever_else_the_processor_does(started):
     code = "import os\nos.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\nwhile True: pass"
     (first, guard), *_ = (started(code) for _ in range(3))
     wait_for(lambda: psutil.Process(first.pid).cpu_times().user > ENOUGH, "has run")
-    assert guard.idle < ENOUGH
+    assert guard.idle <= guard.still < ENOUGH

@@ -96,7 +96,7 @@ def test_a_node_that_does_nothing_is_ended_with_the_reason(do, did, started, mon
 
 
 def test_nodes_that_are_silent_for_a_while_each_time_are_ended_after_all_of_it(started, monkeypatch):
-    monkeypatch.setattr(module, "MAX_PART_IDLE", 1.0)
+    monkeypatch.setattr(module, "MAX_STILL", 1.0)
     node = started("time.sleep(0.3)")
     for _ in range(60):
         if node.turn() is not None:
