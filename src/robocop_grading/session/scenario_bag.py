@@ -6,14 +6,11 @@ from typing import Any, Dict, Optional, Sequence
 
 import rosbag
 import rospy
-from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
+from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.ros import convert
-from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
-from aro_robocop_goto_as.sim_params import FrameNames
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 from ..agent import wire
@@ -53,10 +50,8 @@ class _File(io.BytesIO):
 class ScenarioBag:
     """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
 
-    def __init__(self, sim: Simulator, robot: SensorTopics, frames: FrameNames) -> None:
-        self._sim = sim
-        self._robot = robot
-        self._frames = frames
+    def __init__(self, sim: Simulator, world_frame: str) -> None:
+        self._sim, self._world_frame = sim, world_frame
         self._bag: Optional[rosbag.Bag] = None
 
     def open(self, path: Path) -> None:
@@ -82,21 +77,11 @@ class ScenarioBag:
                 topic, message, stamp, raw, header(message, topic=topic, latching="1") if topic in LASTING else None
             )
 
-    def write_static_frames(self, site: Pose2D) -> None:
-        """In the bag, map is odom at the scenario's start; in the submission's map that is many metres away."""
-        stamp = convert.to_time(self._sim.stamp_ns)
-        map_from_odom = compose(inverse(site), self._sim.map_from_odom())
-        static = [
-            convert.to_transform(self._frames.world_frame, self._frames.map_frame, site, stamp),
-            convert.to_transform(self._frames.map_frame, self._robot.odom_frame, map_from_odom, stamp),
-        ]
-        self.write("/tf_static", TFMessage(static))
-
     def write_scenery(self, site: Pose2D) -> None:
         """The obstacles of this scenario, and wheels, which the robot's model needs."""
         near = [
             marker
-            for marker in world_markers(self._sim.world, self._frames.world_frame, self._sim.time)
+            for marker in world_markers(self._sim.world, self._world_frame, self._sim.time)
             if abs(marker.pose.position.x - site.x) < MAX_OFFSET
         ]
         self.write("/robocop_sim/world", MarkerArray(near))

@@ -59,12 +59,11 @@ class Stage:
         self.odd_scan = False
         spec = self.sim.lidar.spec
         self._ahead = beams_ahead(spec.samples, spec.angle_min, spec.increment, AHEAD)
-        self.bag = ScenarioBag(self.sim, self.robot, PARAMS.frames)
+        self.bag = ScenarioBag(self.sim, PARAMS.frames.world_frame)
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
         self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
-        self._real_time = True
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
 
     @property
@@ -94,14 +93,12 @@ class Stage:
         self.simulation.place(compose(site(index), odom_from_footprint), anywhere=True)
         self._publish_frames()
 
-    def command(self, twist: Twist2D) -> bool:
-        """Set the robot's velocity command; False if it is not finite, which leaves the previous one in force."""
-        if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
-            return False
-        self._commanded = twist
-        if self._pushed is None:
-            self.sim.command(twist)
-        return True
+    def command(self, twist: Twist2D) -> None:
+        """Set the robot's velocity command; one that is not finite leaves the previous one in force."""
+        if math.isfinite(twist.v) and math.isfinite(twist.w):
+            self._commanded = twist
+            if self._pushed is None:
+                self.sim.command(twist)
 
     def push(self, twist: Optional[Twist2D]) -> None:
         """Move the robot and its wheels by hand, whatever is commanded; None lets go of it."""
@@ -116,13 +113,12 @@ class Stage:
 
         A watched run is shown at real time, unless `real_time` is False.
         """
-        self._real_time = real_time
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
             until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
             observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
-                self._publish(observed)
+                self._publish(observed, real_time)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
                 self.digest()
         return self.sample()
@@ -143,7 +139,7 @@ class Stage:
         wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
         return {**self.shown.subscriptions(), **{sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}}
 
-    def _publish(self, observed: Observations) -> None:
+    def _publish(self, observed: Observations, real_time: bool) -> None:
         """One step's observations to the viewer, the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
             _make_odd(observed.scans[0])
@@ -154,20 +150,25 @@ class Stage:
         if observed.due.clock:
             self.clock_ns = self.sim.stamp_ns
         if self.watch is not None:
-            self.watch.observe(observed, self._real_time)
+            self.watch.observe(observed, real_time)
         self.digest(partial(self.bag.write_step, observed.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
-        frames, map_from_odom = PARAMS.frames, self.sim.map_from_odom()
-        transforms = [
-            convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), self.stamp),
-            convert.to_transform(frames.map_frame, self.robot.odom_frame, map_from_odom, self.stamp),
-        ]
-        self.topics.publish("/tf_static", TFMessage(transforms))
+        self.topics.publish("/tf_static", self._static_frames(Pose2D()))
         if self.watch is not None:
             self.shown.publish_static()
-        self.bag.write_static_frames(self._site)
+        # In a replay, map is odom at the scenario's start; in the submission's map that is many metres away.
+        self.bag.write("/tf_static", self._static_frames(self._site))
+
+    def _static_frames(self, world_from_map: Pose2D) -> TFMessage:
+        frames, map_from_odom = PARAMS.frames, compose(inverse(world_from_map), self.sim.map_from_odom())
+        return TFMessage(
+            [
+                convert.to_transform(frames.world_frame, frames.map_frame, world_from_map, self.stamp),
+                convert.to_transform(frames.map_frame, self.robot.odom_frame, map_from_odom, self.stamp),
+            ]
+        )
 
     def keep(self, topic: str, message: Any) -> None:
         """Into the scenario's bag, and to the page where the run is shown."""
