@@ -6,7 +6,7 @@ import select
 import socket
 import struct
 from subprocess import PIPE, STDOUT
-from typing import Any, Callable, List, NamedTuple, Optional
+from typing import Any, Callable, List, NamedTuple
 
 from aro_robocop_goto_as.errors import GraderLostError
 from aro_robocop_goto_as.process import child
@@ -86,10 +86,8 @@ class Node:
             self._finish()
         return self._is_over
 
-    def death(self, now: float) -> Optional[rec.Death]:
-        """How it has ended, if it is over, at a simulated time [s]."""
-        if not self.is_over():
-            return None
+    def death(self, now: float) -> rec.Death:
+        """How it has ended, once it is over, at a simulated time [s]."""
         status, reason = self._process.wait(), self._guard.reason or self._given_up
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"

@@ -120,10 +120,10 @@ class Run:
             self._spent, self.stage.node = self.stage.node.spent(), None
 
     def _record_death(self) -> None:
-        death = self.stage.node.death(self.stage.now) if self.stage.node is not None else None
-        if death is not None and not self.death_recorded:
+        node = self.stage.node
+        if node is not None and node.is_over() and not self.death_recorded:
             self.death_recorded = True
-            self.add("deaths", death)
+            self.add("deaths", node.death(self.stage.now))
 
     # -- time --
 

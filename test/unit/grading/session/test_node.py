@@ -52,8 +52,7 @@ class Watched(Node):
         """One turn; the reason why it is over, if it is."""
         self.now += TURN
         self.go_on(self.now, self.now, lambda: None)
-        death = self.death(self.now / 1e9)
-        return None if death is None else death.reason
+        return self.death(self.now / 1e9).reason if self.is_over() else None
 
 
 @pytest.fixture
