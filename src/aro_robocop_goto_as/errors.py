@@ -105,4 +105,4 @@ class NoTimeError(UngradableError):
 
 
 class GraderLostError(GradingError):
-    """The submission ended the ROS master or the grader's node, so nothing that follows can be judged."""
+    """The submission's node answers the grader what can't be true, so nothing that follows can be judged."""
