@@ -45,9 +45,4 @@ def unpacked(path: Path) -> unpacking.Unpacked:
     if path.is_symlink() or not (path.is_dir() or is_file):
         kind = "a link" if path.is_symlink() else f"a {path.suffix or 'nameless'} file"
         raise SubmissionError(f"{kind}: expected {EXPECTED}")
-    try:
-        return unpacking.unpack(path)
-    except RobocopError:
-        raise
-    except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
-        raise SubmissionError(f"can't be read: {error or type(error).__name__}") from error
+    return unpacking.unpack(path)

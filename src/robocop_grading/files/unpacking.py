@@ -54,12 +54,15 @@ class Unpacked(NamedTuple):
 def unpack(path: Path) -> Unpacked:
     """Unpack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
     contents = Contents()
-    if is_archive(path.name) and path.is_file():
-        contents.add("", Entry(FOLDER))
-        with open(path, "rb") as file:
-            unpack_archive(file, contents)
-    else:
-        _add_from_disk(path, contents)
+    try:
+        if is_archive(path.name) and path.is_file():
+            contents.add("", Entry(FOLDER))
+            with open(path, "rb") as file:
+                unpack_archive(file, contents)
+        else:
+            _add_from_disk(path, contents)
+    except OSError as error:
+        raise SubmissionError(f"can't be read: {error}") from error
     _unpack_nested(contents)
     return Unpacked(contents.entries, _notes(contents.entries))
 
