@@ -202,7 +202,7 @@ def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -
     return [it for it in wrong if it not in said]
 
 
-def alike(text: str) -> str:
+def without_figures(text: str) -> str:
     """The text without its figures: causes that differ only in them are the same."""
     return NUMBER.sub("#", text)
 
@@ -210,7 +210,7 @@ def alike(text: str) -> str:
 def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> List[CheckResult]:
     """One part's results with the failure that each one follows from, or is blocked by, if it has not its own cause."""
     failed = {result.name: (result.failure, result.scenario) for result in results if result.failure is not None}
-    causes = {name: alike(failure.cause) for name, (failure, _) in failed.items()}
+    causes = {name: without_figures(failure.cause) for name, (failure, _) in failed.items()}
     reasons = {name: _reason(name, failed, records) for name in failed}
     first: Dict[str, str] = {}  # by cause
     for name, reason in reasons.items():

@@ -47,7 +47,7 @@ from robocop_grading.classroom.hand_ins import collect, unpacked
 from robocop_grading.classroom.main import Class
 from robocop_grading.classroom.main import grade as grade_class
 from robocop_grading.classroom.results import Results
-from robocop_grading.judge import Outcome, alike
+from robocop_grading.judge import Outcome, without_figures
 from robocop_grading.plan import load
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
@@ -208,7 +208,7 @@ def repeats(args: argparse.Namespace) -> int:
         outcome, words = entry["report"].get(wrong.check, ["", ""]) if wrong else ("", "")
         expected = outcome == "failed" and wrong.words in words if wrong else not entry["failed"]
         found += [] if expected else [f"not as expected: {name}, {entry['condition']}: {words or entry['failed']}"]
-        lines = {f"{name}: {check}": alike(str(it)) for check, it in entry["report"].items()}
+        lines = {f"{name}: {check}": without_figures(str(it)) for check, it in entry["report"].items()}
         for place, told in {**lines, f"{name}: points": str(entry["points"])}.items():
             seen[place].add(told)
     found += [f"differs: {place}: {sorted(told)}" for place, told in sorted(seen.items()) if len(told) > 1]

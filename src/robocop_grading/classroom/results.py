@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from ..files import tree
-from ..judge import alike, total
+from ..judge import total, without_figures
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary
@@ -182,8 +182,8 @@ def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
 
 def _most_frequent(causes: Mapping[str, int]) -> List[Tuple[str, int]]:
     """Causes with their counts; causes that differ only in numbers are counted together."""
-    groups: Dict[str, Tuple[str, int]] = {}  # by what is alike: the first of them, and how many there are
+    groups: Dict[str, Tuple[str, int]] = {}  # by what is the same: the first of them, and how many there are
     for cause, count in causes.items():
-        first, before = groups.get(alike(cause), (cause, 0))
-        groups[alike(cause)] = first, before + count
+        first, before = groups.get(without_figures(cause), (cause, 0))
+        groups[without_figures(cause)] = first, before + count
     return sorted(groups.values(), key=lambda group: -group[1])[:MAX_CAUSES]
