@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import List
 
-from .param_loading import frame_problems, parameter
+from .param_loading import frame_problems, parameter, positive
 
 
 @dataclass(frozen=True)
@@ -14,6 +14,8 @@ class WebParams:
     web_port: int = parameter(8080, low=1, high=65535)
     web_frame: str = "map"
     web_origins: str = ""
+    web_linear_velocity: float = positive(0.2, high=100.0)
+    web_angular_velocity: float = positive(1.0, high=100.0)
     replay: str = ""
     replay_waits: bool = True
     view_only: bool = False

@@ -7,7 +7,7 @@ from typing import Any, Deque, Dict, List, Optional, Set, Tuple
 
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
@@ -25,6 +25,7 @@ from .part import Context, Inbox, Part
 from .requests import Requests
 
 SEND_GOAL, PLACE_ROBOT = "sends a goal", "places the robot"
+POSITION_VARIANCE, YAW_VARIANCE = 0.25, 0.0685  # of RViz's 2D Pose Estimate: 0.5 m and 15 degrees, squared
 REMEMBERED = 8  # goals in the history
 TOLERANCE = 0.1  # [m] at which the handout counts a goal as reached
 
@@ -109,10 +110,16 @@ class Goals(Part):
         pose.pose.position.x, pose.pose.position.y = point
         pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)
         where = text.position(*point)
-        if place:
-            requests.call(f"pose {where}", "set_pose", SetPose, state.selected, pose)
-        else:  # a 2D Nav Goal, which the bridge makes a goal of
+        if not place:  # a 2D Nav Goal, which the bridge makes a goal of
             requests.publish(f"goal {where}", "move_base_simple/goal", pose, ": is the bridge running?")
+        elif state.simulated:
+            requests.call(f"pose {where}", "set_pose", SetPose, state.selected, pose)
+        else:  # for a localization
+            estimate = PoseWithCovarianceStamped(header=pose.header)
+            estimate.pose.pose = pose.pose
+            variances = (POSITION_VARIANCE, POSITION_VARIANCE, 0.0, 0.0, 0.0, YAW_VARIANCE)
+            estimate.pose.covariance = convert.diagonal(variances)
+            requests.publish(f"pose {where}", "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._robot, self._feedback, self._executing, self._newest = robot, None, None, None

@@ -67,7 +67,7 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
-        parts += [TimeControls(context), Teleop(context)]
+        parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():

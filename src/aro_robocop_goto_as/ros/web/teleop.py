@@ -19,12 +19,12 @@ END_TIMEOUT = 0.5  # [s, wall]
 PERIOD = 0.1  # [s, wall]
 IDLE_TIMEOUT = 3.0  # [s, wall] without driving until cmd_vel is given up
 PAD = (  # in the order of CROSS
-    # label, hot key, velocity
-    ("Forward (I)", "I", Twist2D(0.2, 0.0)),
+    # label, hot key, share of the full speed
+    ("Forward (I)", "I", Twist2D(1.0, 0.0)),
     ("Left (J)", "J", Twist2D(0.0, 1.0)),
     ("Stop", None, None),
     ("Right (L)", "L", Twist2D(0.0, -1.0)),
-    ("Back (K)", "K", Twist2D(-0.2, 0.0)),
+    ("Back (K)", "K", Twist2D(-1.0, 0.0)),
 )
 # The panel has no rows of buttons: this style arranges the buttons of its folder.
 CROSS = """<style class="cross">
@@ -44,7 +44,8 @@ class Teleop(Part):
     Otherwise there is no publisher: a simulator in lockstep treats every publisher of cmd_vel as a controller.
     """
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, linear: float, angular: float) -> None:
+        """Full speed: linear [m/s], angular [rad/s]."""
         super().__init__(context)
         self._dead_man = DeadMan()
         self._wake = threading.Condition()
@@ -53,11 +54,11 @@ class Teleop(Part):
         gui = context.server.gui
         with gui.add_folder("Drive", visible=context.state.now.live):
             gui.add_html(CROSS)
-            for label, key, twist in PAD:
-                if twist is None:
+            for label, key, share in PAD:
+                if share is None:
                     gui.add_button(label, icon="hand-stop").on_click(lambda _: self.stop())
                     continue
-                hold = self._holder(twist)
+                hold = self._holder(Twist2D(share.v * linear, share.w * angular))
                 button = gui.add_button(label, hint="drives while it is held")
                 button.on_hold(hold, callback_hz=RATE)
                 button.on_click(self._on_release)  # over its button; if released elsewhere, the requests just stop

@@ -25,18 +25,31 @@ def made(**state):
     return part, context
 
 
-@pytest.mark.parametrize("mode", [goals.PLACE_ROBOT, goals.SEND_GOAL])
-def test_a_click_is_in_the_frame_of_the_scene_and_places_the_robot_with_the_heading_that_it_has(mode):
-    part, context = made(root="red/odom")
+def clicked(mode, **state):
+    part, context = made(root="red/odom", **state)
     part._mode.value = mode
     part._on_click(CLICK)
-    if mode == goals.PLACE_ROBOT:
-        _, service, _, robot, pose = context.requests.call.call_args[0]
+    return context.requests
+
+
+@pytest.mark.parametrize("simulated", [True, False])
+def test_a_click_places_the_robot_with_the_heading_that_it_has(simulated):
+    requests = clicked(goals.PLACE_ROBOT, simulated=simulated)
+    if simulated:
+        _, service, _, robot, request = requests.call.call_args[0]
+        pose = request.pose
         assert (service, robot) == ("set_pose", "red")
-        assert pose.pose.orientation.z == pytest.approx(goals.convert.to_quaternion(3.0).z)
     else:
-        _, topic, pose, _ = context.requests.publish.call_args[0]
-        assert topic == "move_base_simple/goal"
+        _, topic, request = requests.publish.call_args[0]
+        assert topic == "initialpose" and request.pose.covariance[0] == goals.POSITION_VARIANCE
+        pose = request.pose.pose
+    assert (request.header.frame_id, pose.position.x, pose.position.y) == ("red/odom", 1.0, 2.0)
+    assert pose.orientation.z == pytest.approx(goals.convert.to_quaternion(3.0).z)
+
+
+def test_a_click_is_a_goal_in_the_frame_of_the_scene():
+    _, topic, pose, _ = clicked(goals.SEND_GOAL).publish.call_args[0]
+    assert topic == "move_base_simple/goal"
     assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("red/odom", 1.0, 2.0)
 
 
