@@ -48,7 +48,7 @@ class LaunchArguments:
         `other_options`: those of the command that it handles itself, to be named where an option is unknown.
         """
         known, options = names(file), ["--verbose", *other_options]
-        given = [_absolute(word) for word in words if word != "--verbose"]
+        given = [with_absolute_path(word) for word in words if word != "--verbose"]
         for word in given:
             name, separator, _ = word.partition(":=")
             if word.startswith("-"):
@@ -75,8 +75,10 @@ def _meant(name: str, known: List[str]) -> str:
     return f"; did you mean {other}?" if other.partition(":=")[0] in known else did_you_mean(name, known)
 
 
-def _absolute(word: str) -> str:
+def with_absolute_path(word: str) -> str:
+    """NAME:=VALUE with an absolute path if the value is that of a file; the shell leaves a ~ after := as it is."""
     name, separator, value = word.partition(":=")
+    value = os.path.expanduser(value)
     # A plain word is the name of a world, also where there is a file of that name.
     is_file = separator and ("/" in value or "." in value) and os.path.isfile(value)
     return f"{name}:={os.path.realpath(value)}" if is_file else word

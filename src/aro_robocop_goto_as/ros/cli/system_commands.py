@@ -9,7 +9,7 @@ from typing import List, NoReturn, Sequence, Tuple
 from ...names import ACTION, ACTION_TYPE, PACKAGE, absolute
 from ...probes import master, x_display
 from . import program
-from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments
+from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments, with_absolute_path
 from .program import refuse, say
 
 # What rosbag records: full topic names, also of robots with a namespace.
@@ -80,7 +80,7 @@ def sim(arguments: List[str]) -> None:
         refuse("--with: expected the folder of a catkin package")
     shown = "rviz:=false" not in arguments and x_display.answers()
     os.environ["ROBOCOP_RVIZ"] = str(shown).lower()
-    web, others = web_arguments([*before, *after[1:]])
+    web, others = web_arguments([with_absolute_path(word) for word in [*before, *after[1:]]])
     program.need("hosting", *["rviz"] * shown, *["web"] * bool(web))
     os.environ["ROBOCOP_WEB"] = " ".join(web)
     program.start_script("robocop_sim_with.py", os.path.realpath(after[0]), *others)

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 import rosbag
-from command import dry_run, robocop, x_server
+from command import ROOT, dry_run, robocop, x_server
 from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -183,6 +183,9 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
 def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
     assert dry_run("sim", "--with", str(tmp_path), "gui:=true")[0].endswith(
         f"/robocop_sim_with.py {tmp_path} gui:=true"
+    )
+    assert dry_run("sim", "--with", str(tmp_path), "world:=worlds/empty.sdf")[0].endswith(
+        f"{tmp_path} world:={ROOT}/worlds/empty.sdf"
     )
     assert dry_run("sim", "--verbose", "--with", str(tmp_path))[0].endswith(
         f"/robocop_sim_with.py {tmp_path} --verbose"

@@ -67,6 +67,15 @@ def test_opposite_of_an_argument_is_suggested_with_its_value(tmp_path):
 
 def test_path_of_a_file_is_made_absolute_but_not_the_name_of_a_world(file, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
     (tmp_path / "maze").write_text("")
-    words = LaunchArguments.parse(file, ["world:=my.launch", "world:=maze", "world:=./maze", "world:=no.sdf"]).words
-    assert words == (f"world:={file}", "world:=maze", f"world:={tmp_path}/maze", "world:=no.sdf")
+    words = LaunchArguments.parse(
+        file, ["world:=my.launch", "world:=maze", "world:=./maze", "world:=no.sdf", "world:=~/maze"]
+    ).words
+    assert words == (
+        f"world:={file}",
+        "world:=maze",
+        f"world:={tmp_path}/maze",
+        "world:=no.sdf",
+        f"world:={tmp_path}/maze",
+    )
