@@ -1,5 +1,6 @@
 """Publishing velocity commands from a test."""
 
+import contextlib
 import threading
 
 import rospy
@@ -26,26 +27,20 @@ class Commands:
         twist.linear.x, twist.angular.z = v, w
         self._topic.publish(twist)
 
+    @contextlib.contextmanager
     def repeated(self, v, w=0.0):
-        """A context in which one command [m/s, rad/s] is published every PERIOD."""
-        return _Repeated(self, v, w)
+        """Publish one command [m/s, rad/s] every PERIOD during the block."""
+        stop = threading.Event()
 
+        def repeat():
+            self.once(v, w)
+            while not stop.wait(PERIOD):
+                self.once(v, w)
 
-class _Repeated:
-    def __init__(self, commands, v, w):
-        self._commands, self._twist = commands, (v, w)
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._repeat, daemon=True)
-
-    def _repeat(self):
-        while not self._stop.wait(PERIOD):
-            self._commands.once(*self._twist)
-
-    def __enter__(self):
-        self._commands.once(*self._twist)
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_):
-        self._stop.set()
-        self._thread.join()
+        thread = threading.Thread(target=repeat, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            stop.set()
+            thread.join()
