@@ -71,7 +71,8 @@ def _arrival(record: Record, goal: Goal) -> float:
     return next(there, samples[-1].time if samples else goal.time)
 
 
-def _pairs(record: Record) -> List[Pair]:
+def _compared(index: int, record: Record) -> List[Pair]:
+    """The feedback by which an error is judged, with what it may be based on."""
     goals = {goal.id: goal for goal in record.goals}
     starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
     pairs = []
@@ -79,12 +80,7 @@ def _pairs(record: Record) -> List[Pair]:
         samples = samples_between(record, message.time - AGE, message.time + 1e-3)
         if message.id in goals and samples:
             pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
-    return pairs
-
-
-def _compared(index: int, record: Record) -> List[Pair]:
-    """The pairs by which an error is judged."""
-    return [pair for pair in _pairs(record) if index == POSITION or pair.truth[POSITION] > NEAR]
+    return [pair for pair in pairs if index == POSITION or pair.truth[POSITION] > NEAR]
 
 
 def _deviation(index: int, pair: Pair) -> float:

@@ -62,5 +62,10 @@ def test_mistake_is_named_with_its_file_and_line(tmp_path: Path, text: str, reas
         loaded(written(tmp_path, text))
 
 
+def test_parameters_of_a_file_may_refer_to_one_another(tmp_path: Path) -> None:
+    text = "<rosparam>\na: &amp;gains [1.5, 2.0]\nb: *gains\n</rosparam>"
+    assert loaded(written(tmp_path, text)).parameters == {"/a": [1.5, 2.0], "/b": [1.5, 2.0]}
+
+
 def test_tag_that_roslaunch_does_not_know_is_named(tmp_path: Path) -> None:
     assert loaded(written(tmp_path, "<nod/>")).warnings == ["launch/x.launch: unrecognized tag nod"]
