@@ -92,6 +92,12 @@ def to_transform(parent: str, child: str, parent_from_child: Pose2D, stamp: Time
     return TransformStamped(Header(0, stamp, parent), child, Transform(translation, rotation))
 
 
+def to_transform_3d(parent: str, child: str, parent_from_child: Pose3D, stamp: Time) -> TransformStamped:
+    """A pose in space as a TF transform."""
+    translation, rotation = Vector3(*parent_from_child.position), Quaternion(*parent_from_child.orientation)
+    return TransformStamped(Header(0, stamp, parent), child, Transform(translation, rotation))
+
+
 def to_joint_state(angles: Pair, velocities: Pair, stamp: Time) -> JointState:
     """Wheel angles [rad] and speeds [rad/s], left then right."""
     return JointState(Header(0, stamp, ""), list(WHEEL_JOINTS), angles, velocities, [])

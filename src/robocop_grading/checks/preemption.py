@@ -14,6 +14,7 @@ from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
 MOSTLY = 0.7
 ENDS = 0.3  # [s] in which the robot stops
+SILENT = 1.0  # [s] after which feedback, if it goes on, has come
 NO_ANSWER = "no answer"
 PREEMPTION = *ENDING, After("reaches_goal", nothing_came), After("cancel", alike)
 
@@ -57,6 +58,9 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
     results = results_of(record, goal)
     if not results or results[0].status not in (PREEMPTED, RECALLED):
+        times = [feedback.time for feedback in record.feedback if feedback.id == goal.id]
+        if times and not results and times[-1] < requested + SILENT:
+            return text("nothing_after_request", request)
         return f"The {request} is not noticed: {hint}"
     late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
     waiting = samples_between(record, requested, results[0].time - ENDS)

@@ -2,10 +2,11 @@
 
 import math
 from functools import partial
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 import numpy as np
 import rospy
+from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
@@ -36,6 +37,7 @@ from .watch import Watch
 # A submission has to use odom, not the truth.
 PARAMS = SimParams.of(clock_rate=30, cmd_vel_timeout=0.0, ground_truth=False)
 STEPS_PER_TICK = PARAMS.rates.physics_rate // PARAMS.rates.control_rate
+BASE_LINK = "base_link"
 ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as 0 (LDS-01), inf or NaN (REP-117)
 
 
@@ -155,7 +157,9 @@ class Stage:
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
-        self.topics.publish("/tf_static", self._static_frames(Pose2D()))
+        frames = self._static_frames(Pose2D())
+        frames.transforms += self._links()
+        self.topics.publish("/tf_static", frames)
         if self.watch is not None:
             self.shown.publish_static()
         # In a replay, map is odom at the scenario's start; in the submission's map that is many metres away.
@@ -169,6 +173,15 @@ class Stage:
                 convert.to_transform(frames.map_frame, self.robot.odom_frame, map_from_odom, self.stamp),
             ]
         )
+
+    def _links(self) -> List[TransformStamped]:
+        """What robot_state_publisher sends of the robot's links in the lab, except of its wheels."""
+        frames, model = PARAMS.frames, self.sim.robots[0].model
+        return [
+            convert.to_transform_3d(self.robot.footprint_frame, BASE_LINK, model.footprint_from_base, self.stamp),
+            convert.to_transform_3d(BASE_LINK, frames.scan_frame, model.base_from_scan, self.stamp),
+            convert.to_transform_3d(BASE_LINK, frames.imu_frame, model.base_from_imu, self.stamp),
+        ]
 
     def keep(self, topic: str, message: Any) -> None:
         """Into the scenario's bag, and to the page where the run is shown."""

@@ -57,6 +57,19 @@ def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
     assert float(printed(tmp_path, f"{text}\nprint({AFTER})")[-1]) == pytest.approx(expected, abs=0.011)
 
 
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("import numpy as np; print(np.zeros(1, np.float).astype(np.int).dtype == int)", "True"),
+        ("import threading; print(threading.Thread().isAlive())", "False"),
+        ("from collections import Iterable; print(isinstance([], Iterable))", "True"),
+        ("import yaml; print(yaml.load('a: 1.5'))", "{'a': 1.5}"),
+    ],
+)
+def test_what_the_labs_older_versions_have_works(text, expected, tmp_path):
+    assert printed(tmp_path, text)[-1] == expected
+
+
 def test_time_stands_still_while_the_program_works(tmp_path):
     text = f"for number in range(10**6): pass\nprint({AFTER}, time.time() > 1.6e9)"
     assert printed(tmp_path, text, 0.5)[-1] == "0.0 True"

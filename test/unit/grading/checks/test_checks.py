@@ -220,6 +220,10 @@ def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: b
     assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause and words in verdict.cause
     never = CHECKS["cancel"](cancelled, LIMITS)
     assert isinstance(never, Failed) and "is not noticed" in never.cause
+    before = tuple(it for it in cancelled.feedback if it.time < 5.3)
+    silent = replace(cancelled, feedback=before, results=(), statuses=RIGHT.statuses[:1])
+    hangs = CHECKS["cancel"](silent, LIMITS)
+    assert isinstance(hangs, Failed) and "neither feedback nor a result" in hangs.cause
 
 
 @pytest.mark.parametrize("seconds, late", [(0.8, False), (1.4, True)])
