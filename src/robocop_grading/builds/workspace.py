@@ -21,7 +21,7 @@ Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # .
 
 # Variables that catkin's setup files extend, one workspace on top of another.
 CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
-COMPAT = ("aro_sim", "gazebo_msgs")
+COMPAT = ("aro_sim", "gazebo_msgs", "ros_numpy")
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
 LOG_LINES = 25  # of a failed build's log that are shown

@@ -15,6 +15,7 @@ from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
+ACTION_TOPICS = tuple(f"{ACTION}/{topic}" for topic in ("goal", "status", "result", "feedback"))
 MAX_ID = 80  # characters that are shown of a goal's id
 NEEDS = "bridge_alive", "forwards_goal"
 CRASH = After("bridge_alive", when=lambda _record, failure, _earlier: failure.kind in (MISSING, NO_REPORT))
@@ -74,8 +75,9 @@ def _missing_connection(record: Record) -> str:
     if not _has_client(record):  # first: a bridge waiting for a misspelt server has no subscriber either
         return _unconnected(record)
     if not record.marks.get("listeners", 1.0):
-        if wrong_type(record, CLICKS):
-            return wrong_type(record, CLICKS)
+        other = wrong_type(record, CLICKS, *ACTION_TOPICS)  # the latter: it may wait for the server before
+        if other:
+            return other
         similar = closest(CLICKS, record.unpublished)
         return text("other_topic", CLICKS, similar) if similar else text("no_subscriber", CLICKS)
     return text("nothing_sent")
@@ -83,7 +85,7 @@ def _missing_connection(record: Record) -> str:
 
 def _unconnected(record: Record) -> str:
     """Why no action client connected to the server."""
-    other = wrong_type(record, *(f"{ACTION}/{topic}" for topic in ("goal", "status", "result")))
+    other = wrong_type(record, *ACTION_TOPICS)
     if other:
         return other
     name, others = ACTION[1:], [server.lstrip("/") for server in record.servers]
@@ -98,7 +100,8 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     if "watching" not in record.marks:
         return NotReached("the bridge did not get this far")
     problem = wrong_reports(record, limits)
-    if problem is not None and problem.kind == NO_REPORT and not _has_client(record):
+    connects = _has_client(record) and not wrong_type(record, *ACTION_TOPICS)
+    if problem is not None and problem.kind == NO_REPORT and not connects:
         return NotReached(_unconnected(record))  # it may wait for the server before it creates its timer
     return problem or PASSED
 
@@ -211,7 +214,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
 def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     """What to say of a bridge that works with goals that are accepted at once, and not with PENDING ones."""
     record, found = records.get("pending"), []
-    if record is None or _crash(record, limits):
+    if record is None or any(_crash(it, limits) for it in records.values()):
         return []
     if "click" in records and reports_status(records["click"], limits) is PASSED:
         verdict = reports_status(record, limits)

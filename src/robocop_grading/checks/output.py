@@ -10,6 +10,7 @@ from ..record import Record
 # How a line at a level begins: as the recording writes /rosout, or as rospy writes it to a terminal.
 _WARNING = r"^(?:\x1b\[[\d;]*m)*\[ *(?:WARN|WARNING|ERROR)\] ?(?:\[[\d., ]+\]:? ?)?"
 _ERROR = _WARNING.replace("WARN|WARNING|ERROR", "ERROR")
+PROBLEM = re.compile(_WARNING.replace("ERROR", "ERROR|FATAL"))
 # actionlib's messages (server_goal_handle.py, simple_action_server.py), in Python and C++, at their levels.
 TWO_STATES_LOGGED = re.compile(
     _ERROR
@@ -26,9 +27,9 @@ PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
 # The path of a file that is not the node's: of a library, or of the agent under which it runs.
 LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop_grading/agent/")
 FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
+INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
-INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 
 
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
@@ -57,7 +58,9 @@ def last_error(record: Record, until: float = math.inf) -> str:
             if place or not only_own:
                 return FOLDER.sub(r"\1", lines[number])[:200] + place
     others = [line for line in lines if not INFORMATION.match(line)]
-    return (others or ["its output names no error"])[-1][:200]
+    if not others:
+        return "its output names no error"
+    return others[-1][:200] if PROBLEM.match(others[-1]) else f"it had printed: {others[-1][:200]}"
 
 
 def first_error(lines: Sequence[str]) -> str:

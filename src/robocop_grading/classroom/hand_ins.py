@@ -43,6 +43,6 @@ def unpacked(path: Path) -> unpacking.Unpacked:
     """What was handed in; SubmissionError if that can't be graded, or read."""
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
     if path.is_symlink() or not (path.is_dir() or is_file):
-        kind = "a link" if path.is_symlink() else f"a {path.suffix or 'nameless'} file"
+        kind = "a link" if path.is_symlink() else f"a {path.suffix} file" if path.suffix else "a file without a suffix"
         raise SubmissionError(f"{kind}: expected {EXPECTED}")
     return unpacking.unpack(path)

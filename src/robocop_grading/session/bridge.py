@@ -73,6 +73,7 @@ class BridgeRun(Run):
 
     def _on_goal(self, message: GoToPositionActionGoal) -> None:
         assert self.server is not None
+        message.goal_id = self.server.identified(message.goal_id)
         position, name = message.goal.position, message.goal_id.id
         self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
         self._note_if_cancelled(message.goal_id)

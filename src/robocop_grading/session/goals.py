@@ -28,6 +28,7 @@ class Goals:
         self._statuses: Dict[str, GoalStatus] = {}
         self._ended: Dict[str, rospy.Time] = {}
         self._last_cancel = rospy.Time()
+        self._made = 0  # ids
         self.tell()
 
     def tell(self) -> None:
@@ -39,6 +40,11 @@ class Goals:
         array = GoalStatusArray(status_list=list(self._statuses.values()))
         array.header.stamp = now
         self._publish(f"{ACTION}/status", array)
+
+    def identified(self, goal_id: GoalID) -> GoalID:
+        """A goal's id with what its sender has left out, as actionlib's server completes it."""
+        self._made += not goal_id.id
+        return GoalID(goal_id.stamp or self._stamp(), goal_id.id or f"{ACTION}-{self._made}")
 
     def add(self, goal: GoToPositionActionGoal) -> bool:
         """A goal has come; return whether it is PENDING now. Others are known, or cancelled already."""

@@ -107,6 +107,7 @@ def test_misspelt_name_of_an_action_client_is_quoted() -> None:
     [
         ("listeners", "/move_base_simple/goal", "a/Pose", "a/PoseStamped", "wrong type, a/Pose; its type is a/PoseS"),
         ("listeners", "/move_base_simple/goal", "a/PoseStamped", "a/PoseStamped", "but with other fields"),
+        ("listeners", "/robocop_goto_as/feedback", "a/A", "a/A", "feedback is used with the type a/A, but with other"),
         ("clients", "/robocop_goto_as/goal", "a/TestActionGoal", "x", "The action's type is a/TestAction; the"),
     ],
 )
@@ -158,4 +159,6 @@ def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
     assert sees_none.startswith("it does not cancel an older goal that is PENDING")
     assert about_pending({**records, "pending": right}, LIMITS) == []
     failed = {"click": _reported("PENDING", ""), "replace": _replaced(preempted=""), "pending": pending}
+    died = replace(records["replace"], deaths=(rec.Death(6.0, 0),))
+    assert about_pending({**records, "replace": died, "pending": pending}, LIMITS) == []
     assert about_pending(failed, LIMITS) == []  # it loses points for what it does with all goals

@@ -120,6 +120,16 @@ def test_information_is_never_a_cause(line: str) -> None:
     assert verdict.cause == "The node died: its output names no error"
 
 
+@pytest.mark.parametrize(
+    "line, reason", [('message: "there"', 'it had printed: message: "there"'), ("[FATAL] no scan", "[FATAL] no scan")]
+)
+def test_last_line_before_the_end_is_a_cause_only_if_logged_as_a_problem(line: str, reason: str) -> None:
+    record = changed(deaths=(rec.Death(4.0, 0),), lines=(rec.Line(3.0, line),))
+    verdict = CHECKS["stays_alive"](record, LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == f"The node died: {reason}"
+
+
 def test_error_is_named_with_its_file_and_line() -> None:
     traceback = (
         "Traceback (most recent call last):",

@@ -32,7 +32,7 @@ def test_folders_and_python_files_are_hand_ins_and_whatever_else_is_there_has_th
     problems = {path.name: problem_of(path).partition(": expected a folder, a zip or tar")[0] for path in unread}
     kinds = {"eve.rar": ".rar", "fred.7z": ".7z", "gina.ipynb": ".ipynb", "hana.py.txt": ".txt", "list.csv": ".csv"}
     expected = {name: f"a {kind} file" for name, kind in kinds.items()}
-    assert problems == {**expected, "README": "a nameless file", "link.py": "a link"}
+    assert problems == {**expected, "README": "a file without a suffix", "link.py": "a link"}
     assert others == ["grades.csv", "submission_metadata.yml"], "this grader's and Gradescope's"
 
 

@@ -52,6 +52,13 @@ def test_a_goal_that_is_cancelled_ends_by_whether_it_was_accepted(request_, acce
     assert table.last["result"].status.status == end
 
 
+def test_goals_without_an_id_get_one_each_and_the_time_of_their_arrival(table):
+    first, second = (table.identified(GoalID()) for _ in range(2))
+    assert first.id != second.id and first.stamp == table.now
+    given = GoalID(rospy.Time(50), "a")
+    assert table.identified(given) == given
+
+
 def test_a_goal_that_was_cancelled_before_it_came_is_recalled(table):
     table.request_cancel(GoalID(id="a"))
     assert not table.add(goal("a")) and table.states() == [("a", GoalStatus.RECALLED)]
