@@ -301,7 +301,7 @@ LIES = {  # code after LIE, and what the report says
     ),
     "no_numbers": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, b'done'))", UNREADABLE),
     "unknown_kind": ("replace(wire.DONE, lambda self, body: write(self, 77, body))", UNREADABLE),
-    "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.ANSWER.pack(0, 0, False)))", STILL),
+    "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.TIMES.pack(0, 0)))", STILL),
     "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
     "closed": (
         "def lie(self, body):\n    os.close(self._descriptor)\n    while True: scheduler.sleep(0.01)\n"

@@ -23,7 +23,6 @@ class Answer(NamedTuple):
 
     done: int
     next: int
-    busy: int
 
 
 class Program:
@@ -72,7 +71,7 @@ class Program:
                 size, kind = wire.HEAD.unpack(self._frames.read(wire.HEAD.size))
                 body = self._frames.read(size)
                 if kind == wire.DONE:
-                    return Answer(*wire.ANSWER.unpack(body))
+                    return Answer(*wire.TIMES.unpack(body))
                 if kind == wire.MESSAGE:
                     self.published.append(wire.split(body))
                 elif kind == wire.TOPICS:

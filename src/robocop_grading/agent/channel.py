@@ -15,13 +15,31 @@ from .scheduler import allocate_lock, scheduler
 
 STARTING_TIME = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
 REQUEST_TIME = 0.5  # [s] likewise for what it does at one time ...
-TIMES = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
+MAX_EXCEEDED = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
 LOOP_TIME = 0.002  # [s] as long as it goes on, and
 AFTER_LOOP_TIME = 0.2  # [s] once it has come to an end
 TURN = 0.05  # [s] of processor time that other threads leave to one
 MANY = 100  # times that threads are woken between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
+
+
+class Allowance:
+    """How much processor time a node gets until all of its threads wait."""
+
+    def __init__(self) -> None:
+        self.time, self._usual = STARTING_TIME, REQUEST_TIME  # [s]
+        self._exceeded = 0  # times in a row
+
+    def renew(self) -> None:
+        """All threads wait."""
+        self.time, self._exceeded = self._usual, 0
+
+    def exceed(self) -> None:
+        """They do not, and the time is over."""
+        self._exceeded += 1
+        if self._exceeded >= MAX_EXCEEDED:
+            self.time, self._usual = LOOP_TIME, AFTER_LOOP_TIME
 
 
 class Channel:
@@ -32,8 +50,7 @@ class Channel:
         self._writing, self._turn = allocate_lock(), allocate_lock()
         self._turn.acquire()  # free while the grader waits for an answer
         os.register_at_fork(after_in_child=self._begin_anew)
-        self._allowance, self._full_allowance = STARTING_TIME, REQUEST_TIME
-        self._exhausted = 0  # requests in a row at whose end the node still ran
+        self._allowance = Allowance()
         self._busy = False  # the node still ran at the end of the last request
         self._programs = 0  # of ROS that the grader knows of
         _, body = self._read()
@@ -101,7 +118,7 @@ class Channel:
             self.grader.end_probes()
             self._tell()
             scheduler.requests += 1  # what the grader sends from now on belongs to the next one
-            self._write(wire.DONE, wire.ANSWER.pack(scheduler.now_ns, scheduler.next_deadline(), self._busy))
+            self._write(wire.DONE, wire.TIMES.pack(scheduler.now_ns, scheduler.next_deadline()))
             if self._busy:
                 self._freeze()
 
@@ -118,7 +135,7 @@ class Channel:
 
     def _go_on(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:
         """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
-        rested, is_at_rest, ticks = True, False, clock_ns != self.clock.now_ns
+        rested, ticks = True, clock_ns != self.clock.now_ns
         if (messages or ticks) and not self._busy:
             rested = self._live(until_ns - 1)
         if messages:
@@ -127,13 +144,8 @@ class Channel:
                     self.grader.feed(topic, data)
             if ticks and not self._busy:  # its loops find the newest data when the clock wakes them up
                 rested = self._rest() and rested
-        if ticks:
-            is_at_rest = not self.clock.set(clock_ns) and rested and not self._busy
-        while self.clock.sleeper_is_due():  # in the same order in every run
-            if rested and not (is_at_rest or self._busy):
-                rested = self._rest()
-            self.clock.wake_sleeper()
-            is_at_rest = False
+        is_at_rest = ticks and not self.clock.set(clock_ns) and rested and not self._busy
+        self.clock.end_sleeps()
         return self._live(until_ns, is_at_rest) and rested
 
     def _live(self, until_ns: int, is_at_rest: bool = False) -> bool:
@@ -161,21 +173,19 @@ class Channel:
                     if count % MANY:
                         continue
                 elif is_over and not stuck.others.work:
-                    self._allowance, self._exhausted = self._full_allowance, 0
+                    self._allowance.renew()
                     return True
                 if idle:
                     files.wait_for_more(look)
-            look = min(2.0 * look, LOOK, self._allowance / 2.0)
+            look = min(2.0 * look, LOOK, self._allowance.time / 2.0)
             used = stuck.processor_time()  # not before: mostly there is nothing to wait for, and the kernel takes long
             started = min(started, used)
             if turn != scheduler.turns:
                 turn, turn_started = scheduler.turns, used
             if used - turn_started > TURN and (files.wake() or scheduler.queue):
                 scheduler.wait_for_none_of(set(scheduler.running))
-            if used - started > self._allowance:
+            if used - started > self._allowance.time:
                 scheduler.wait_for_none_of(set(scheduler.running))
-                self._exhausted += 1
-                if self._exhausted >= TIMES:
-                    self._allowance, self._full_allowance = LOOP_TIME, AFTER_LOOP_TIME
+                self._allowance.exceed()
                 return False
         return False

@@ -14,6 +14,7 @@ import select
 import socket
 import xmlrpc.client
 from functools import partial
+from types import SimpleNamespace
 from typing import Any, Callable, Dict, List, Optional
 from urllib.parse import urlsplit
 
@@ -21,6 +22,12 @@ from . import files
 from .scheduler import NEVER, Waiter, scheduler
 
 CLOCK = "/clock"
+# What a node may ask its master: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/Parameter%20Server%20API
+MASTER_METHODS = (
+    "registerService unregisterService registerSubscriber unregisterSubscriber registerPublisher unregisterPublisher "
+    "lookupNode lookupService getPublishedTopics getTopicTypes getSystemState getUri getPid "
+    "deleteParam setParam getParam searchParam subscribeParam unsubscribeParam hasParam getParamNames"
+).split()
 PROBES = 1000  # of its services at one time, see Grader
 Header = Dict[str, str]  # of a connection, as on TCPROS
 
@@ -114,8 +121,9 @@ class Grader:
         self.port = self._port.getsockname()[1]
         self._uri = f"http://localhost:{self.port}/"
         self._master_host = urlsplit(os.environ["ROS_MASTER_URI"]).netloc
-        self.master = ROSMasterHandler(0)
-        self.master.thread_pool = self.master.reg_manager.thread_pool = _AtOnce()
+        master = ROSMasterHandler(0)
+        master.thread_pool = master.reg_manager.thread_pool = _AtOnce()
+        self.master: Any = SimpleNamespace(**{name: getattr(master, name) for name in MASTER_METHODS})
         self.node: Any = None  # rospy's handler of requests to the node itself
         self.tell_of_child: Callable[[], object] = lambda: None
         self.has_news = False  # the node has told the master something
@@ -216,9 +224,9 @@ def _to_itself() -> End:
 def _answer(api: Any, body: Any) -> Any:
     """What xmlrpc.client would get from a server."""
     arguments, method = xmlrpc.client.loads(body)
-    function = getattr(api, str(method), None)
-    if function is None:  # such as system.multicall, by which rospy takes leave of the master
-        raise xmlrpc.client.Fault(1, f'method "{method}" is not supported')
+    function = None if str(method).startswith("_") else getattr(api, str(method), None)
+    if function is None:  # as xmlrpc.server; such as system.multicall, by which rospy takes leave of the master
+        raise xmlrpc.client.Fault(1, f"<class 'Exception'>:method \"{method}\" is not supported")
     result = function(*arguments)
     return xmlrpc.client.loads(xmlrpc.client.dumps((result,), methodresponse=True))[0]
 

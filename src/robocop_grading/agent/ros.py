@@ -11,7 +11,7 @@ import time
 from typing import Any, Callable, Dict, List, Tuple
 
 from . import clock
-from .scheduler import NEVER, scheduler
+from .scheduler import NEVER, Waiter, scheduler
 
 KEPT = {("/odom", "nav_msgs/Odometry"), ("/scan", "sensor_msgs/LaserScan")}
 LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
@@ -27,6 +27,7 @@ class Clock:
         """`publish` sends a message on /clock, for nodes that subscribe to it themselves."""
         self.now_ns, self._publish = now_ns, publish
         self._notifies = False  # a thread waits to notify the others
+        self._sleepers: List[Tuple[int, Waiter]] = []  # until when
         self._tell()
 
     def _tell(self) -> None:
@@ -68,24 +69,21 @@ class Clock:
         with scheduler.guard:
             sleeps = until_ns > self.now_ns and not rospy.is_shutdown()
             if sleeps:
-                scheduler.by_clock.add(until_ns, waiter)
-                scheduler.leave()
+                self._sleepers.append((until_ns, waiter))
+                scheduler.park(waiter)
         if sleeps:
             scheduler.wait(waiter)
 
-    def sleeper_is_due(self) -> bool:
-        """Return whether a thread's sleep by /clock is over."""
-        with scheduler.guard:
-            first_ns = scheduler.by_clock.first()
-        if first_ns == NEVER:
-            return False
-        rospy = sys.modules["rospy"]
-        return bool(first_ns <= self.now_ns or rospy.is_shutdown() or rospy.rostime.is_wallclock())
+    def end_sleeps(self) -> None:
+        """Have the sleeps by /clock that are over end now, in the order of their times."""
+        import rospy
 
-    def wake_sleeper(self) -> None:
-        """Wake the thread whose sleep is over first."""
         with scheduler.guard:
-            scheduler.wake(scheduler.by_clock.pop())
+            until_ns = NEVER if rospy.is_shutdown() or rospy.rostime.is_wallclock() else self.now_ns
+            due = [sleeper for sleeper in self._sleepers if sleeper[0] <= until_ns]
+            self._sleepers = [sleeper for sleeper in self._sleepers if sleeper[0] > until_ns]
+            for _, waiter in sorted(due, key=lambda sleeper: sleeper[0]):
+                scheduler.end_wait_at(scheduler.now_ns, waiter)
 
 
 def install(shown: Clock) -> None:

@@ -33,26 +33,6 @@ class Waiter:
         self.gate.acquire()
 
 
-class Sleepers:
-    """Waits that end at a time [ns]; of those with the same one, the first to begin is the first to end."""
-
-    def __init__(self) -> None:
-        self._heap: List[Tuple[int, int, Waiter]] = []
-        self._numbers = itertools.count()
-
-    def add(self, until_ns: int, waiter: Waiter) -> None:
-        heapq.heappush(self._heap, (until_ns, next(self._numbers), waiter))
-
-    def first(self) -> int:
-        """The time of the first one that has not been woken otherwise; NEVER if there is none."""
-        while self._heap and self._heap[0][2].awake:
-            heapq.heappop(self._heap)
-        return self._heap[0][0] if self._heap else NEVER
-
-    def pop(self) -> Waiter:
-        return heapq.heappop(self._heap)[2]
-
-
 class Scheduler:
     """One thread runs at a time, until it waits; then the next one that was woken up has its turn.
 
@@ -79,7 +59,8 @@ class Scheduler:
         self.starting = 0  # threads that have their first turn, and have not begun
         self.turns = 0  # so far
         self.requests = 0  # of the grader's that have been answered
-        self.by_time, self.by_clock = Sleepers(), Sleepers()  # of simulated time, and of the time on /clock
+        self._sleepers: List[Tuple[int, int, Waiter]] = []  # a heap: until when, and whose wait began first
+        self._numbers = itertools.count()
         self._spent: Dict[int, Tuple[int, float]] = {}  # by thread: a simulated time, and what it has done at that
         self._idle = allocate_lock()  # open when the last thread has begun to wait
         os.register_at_fork(after_in_child=self._leave_alone)
@@ -106,8 +87,12 @@ class Scheduler:
     def park(self, waiter: Waiter, until_ns: int = NEVER) -> None:
         """The calling thread is about to wait; with the guard held."""
         if until_ns < NEVER:
-            self.by_time.add(until_ns, waiter)
+            self.end_wait_at(until_ns, waiter)
         self.leave()
+
+    def end_wait_at(self, until_ns: int, waiter: Waiter) -> None:
+        """Have a wait end at a simulated time, after those that end then already; with the guard held."""
+        heapq.heappush(self._sleepers, (until_ns, next(self._numbers), waiter))
 
     def leave(self) -> None:
         """The calling thread no longer runs; with the guard held."""
@@ -238,15 +223,17 @@ class Scheduler:
             return self.turns != before
 
     def next_deadline(self) -> int:
-        """The earliest simulated time [ns] that a thread waits for."""
+        """The earliest simulated time [ns] that a thread waits for; NEVER if there is none."""
         with self.guard:
-            return self.by_time.first()
+            while self._sleepers and self._sleepers[0][2].awake:  # woken otherwise
+                heapq.heappop(self._sleepers)
+            return self._sleepers[0][0] if self._sleepers else NEVER
 
     def wake_next(self) -> None:
         """Let simulated time go on to the earliest deadline, and wake the thread that waits for it."""
         with self.guard:
-            self.now_ns = max(self.now_ns, self.by_time.first())
-            self.wake(self.by_time.pop())
+            self.now_ns = max(self.now_ns, self.next_deadline())
+            self.wake(heapq.heappop(self._sleepers)[2])
 
     @contextlib.contextmanager
     def work(self) -> Iterator[None]:

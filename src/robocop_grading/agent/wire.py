@@ -10,7 +10,7 @@ agent -> grader
     CALL      a service, and the request as on TCPROS; a REPLY follows
     TOPICS    what it publishes and subscribes to, and programs of ROS that it has started, as JSON
     CHILD     a forked child has become a node, which nobody connects
-    DONE      until when [ns], when it does something by itself [ns], whether it computes without an end
+    DONE      until when [ns], when it does something by itself [ns]
 """
 
 import struct
@@ -19,8 +19,7 @@ from typing import Iterable, Iterator, Tuple
 SETUP, TOPIC, GO, REPLY, MESSAGE, CALL, TOPICS, CHILD, DONE = range(9)
 HEAD = struct.Struct("<IB")  # of a frame: bytes of its body, kind
 LENGTH = struct.Struct("<I")  # of a message, as on TCPROS
-TIMES = struct.Struct("<qq")
-ANSWER = struct.Struct("<qq?")
+TIMES = struct.Struct("<qq")  # of GO and of DONE
 _NAME = struct.Struct("<H")
 
 Message = Tuple[str, bytes]  # a topic, and what is sent on it, with its length

@@ -124,9 +124,10 @@ def test_program_ends_at_the_time_at_which_all_that_it_waits_for_is_over(text, s
 
 def test_loop_without_pauses_does_not_run_until_the_next_request(tmp_path):
     with Program(tmp_path, "time.sleep(0.001)\nwhile True: pass") as program:
-        assert [program.go_on(step * STEP).busy for step in (1, 2)] == [1, 1]
         tasks = Path(f"/proc/{program.process.pid}/task")
-        wait_for(lambda: {task.read_text().split()[2] for task in tasks.glob("*/stat")} == {"S"}, "asleep")
+        for step in (1, 2):
+            assert program.go_on(step * STEP).done == step * STEP
+            wait_for(lambda: {task.read_text().split()[2] for task in tasks.glob("*/stat")} == {"S"}, "asleep")
 
 
 def test_loop_that_waits_for_what_rounding_has_left_of_a_time_goes_on(tmp_path):

@@ -104,6 +104,22 @@ def lived(folder, program, messages=(), answer=b""):
             id="the master knows parameters and topics",
         ),
         pytest.param(
+            "import os, xmlrpc.client\nmaster = xmlrpc.client.ServerProxy(os.environ['ROS_MASTER_URI'])\n"
+            "for name in ('shutdown', '_shutdown', 'param_update_task', 'system.listMethods'):\n"
+            "    try: getattr(master, name)('/node')\n"
+            "    except xmlrpc.client.Fault as fault: tell(fault.faultString.partition(':')[2])\n"
+            "tell(rospy.get_master().getPid()[0])",
+            [],
+            [
+                'method "shutdown" is not supported 0.0',
+                'method "_shutdown" is not supported 0.0',
+                'method "param_update_task" is not supported 0.0',
+                'method "system.listMethods" is not supported 0.0',
+                "1 0.0",
+            ],
+            id="the master answers nothing but the methods of its API",
+        ),
+        pytest.param(
             "import message_filters as f\n"
             "both = [f.Subscriber('/first', Float64), f.Subscriber('/second', Float64)]\n"
             "both = f.ApproximateTimeSynchronizer(both, 5, 1.0, allow_headerless=True)\n"
