@@ -88,8 +88,7 @@ def strike():
     for uri in (os.environ['ROS_MASTER_URI'],
                 rospy.get_master().lookupNode('/robocop_sim')[2]):
         try:
-            words = chr(10).join(('attack', 'busy no time', 'error attack'))
-            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', words)
+            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', 'attack')
         except Exception as error:
             print(error, flush=True)
 threading.Thread(target=strike, daemon=True).start()

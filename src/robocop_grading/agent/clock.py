@@ -1,4 +1,4 @@
-"""Python's clocks: simulated time since the node was started, on top of the true time at its start."""
+"""Python's clocks: simulated time since the node was started, on top of the time of day at its start."""
 
 import datetime
 import functools

@@ -75,6 +75,12 @@ def test_time_stands_still_while_the_program_works(tmp_path):
     assert printed(tmp_path, text, 0.5)[-1] == "0.0 True"
 
 
+def test_clocks_are_rounded_alike_in_every_run_and_show_the_time_of_day(tmp_path):
+    text = "print(time.monotonic_ns(), time.time_ns() % 10**9, time.time())"
+    monotonic, fraction, now = map(float, printed(tmp_path, text)[-1].split())
+    assert (monotonic, fraction) == (4096e9, 0.0) and now <= time.time() < now + PATIENCE
+
+
 def test_datetime_follows_simulated_time_and_is_otherwise_itself(tmp_path):
     text = (
         "import pickle\nfrom datetime import datetime, timezone\n"
