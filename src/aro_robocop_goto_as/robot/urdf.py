@@ -12,6 +12,7 @@ from ..reading import Element, finite_numbers, parse_xml, reading
 from ..world.model import Box, Cylinder, Geometry, Obstacle, Sphere
 from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
+BASE = "base_link"
 # What holds numbers in links and joints: each tag's attributes, and how many numbers each attribute has.
 _SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}
 _FIGURES = {
@@ -22,28 +23,26 @@ _FIGURES = {
 }
 
 
-def load_robot(
-    path: str, figures: ModelFigures, base: str = "base_link", scan: str = "base_scan", imu: str = "imu_link"
-) -> RobotModel:
+def load_robot(path: str, figures: ModelFigures) -> RobotModel:
     """Read a URDF file; RobotModelError names the file and the link, joint, shape or number that is wrong."""
     with reading(path, RobotModelError, "a URDF"):
         with open(path, "rb") as stream:
             urdf = _Urdf(parse_xml(stream.read(), path, RobotModelError), path)
-        footprint_from_base = urdf.pose_of(base)
+        footprint_from_base = urdf.pose_of(BASE)
         if footprint_from_base.on_plane() != Pose2D():
-            raise urdf.error(f"link {base!r}: expected it directly above base_footprint and facing the same way")
+            raise urdf.error(f"link {BASE!r}: expected it directly above base_footprint and facing the same way")
         left, right = (urdf.joint(name) for name in WHEEL_JOINTS)
         return RobotModel(
             name=urdf.root.get("name") or os.path.splitext(os.path.basename(path))[0],
             urdf=etree.tostring(urdf.root, encoding="unicode"),
-            physics_urdf=urdf.for_physics(base),
+            physics_urdf=urdf.for_physics(),
             wheel_radius=urdf.wheel_radius(left),
             wheel_separation=urdf.wheel_separation(left, right),
             footprint_from_base=footprint_from_base,
-            base_from_inertial=_origin(urdf.link(base).find("inertial")),
-            base_from_scan=urdf.pose_of(scan, base),
-            base_from_imu=urdf.pose_of(imu, base),
-            base_from_camera=urdf.pose_of(CAMERA_FRAME, base) if CAMERA_FRAME in urdf.joint_to else None,
+            base_from_inertial=_origin(urdf.link(BASE).find("inertial")),
+            base_from_scan=urdf.pose_of("base_scan", BASE),
+            base_from_imu=urdf.pose_of("imu_link", BASE),
+            base_from_camera=urdf.pose_of(CAMERA_FRAME, BASE) if CAMERA_FRAME in urdf.joint_to else None,
             collisions=tuple(urdf.collisions()),
             figures=figures,
         )
@@ -157,13 +156,13 @@ class _Urdf:
             raise self.error("expected {!r} to the left of {!r}".format(*WHEEL_JOINTS))
         return separation
 
-    def for_physics(self, base: str) -> str:
-        """The tree rooted at `base` without massless links, to which pybullet would give a mass of one kilogram."""
+    def for_physics(self) -> str:
+        """The tree rooted at BASE without massless links, to which pybullet would give a mass of one kilogram."""
         root = copy.deepcopy(self.root)
         massless = [link for link in root.findall("link") if link.find("inertial") is None]
         names = [link.get("name") for link in massless]
-        if base in names:
-            raise self.error(f"link {base!r} has no <inertial>")
+        if BASE in names:
+            raise self.error(f"link {BASE!r} has no <inertial>")
         cut = [
             joint for joint in root.findall("joint") if {_end_of(joint, "child"), _end_of(joint, "parent")} & {*names}
         ]

@@ -6,13 +6,14 @@ from typing import Callable, TypeVar
 import rospy
 
 T = TypeVar("T")
+POLL = 0.01  # [s, wall]
 
 
-def wait_until(condition: Callable[[], T], timeout: float, poll: float = 0.01) -> T:
+def wait_until(condition: Callable[[], T], timeout: float) -> T:
     """The first true value of a condition, else its last one after `timeout` [s, wall] or on shutdown."""
     deadline = time.monotonic() + timeout
     while True:
         value = condition()
         if value or time.monotonic() >= deadline or rospy.is_shutdown():
             return value
-        time.sleep(poll)
+        time.sleep(POLL)

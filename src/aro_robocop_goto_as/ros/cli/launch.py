@@ -70,7 +70,6 @@ def launch(arguments: List[str]) -> int:
 def _parsed(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="robocop_launch.py", description=__doc__)
     parser.add_argument("-p", "--port", type=int, help="of the ROS master, if one has to be started")
-    parser.add_argument("--screen", action="store_true", help="show the output of all nodes")
     parser.add_argument("--no-summary", action="store_true", help="do not list parameters and nodes at the start")
     parser.add_argument("--overview", action="store_true", help="show how to use the system when it runs")
     parser.add_argument("--quiet", action="store_true", help="show only that, warnings and errors")
@@ -90,7 +89,6 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         run_id,
         files,
         port=options.port,
-        force_screen=options.screen,
         force_log=options.quiet,
         show_summary=not options.no_summary,
     )
