@@ -44,11 +44,8 @@ def _poll(files: Files, timeout: Optional[float]) -> bool:
     return bool(poller.poll(None if timeout is None else timeout * 1e3))
 
 
-def wait(files: Files, timeout: Optional[float] = None, receives: bool = False) -> bool:
-    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before.
-
-    With `receives`, as for recv() and accept(), this also ends when another thread closes the only one.
-    """
+def wait(files: Files, timeout: Optional[float] = None) -> bool:
+    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
     if any(_ready(files)) or any(file < 0 for file, _ in files):  # a closed one fails at once
         return True
     if not scheduler.active:
@@ -57,7 +54,7 @@ def wait(files: Files, timeout: Optional[float] = None, receives: bool = False) 
         return False
     me, until_ns = _thread.get_ident(), scheduler.deadline(timeout)
     while True:
-        waiter = Waiter(me, files, receives)
+        waiter = Waiter(me, files)
         with scheduler.guard:
             _reading[me] = waiter
             scheduler.park(waiter, until_ns)
@@ -66,20 +63,8 @@ def wait(files: Files, timeout: Optional[float] = None, receives: bool = False) 
         finally:
             _reading.pop(me, None)
         # Another thread may have read it meanwhile, or closed it and opened another file of this number.
-        if not waiter.granted or not waiter.files or any(_ready(files)):
+        if not waiter.granted or any(_ready(files)):
             return waiter.granted
-
-
-def _close(file: int) -> None:
-    """End the waits of threads that receive from a file that is about to be closed.
-
-    Linux ends them at shutdown(), but they have their turns when its caller has closed the file, too.
-    """
-    with scheduler.guard:
-        for waiter in _reading.values():
-            if waiter.receives and not waiter.awake and waiter.files[0][0] == file:
-                waiter.files, waiter.granted = [], True
-                scheduler.wake(waiter)
 
 
 # -- for the thread that answers the grader --
@@ -118,7 +103,7 @@ def _await(connection: socket.socket, flags: int = 0) -> None:
     """Wait until a socket that blocks has something to read."""
     timeout = connection.gettimeout()
     if timeout != 0 and not flags & socket.MSG_DONTWAIT:
-        if not wait([(connection.fileno(), select.POLLIN)], timeout, receives=True):
+        if not wait([(connection.fileno(), select.POLLIN)], timeout):
             raise socket.timeout("timed out")
 
 
@@ -220,19 +205,14 @@ def install() -> None:
     cls: Any = socket.socket
     for name, flags_at in (("recv", 1), ("recv_into", 2), ("recvfrom", 1), ("recvmsg", 2)):
         setattr(cls, name, _receiving(getattr(cls, name), flags_at))
-    accept, close = cls.accept, cls._real_close
+    accept = cls.accept
 
     @functools.wraps(accept)
     def accept_when_ready(listening: socket.socket) -> Any:
         _await(listening)
         return accept(listening)
 
-    @functools.wraps(close)
-    def end_waits_and_close(closed: socket.socket, *arguments: Any, **options: Any) -> None:
-        _close(closed.fileno())
-        close(closed, *arguments, **options)
-
-    cls.accept, cls._real_close = accept_when_ready, end_waits_and_close
+    cls.accept = accept_when_ready
     module: Any = select
     module.poll, module.epoll, module.select = Poll, Epoll, simulated_select
     known: Any = selectors

@@ -1,6 +1,5 @@
 """rospy's time: /clock, sleeps until a time on it, and waits for a message."""
 
-import _thread
 import contextlib
 import functools
 import math
@@ -26,7 +25,6 @@ class Clock:
     def __init__(self, now_ns: int, publish: Callable[[bytes], object]) -> None:
         """`publish` sends a message on /clock, for nodes that subscribe to it themselves."""
         self.now_ns, self._publish = now_ns, publish
-        self._notifies = False  # a thread waits to notify the others
         self._sleepers: List[Tuple[int, Waiter]] = []  # until when
         self._tell()
 
@@ -35,15 +33,15 @@ class Clock:
 
     def set(self, now_ns: int) -> bool:
         """Let rospy's time go on, if it is simulated time; whether that has woken a thread."""
-        self.now_ns, turns, notifies = now_ns, scheduler.turns, False
+        self.now_ns, turns = now_ns, scheduler.turns
         with scheduler.work():
             if not sys.modules["rospy.rostime"].is_wallclock():
-                notifies = self.show()
+                self.show()
             self._tell()
-        return notifies or scheduler.turns != turns
+        return scheduler.turns != turns
 
-    def show(self) -> bool:
-        """Set rospy's time and wake who waits for that; whether a thread does the latter."""
+    def show(self) -> None:
+        """Set rospy's time, and wake who waits in rospy.sleep() until it begins."""
         import rospy
 
         rospy.rostime._rostime_current = rospy.Time(0, self.now_ns)
@@ -51,15 +49,6 @@ class Clock:
         if condition.acquire(False):
             condition.notify_all()
             condition.release()
-        elif not self._notifies:  # a thread holds it, perhaps while it waits for a time, which must go on
-            self._notifies = True
-            _thread.start_new_thread(self._notify, (condition,))  # does not wait for its begin, as Thread.start() does
-        return self._notifies
-
-    def _notify(self, condition: Any) -> None:
-        with condition:
-            self._notifies = False
-            condition.notify_all()
 
     def sleep(self, length_ns: int) -> None:
         """Have the calling thread wake up at the first tick at the end of its own sleep only, not at each one."""

@@ -23,14 +23,13 @@ _system: Any = _thread
 class Waiter:
     """One wait of one thread: in its gate, which is opened when it has its turn."""
 
-    __slots__ = ("thread", "awake", "gate", "granted", "files", "receives")
+    __slots__ = ("thread", "awake", "gate", "granted", "files")
 
-    def __init__(self, thread: int, files: Optional[Files] = None, receives: bool = False) -> None:
+    def __init__(self, thread: int, files: Optional[Files] = None) -> None:
         self.thread = thread  # 0: one that has not begun
         self.awake = False
         self.granted = False  # it got what it waited for: not the deadline ended the wait
         self.files: Files = files or []
-        self.receives = receives  # from a single one, whose end ends the wait
         self.gate: Any = allocate_lock()
         self.gate.acquire()
 
