@@ -1,8 +1,11 @@
 """Attacks of submissions on the grader have no effect; run by `./robocop test --all` where bubblewrap can run."""
 
 import os
+import shutil
 import socket
 import subprocess
+import tempfile
+from pathlib import Path
 
 import attacks
 import pytest
@@ -107,8 +110,7 @@ def test_flood_of_log_messages_is_truncated(tmp_path):
     assert sum(path.stat().st_size for path in (tmp_path / "mine" / "out").iterdir()) < 64 * 1024**2
 
 
-def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places(tmp_path):
-    tmp_path.chmod(0o755)
+def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places():
     code = (
         "import subprocess, sys\nfrom pathlib import Path\nfrom robocop_grading.sandbox.bubblewrap import Sandbox\n"
         "sandbox = Sandbox(())\n"
@@ -117,14 +119,17 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places(tm
         "sys.exit(subprocess.call(sandbox.session_command(sandbox.node_command(command, {}, (), Path('/tmp/home')))))"
     )
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
-    done = subprocess.run(
-        [*nobody, "/usr/bin/python3", "-c", code],
-        env={**os.environ, "HOME": "/tmp"},
-        capture_output=True,
-        text=True,
-        timeout=BUDGET,
-        cwd="/tmp",
-    )
+    with tempfile.TemporaryDirectory() as folder:  # the checkout may be in a home that nobody else reads
+        Path(folder).chmod(0o755)
+        shutil.copytree(SHARE / "src", Path(folder) / "src")
+        done = subprocess.run(
+            [*nobody, "/usr/bin/python3", "-c", code],
+            env={**os.environ, "HOME": "/tmp", "PYTHONPATH": f"{folder}/src"},
+            capture_output=True,
+            text=True,
+            timeout=BUDGET,
+            cwd="/tmp",
+        )
     assert done.stdout == "fine\n", done.stdout + done.stderr
 
 

@@ -57,10 +57,10 @@ class Scenery(Part):
 
     def show(self, state: PageState) -> None:
         scene, locate = self.context.scene, self.context.locate
-        world = self._world.placed(locate, DRAWN_BY_MODEL if scene.draws("robots") else ())
-        if world and not scene.draws("world"):
-            self._cameras.show(pose.position for _, pose in world.values())
-        scene.show("world", world)
+        without_robots = self._world.placed(locate, DRAWN_BY_MODEL)
+        if without_robots and not scene.draws("world"):
+            self._cameras.show(pose.position for _, pose in without_robots.values())
+        scene.show("world", without_robots if scene.draws("robots") else self._world.placed(locate))
         scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
         pose = None if self._scan is None else locate(self._scan.header.frame_id)
         if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was received

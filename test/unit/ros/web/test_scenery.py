@@ -40,6 +40,11 @@ def test_the_cameras_turn_to_a_world_once():
     scenery.subscribe(inbox)
     receive = inbox.subscribe.call_args_list[0][0][2]
     for number in range(2):  # the second one is spawned while somebody looks
-        receive(0.0, MarkerArray([markers.marker("world", Marker.CUBE, state.now.root, markers.GOAL_COLOR, number)]))
+        shapes = [
+            markers.marker(kind, Marker.CUBE, state.now.root, markers.GOAL_COLOR, number)
+            for kind in ("world", "robots")
+        ]
+        receive(0.0, MarkerArray(shapes))
         scenery.show(state.now)
         assert cameras.show.call_count == 1
+    assert len([*cameras.show.call_args[0][0]]) == 1, "without the robots, whose frames may be known before or after"
