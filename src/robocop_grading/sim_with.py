@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
-from .builds.package import GAZEBO, SIMULATOR, Package, Started, arguments_of, find_package, started
+from .builds.package import Package, Started, arguments_of, find_package, names_gazebo, started
 from .builds.scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
 from .builds.workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 from .files.scratch import scratch_folder
@@ -31,7 +31,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     try:
         found = started(package, folder, environment, run_plain, words)
     except HostingError as error:
-        if GAZEBO.search(str(error)):
+        if names_gazebo(package, str(error)):
             raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
         raise
     if found.starts_gazebo:
@@ -77,7 +77,7 @@ def _tell(words: str) -> None:
 def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: Started) -> Path:
     """A launch file that starts the package and, unless that does it, the simulator, written into `folder`."""
     parts = []
-    if SIMULATOR not in found.starts:
+    if not found.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
     if package.launch_file is not None:
         copy = folder / "src" / package.name / package.launch_file.relative_to(package.path)

@@ -5,7 +5,13 @@ import collections
 import threading
 from typing import Any
 
-NUMPY = ("bool", "complex", "float", "int", "object", "str")  # until NumPy 1.24
+NUMPY = {"long": "int", "unicode": "str", **{name: name for name in "bool complex float int object str".split()}}
+NUMPY_1 = {  # names that NumPy 2 knows by others
+    **dict.fromkeys("Inf Infinity infty PINF".split(), "inf"),
+    **{"NaN": "nan", "float_": "float64", "complex_": "complex128", "string_": "bytes_", "unicode_": "str_"},
+    **{"alltrue": "all", "sometrue": "any", "product": "prod", "cumproduct": "cumprod"},
+    **{"mat": "asmatrix", "round_": "round"},
+}
 
 
 def install() -> None:
@@ -13,8 +19,10 @@ def install() -> None:
     import numpy
     import yaml
 
-    for name in NUMPY:
-        _add(numpy, name, getattr(builtins, name))
+    for name, builtin in NUMPY.items():  # until NumPy 1.24
+        _add(numpy, name, getattr(builtins, builtin))
+    for name, other in NUMPY_1.items():
+        _add(numpy, name, getattr(numpy, other))
     for name in collections.abc.__all__:  # until Python 3.10
         _add(collections, name, getattr(collections.abc, name))
     _add(threading.Thread, "isAlive", threading.Thread.is_alive)  # until Python 3.9

@@ -1,5 +1,6 @@
 """A path on disk -> the catkin package there, with its launch file and nodes."""
 
+import contextlib
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +18,8 @@ from .workspace import Environment, Run
 LAUNCH_FILE = "robocop_goto_as.launch"
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
 MAX_NAMED = 10  # scripts in a message
-SIMULATOR = "aro_sim"  # the lab's package that starts its simulator
+SIMULATOR = "aro_sim"  # the lab's package that starts its simulator ...
+OWN_SIMULATOR = PACKAGE, "robocop_sim.py"  # ... and the node of this package that is started then
 SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
 GAZEBO = re.compile(r"gazebo(?!_msgs)")
 
@@ -139,12 +141,31 @@ class Started:
     choices: Mapping[str, Choice]
     parameters: Mapping[str, Any]
     notes: Sequence[str]
-    starts: Collection[str] = ()  # packages of the nodes that the package's own launch file starts
+    others: Sequence[LaunchNode] = ()  # of other packages, which the package's own launch file starts
+
+    @property
+    def starts_simulator(self) -> bool:
+        """Return whether the package's own launch file starts the lab's simulator."""
+        return any(node.package == SIMULATOR or (node.package, node.type) == OWN_SIMULATOR for node in self.others)
 
     @property
     def starts_gazebo(self) -> bool:
         """Return whether the package's own launch file has a node of Gazebo."""
-        return any(map(GAZEBO.search, self.starts))
+        return any(GAZEBO.search(node.package) for node in self.others)
+
+
+def names_gazebo(package: Package, problem: str) -> bool:
+    """Return whether a launch file that can't be read starts Gazebo: the package's own one, or one that `problem` names.
+
+    What is missing may be another package that comes with Gazebo, such as xacro.
+    """
+    for path in package.launch_files:
+        if path == package.launch_file or path.name in problem:
+            with contextlib.suppress(HostingError):  # it is not XML
+                tags = [*read_xml(path).iter("include"), *read_xml(path).iter("node")]
+                if any(GAZEBO.search(f"{tag.get('file', '')} {tag.get('pkg', '')}") for tag in tags):
+                    return True
+    return False
 
 
 def started(
@@ -158,7 +179,7 @@ def started(
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}
     notes: List[str] = []
-    starts: Collection[str] = ()
+    others: Sequence[LaunchNode] = ()
     for path in package.launch_files:
         is_main = path == package.launch_file
         try:
@@ -168,7 +189,7 @@ def started(
                 raise
             continue  # it may need packages that only another machine has
         if is_main:
-            starts = {node.package for node in file.nodes} - {package.name}
+            others = [node for node in file.nodes if node.package != package.name]
         choices = choose(copy, [*nodes, *file.nodes], relays, expects_one=False)
         if is_main or any(choice.node in file.nodes for choice in choices.values()):
             nodes += file.nodes
@@ -177,7 +198,7 @@ def started(
             notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
         if all(part in choices and choices[part].node is not None for part in PARTS.values()):
             break
-    return Started(choose(copy, nodes, relays), parameters, notes, starts)
+    return Started(choose(copy, nodes, relays), parameters, notes, others)
 
 
 def _not_done(

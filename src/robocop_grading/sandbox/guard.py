@@ -128,7 +128,8 @@ def _states(process: "psutil.Process") -> Set[str]:
     states = set()
     for file in glob.iglob(f"/proc/{process.pid}/task/*/stat"):
         with contextlib.suppress(OSError):  # the thread has ended
-            states.add(Path(file).read_text().rpartition(")")[2].split()[0])
+            # Bytes: the thread's name, in parentheses, is any of its own choice.
+            states.add(Path(file).read_bytes().rpartition(b")")[2].split()[0].decode())
     return states
 
 

@@ -129,9 +129,10 @@ class Node:
         """Handle what the node sends, until it says that it has lived for so long or has ended."""
         idle, still, silent = self._guard.idle, self._guard.still, 0.0
         for looks in itertools.count(1):
+            has_more = self._has_more()
             if self._has_lived(until_ns):
                 break
-            if not self._has_more() and self._has_ended():
+            if not has_more and self._has_ended():
                 self._finish()
                 break
             # Not more than its looks took: on a busy machine it may be the grader that has no time to read the answer.

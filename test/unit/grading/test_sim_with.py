@@ -2,12 +2,13 @@
 
 import os
 from pathlib import Path
-from typing import Tuple
 
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.names import PACKAGE
+from robocop_grading.builds.launch_file import LaunchNode
 from robocop_grading.builds.package import Started, find_package
 from robocop_grading.builds.scripts import Choice
 from robocop_grading.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
@@ -38,11 +39,12 @@ def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_
     assert said.startswith("all.launch starts Gazebo") and "there are: nodes.launch" in said
 
 
-@pytest.mark.parametrize("starts", [(), ("aro_sim",)])
-def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, starts: Tuple[str, ...]) -> None:
-    package = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
-    written = launch_file(package, tmp_path, {}, Started({}, {}, (), starts)).read_text()
-    assert ("aro_sim" in written) != bool(starts)
+@pytest.mark.parametrize("package, script", [("aro_sim", "lab_simulator.py"), (PACKAGE, "robocop_sim.py")])
+def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, package: str, script: str) -> None:
+    hosted = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
+    for others in ([], [LaunchNode(package, script, "sim", "x.launch")]):
+        written = launch_file(hosted, tmp_path, {}, Started({}, {}, (), others)).read_text()
+        assert ("aro_sim" in written) != bool(others)
 
 
 @pytest.mark.parametrize(

@@ -60,10 +60,14 @@ def test_every_way_to_wait_takes_simulated_time(text, expected, tmp_path):
     assert float(printed(tmp_path, f"{text}\nprint({AFTER})")[-1]) == pytest.approx(expected, abs=0.011)
 
 
+OLD_NUMPY = "inf nan 1.5 True (1, 2)"
+
+
 @pytest.mark.parametrize(
     "text, expected",
     [
         ("import numpy as np; print(np.zeros(1, np.float).astype(np.int).dtype == int)", "True"),
+        ("import numpy as np; print(np.Inf, np.NaN, np.float_(1.5), np.alltrue([1]), np.mat('1 2').shape)", OLD_NUMPY),
         ("import threading; print(threading.Thread().isAlive())", "False"),
         ("from collections import Iterable; print(isinstance([], Iterable))", "True"),
         ("import yaml; print(yaml.load('a: 1.5'))", "{'a': 1.5}"),

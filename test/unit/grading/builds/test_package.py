@@ -8,7 +8,7 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.builds.package import find_package, started
+from robocop_grading.builds.package import find_package, names_gazebo, started
 from robocop_grading.builds.workspace import run_plain
 
 
@@ -135,8 +135,23 @@ def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unl
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
     for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
         found = started(package, tmp_path, dict(os.environ), run_plain, words)
-        assert found.starts == starts
+        assert {node.package for node in found.others} == starts
         assert found.starts_gazebo == ("gazebo_ros" in starts)
+
+
+def test_launch_file_that_needs_gazebo_is_known_when_another_package_is_missing(tmp_path: Path) -> None:
+    lines = '<param name="x" command="$(find xacro)/xacro x"/><include file="$(find gazebo_ros)/launch/{}.launch"/>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": "<launch/>",
+        "launch/world.launch": f"<launch>{lines}</launch>",
+        "launch/messages.launch": f"<launch>{lines.replace('gazebo_ros', 'gazebo_msgs')}</launch>",
+        "scripts/robocop_goto_as.py": "",
+    }
+    package = find_package(str(tree(tmp_path, files)))
+    problem = "launch/{}.launch, line 1: roslaunch can't read it: package xacro not found"
+    known = {name for name in ("world", "messages") if names_gazebo(package, problem.format(name))}
+    assert known == {"world"}
 
 
 def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:

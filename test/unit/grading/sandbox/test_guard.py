@@ -108,6 +108,7 @@ def started():
         "import time\nfrom threading import Thread\ndef run():\n    while True: time.sleep(0.01)\n"
         "Thread(target=run).start()\nrun()",
         "import os, signal\nos.kill(os.getpid(), signal.SIGSTOP)",
+        "import time\nopen('/proc/self/comm', 'wb').write(b'\\xff) R')\ntime.sleep(600)",
     ],
 )
 def test_process_that_sleeps_again_and_again_with_its_threads_and_children_is_idle(code, started):
