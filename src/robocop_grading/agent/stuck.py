@@ -49,7 +49,7 @@ def all_asleep() -> Optional[Set[int]]:
 def _sleep_of(native_id: int) -> str:
     """How often a thread has run, if it sleeps now."""
     try:
-        with open(f"/proc/self/task/{native_id}/status") as file:
+        with open(f"/proc/self/task/{native_id}/status", errors="replace") as file:  # a thread has any name
             asleep = ASLEEP.search(file.read())
     except OSError:  # it has ended
         return "ended"
@@ -131,7 +131,7 @@ def _words_of(pattern: str) -> Iterator[List[str]]:
     """The words of each of these files, from behind a name in brackets."""
     for path in glob.glob(pattern):
         with contextlib.suppress(OSError):  # it has ended
-            with open(path) as file:
+            with open(path, errors="replace") as file:
                 yield file.read().rpartition(")")[2].split()
 
 

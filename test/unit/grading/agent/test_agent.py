@@ -172,8 +172,10 @@ def test_other_process_that_works_holds_time_and_one_that_sleeps_does_not(tmp_pa
     assert time.monotonic() - started < 50.0
 
 
-def test_forked_child_lives_on_the_wall_clock(tmp_path):
-    text = "import os\nif os.fork() == 0:\n    time.sleep(0.1)\n    os._exit(7)\nprint(os.WEXITSTATUS(os.wait()[1]))"
+@pytest.mark.parametrize("name", ["child", "\\xff"])  # the latter is not UTF-8
+def test_forked_child_lives_on_the_wall_clock_whatever_its_name_is(name, tmp_path):
+    text = f"open('/proc/self/comm', 'wb').write(b'{name}')\n"
+    text += "import os\nif os.fork() == 0:\n    time.sleep(0.1)\n    os._exit(7)\nprint(os.WEXITSTATUS(os.wait()[1]))"
     assert printed(tmp_path, text, 600.0)[-1] == "7"
 
 

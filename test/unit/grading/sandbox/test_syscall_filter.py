@@ -78,6 +78,16 @@ def test_buffers_of_sockets_keep_their_size_and_other_options_work(sandbox):
     assert run(sandbox, code) == "fine 1"
 
 
+def test_priorities_stay_as_they_are(sandbox):
+    code = """
+    before = os.nice(0), os.sched_getscheduler(0)
+    os.setpriority(os.PRIO_PROCESS, 0, 19)
+    os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    print((os.nice(19), os.sched_getscheduler(0)) == before)
+    """
+    assert run(sandbox, code) == "True"
+
+
 def test_memory_cannot_be_shared_without_a_file(sandbox):
     code = """
     import mmap
