@@ -94,6 +94,12 @@ def test_a_node_that_does_nothing_is_ended_with_the_reason(do, did, started, mon
     assert started(do).turn() == f"it {did} the grader, which has ended it"
 
 
+def test_an_answer_that_has_come_counts_although_the_time_for_it_is_over(started, monkeypatch):
+    monkeypatch.setattr(module, "POLL", 60.0)
+    monkeypatch.setattr(module, "MAX_IDLE", -1.0)
+    assert started("pass").turn() is None
+
+
 def test_nodes_that_are_silent_for_a_while_each_time_are_ended_after_all_of_it(started, monkeypatch):
     monkeypatch.setattr(module, "MAX_STILL", 1.0)
     node = started("time.sleep(0.3)")
