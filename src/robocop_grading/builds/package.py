@@ -155,7 +155,7 @@ class Started:
 
 
 def names_gazebo(package: Package, problem: str) -> bool:
-    """Return whether a launch file that can't be read starts Gazebo: the package's own one, or one that `problem` names.
+    """Return whether a launch file that can't be read starts Gazebo: the package's own, or one that `problem` names.
 
     What is missing may be another package that comes with Gazebo, such as xacro.
     """
