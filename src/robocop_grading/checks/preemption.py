@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Optional
 
 from ..handout import Limits
-from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, results_of, samples_between, status_name
+from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, feedback_of, results_of, samples_between, status_name
 from ..texts import sentences, text
 from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
@@ -58,7 +58,7 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
     results = results_of(record, goal)
     if not results or results[0].status not in (PREEMPTED, RECALLED):
-        times = [feedback.time for feedback in record.feedback if feedback.id == goal.id]
+        times = [feedback.time for feedback in feedback_of(record, goal)]
         if times and not results and times[-1] < requested + SILENT:
             return text("nothing_after_request", request)
         return f"The {request} is not noticed: {hint}"

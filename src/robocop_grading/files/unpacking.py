@@ -47,7 +47,7 @@ class Unpacked(NamedTuple):
                 elif stat.S_ISREG(mode):
                     place.write_bytes(content)
                     place.chmod(stat.S_IMODE(mode))
-        except OSError as error:  # for example a name that is too long
+        except (OSError, ValueError) as error:  # for example a name that is too long, or a link to one with a zero byte
             raise SubmissionError(f"can't be unpacked: {error}") from error
 
 

@@ -173,6 +173,12 @@ def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
             unpacking.unpack(tmp_path / name)
 
 
+@pytest.mark.parametrize("entry", [archives.Entry(archives.LINK, target="b\0c"), archives.Entry(archives.LINK)])
+def test_link_that_no_disk_can_hold_is_refused(entry, tmp_path):
+    with pytest.raises(SubmissionError, match="can't be unpacked"):
+        unpacking.Unpacked({"": archives.Entry(archives.FOLDER), "a": entry}, []).write(tmp_path / "eve")
+
+
 def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path):
     buffer, target = io.BytesIO(), tmp_path / "target"
     with tarfile.open(fileobj=buffer, mode="w") as archive:
