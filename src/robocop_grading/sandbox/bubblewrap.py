@@ -145,8 +145,8 @@ def _hidden(folder: Path) -> List[str]:
 
 def _accounts(home: str) -> List[str]:
     """Options for lists of users and groups in which the sandbox's user has a name and a home."""
-    users = f"{NAME}:x:{user()}:{group()}::{home}:/bin/sh\n{Path('/etc/passwd').read_text()}"
-    groups = f"{NAME}:x:{group()}:\n{Path('/etc/group').read_text()}"
+    users = f"{NAME}:x:{user()}:{group()}::{home}:/bin/sh\n{Path('/etc/passwd').read_text(errors='replace')}"
+    groups = f"{NAME}:x:{group()}:\n{Path('/etc/group').read_text(errors='replace')}"
     readable = ["--perms", "0644", "--ro-bind-data"]
     return [*readable, users, "/etc/passwd", *readable, groups, "/etc/group"]
 
