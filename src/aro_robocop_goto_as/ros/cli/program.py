@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from typing import Dict, List, NoReturn
+from typing import Any, Dict, List, Mapping, NoReturn, Optional
 from xml.etree import ElementTree
 
 from ...names import PACKAGE
@@ -81,12 +81,7 @@ def start(*command: str) -> NoReturn:
             if name in os.environ:
                 print(f"{name}={os.environ[name]}")
         become(*command)
-    sys.stdout.flush()
-    try:
-        os.execvpe(command[0], command, workspace_environment())
-    except OSError as error:
-        say(f"{command[0]}: {error.strerror}")
-        sys.exit(NOT_FOUND if isinstance(error, FileNotFoundError) else NOT_EXECUTABLE)
+    become(*command, environment=workspace_environment())
 
 
 def workspace_environment() -> Dict[bytes, bytes]:
@@ -111,10 +106,14 @@ def start_launcher(*arguments: str) -> NoReturn:
     start(str(state() / "venv" / "bin" / "python"), f"{ROOT}/launch/robocop_launch.py", *arguments)
 
 
-def become(*command: str) -> NoReturn:
-    """Replace this process by a program; in a dry run, print it."""
+def become(*command: str, environment: Optional[Mapping[Any, Any]] = None) -> NoReturn:
+    """Replace this process by a program, in this environment or its own; in a dry run, print it."""
     if is_dry_run():
         print(shlex.join(command))
         sys.exit()
     sys.stdout.flush()
-    os.execvp(command[0], command)
+    try:
+        os.execvpe(command[0], command, os.environ if environment is None else environment)
+    except OSError as error:
+        say(f"{command[0]}: {error.strerror}")
+        sys.exit(NOT_FOUND if isinstance(error, FileNotFoundError) else NOT_EXECUTABLE)
