@@ -21,9 +21,8 @@ from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
 from .sandbox.guard import Guard
-from .sandbox.limits import MAX_SESSION_MEMORY
+from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
 from .submission import AGENT, Script, Submission
-from .viewer import Viewer
 
 SESSION = "robocop_grading.session.main"
 Progress = Callable[[str, str], None]  # part, scenario
@@ -47,7 +46,6 @@ class Job:
     plan: Plan
     parameters: Mapping[str, Any]  # on the parameter server
     cpu_time: float  # [s] of the node and its children together
-    viewer: Optional[Viewer] = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +65,6 @@ class Runner:
     plan: Plan
     state: Path
     sandbox: Optional[Sandbox] = None
-    viewer: Optional[Viewer] = None  # shows the run in real time
     on_progress: Progress = lambda _part, _scenario: None
     budget: float = BUDGET  # [s, wall]
 
@@ -100,11 +97,8 @@ class Runner:
             command = self.sandbox.node_command(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
-        cpu_time = math.inf if self.sandbox is None else float(self.sandbox.cpu_time)
-        rec.write(
-            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time, self.viewer),
-            file,
-        )
+        cpu_time = math.inf if self.sandbox is None else float(MAX_CPU_TIME)
+        rec.write(Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time), file)
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
             session = [*memory_group.prefix(), *self.sandbox.session_command(session)]
@@ -132,8 +126,7 @@ class Runner:
         once it has begun a scenario is judged.
         """
         log = out / f"{part}-session.log"
-        inherited = self.viewer.descriptors if self.viewer is not None else ()
-        process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
+        process = child.start(command, log, environment, stdout=PIPE)
         guard = Guard(process.pid, memory=MAX_SESSION_MEMORY, processes=math.inf)  # the session limits the node's
         kills = memory_group.kernel_kills()
         deadline, scenario, grace = time.monotonic() + self.budget, "", 0.0

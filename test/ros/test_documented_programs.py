@@ -30,7 +30,6 @@ EXCEPTIONS = {
     "clean": "removes the set-up that the tests use: test_robocop_command.py",
     "docs": "test_docs_site.py",
     "doctor": "its exit status reports what this machine lacks: cli/test_doctor.py",
-    "grade my_lab --watch": "needs a display or a browser: test/gui",
     "grade-class hand_ins --scheduler": "needs a scheduler: test/solutions/test_class.py",
     "image": "needs docker, podman or buildah: test_container.py",
     "shell python3 -m distributed": "runs until it is ended: test/solutions/test_class.py",

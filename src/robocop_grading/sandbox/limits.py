@@ -7,7 +7,6 @@ MAX_ADDRESS_SPACE = 4096 * MB  # bytes; numpy alone reserves more than one GB
 MAX_FILES = 256  # open ones: what waits in its pipes and sockets is nobody's memory
 MAX_FILE_SIZE = 64 * MB  # bytes
 MAX_CPU_TIME = 200  # [s], also of all processes together: of a part's nodes, one after the other
-MAX_WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
 CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
 
 # -- all processes together --

@@ -92,14 +92,6 @@ def test_rviz_is_opened_on_a_working_display():
         assert "rviz:=true" in dry_run("run", DISPLAY=display)[0]
 
 
-def test_a_watched_grading_sets_up_rviz_on_a_working_display_and_else_the_page():
-    with x_server() as display:
-        assert "would set up: run hosting grade rviz\n" in dry_run("grade", "x.py", "--watch", DISPLAY=display)[2]
-    for unusable in ({"DISPLAY": ":4711"}, {"DISPLAY": "localhost:10.0"}, {}):  # ssh -X: not from inside the sandbox
-        assert "would set up: run hosting grade web\n" in dry_run("grade", "x.py", "--watch", **unusable)[2]
-    assert "would set up: run hosting grade\n" in dry_run("grade", "x.py")[2]
-
-
 @pytest.mark.parametrize("argument", ["rviz:=true", "rviz:=false"])
 def test_explicit_rviz_argument_overrides_the_display_check(argument):
     command = dry_run("run", argument)[0]
