@@ -17,10 +17,9 @@ from aro_robocop_goto_as.process.ports import free_port
 from . import record as rec
 from .packages import provide
 from .plan import Plan
-from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
-from .sandbox.guard import Guard
+from .sandbox.guard import Guard, kernel_kills
 from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
 from .submission import AGENT, Script, Submission
 
@@ -101,7 +100,7 @@ class Runner:
         rec.write(Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time), file)
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
-            session = [*memory_group.prefix(), *self.sandbox.session_command(session)]
+            session = self.sandbox.session_command(session)
         return self.supervise(session, environment, out, script.part)
 
     def _environment(self, out: Path) -> Dict[str, str]:
@@ -128,7 +127,7 @@ class Runner:
         log = out / f"{part}-session.log"
         process = child.start(command, log, environment, stdout=PIPE)
         guard = Guard(process.pid, memory=MAX_SESSION_MEMORY, processes=math.inf)  # the session limits the node's
-        kills = memory_group.kernel_kills()
+        kills = kernel_kills()
         deadline, scenario, grace = time.monotonic() + self.budget, "", 0.0
         timer = threading.Timer(self.budget, child.kill_tree, [process.pid])  # ends the lines, too
         timer.start()
@@ -154,7 +153,7 @@ class Runner:
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
-        excused = memory_group.kernel_kills() > kills
+        excused = kernel_kills() > kills
         if not problem and status != 0:
             problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first

@@ -13,7 +13,7 @@ CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an externa
 MAX_TASKS = 200  # processes and threads of a user; a rospy node has some 30
 MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
 MAX_MEMORY = 2048 * MB  # bytes; a node with numpy and OpenCV takes some 200 MB
-MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB; of a control group, too
+MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
