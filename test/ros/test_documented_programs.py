@@ -28,7 +28,6 @@ EXCEPTIONS = {
     "axclient": "needs a display: test/gui/test_axclient.py",
     "bench": "takes minutes: test_bench_smoke.py",
     "clean": "removes the set-up that the tests use: test_robocop_command.py",
-    "docs": "test_docs_site.py",
     "doctor": "its exit status reports what this machine lacks: cli/test_doctor.py",
     "grade-class hand_ins --scheduler": "needs a scheduler: test/solutions/test_class.py",
     "image": "needs docker, podman or buildah: test_container.py",

@@ -14,14 +14,11 @@ from imports import PACKAGE, Imports, within
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src"
 IMPORTS = Imports(SOURCE)
-PYTHON = ("src", "scripts", "launch", "test", "docs", "setup.py")
+PYTHON = ("src", "scripts", "launch", "test", "setup.py")
 # Correct words, and deliberate misspellings in tests.
 SPELT_RIGHT = "colision,crate,fro,modle,orgin,poin,sise,wrold"
-PROSE = (
-    *("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml"),
-    *("docs/site/mkdocs.yml", "robocop"),
-)
-PROSE_FOLDERS = ("action", "cfg", "compat", "config", "msg", "src/robocop_grading/skeleton", "srv", "worlds")
+PROSE = ("README.md", "CONTRIBUTING.md", "CHANGELOG.rst", "CMakeLists.txt", "package.xml", "pyproject.toml", "robocop")
+PROSE_FOLDERS = ("action", "cfg", "compat", "config", "docs", "msg", "src/robocop_grading/skeleton", "srv", "worlds")
 SPELT = (*PYTHON, *PROSE, "Dockerfile", *PROSE_FOLDERS)
 GRADER = "robocop_grading"
 READER = f"{GRADER}.builds.roslaunch_reader"

@@ -120,7 +120,6 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "bench": developer_commands.bench,
     "shell": shell,
     "setup": setup,
-    "docs": developer_commands.docs,
     "image": container_image.build,
     "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
     "version": lambda _: print(program.version()),

@@ -84,7 +84,7 @@ def test_sim_takes_that_rviz_is_not_wanted():
 def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
     done = robocop("setup", "wbe")
     assert done.returncode == 1
-    assert "no part 'wbe'; there are: axclient class docs grade " in done.stderr and "did you mean web?" in done.stderr
+    assert "no part 'wbe'; there are: axclient class grade " in done.stderr and "did you mean web?" in done.stderr
 
 
 def test_rviz_is_opened_on_a_working_display():
@@ -185,9 +185,7 @@ def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
     assert "--with: expected the folder of a catkin package" in robocop("sim", "--with").stderr
 
 
-@pytest.mark.parametrize(
-    "words, parts, workers", [([], "class web test", " -n "), (["--all"], "class web test docs", "")]
-)
+@pytest.mark.parametrize("words, parts, workers", [([], "class web test", " -n "), (["--all"], "class web test", "")])
 def test_tests_run_one_more_at_a_time_than_processors_unless_all_do(words, parts, workers):
     command, _, messages = dry_run("test", *words, "test/unit")
     assert f"would set up: run rviz hosting grade {parts}\n" in messages
