@@ -41,7 +41,7 @@ def recorded(
     opened = sandbox()
     submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
     script, plan = submission.scripts[0], load(PLAN, seed).restricted(only)
-    chosen = Runner(plan, STATE, opened, None, lambda _part, scenario: on_progress(scenario), budget)
+    chosen = Runner(plan, STATE, opened, lambda _part, scenario: on_progress(scenario), budget)
     return chosen.run(submission, script, folder / "out")
 
 
