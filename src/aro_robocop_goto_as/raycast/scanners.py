@@ -52,9 +52,9 @@ class Scanners:
         self._plane_of = [self._heights.index(model.scan_height) for model in self._models]
         self.scene = Scene(planes, self._plane_of, np.array(mounts, dtype=float).reshape(-1, 3), self._footprints)
 
-    def section(self) -> CrossSection:
-        """The world's cross-section at the height of the first robot's scanner."""
-        return self._sections[self._plane_of[0]]
+    def section(self, robot: int) -> CrossSection:
+        """The world's cross-section at the height of one robot's scanner."""
+        return self._sections[self._plane_of[robot]]
 
     def move(self, time: float) -> None:
         """Put moving obstacles where they are at a time [s]; a new world's are at time zero."""

@@ -144,9 +144,9 @@ class Simulator:
         """The robot's true pose after the last step."""
         return self.fleet.pose(robot)
 
-    def velocity(self) -> Twist2D:
-        """The first robot's true velocity after the last step."""
-        return self.fleet.state(0).twist
+    def velocity(self, robot: int = 0) -> Twist2D:
+        """The robot's true velocity after the last step."""
+        return self.fleet.state(robot).twist
 
     def touching(self, robot: int = 0) -> bool:
         """Return whether the robot touches anything but the floor."""
@@ -166,7 +166,7 @@ class Simulator:
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
-        section = self.observed.scanners.section()
+        section = self.observed.scanners.section(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
