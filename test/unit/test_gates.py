@@ -29,6 +29,8 @@ MAY_IMPORT_ROS = (
     "ros",
     f"{GRADER}.agent.ros",
     f"{GRADER}.agent.connections",
+    f"{GRADER}.agent.ends",
+    f"{GRADER}.agent.grader",
     f"{GRADER}.session",
     f"{GRADER}.sim_with",
     READER,
