@@ -48,7 +48,7 @@ from robocop_grading.classroom.main import Class
 from robocop_grading.classroom.main import grade as grade_class
 from robocop_grading.classroom.results import Results
 from robocop_grading.judge import Outcome, without_figures
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")

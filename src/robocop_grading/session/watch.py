@@ -28,7 +28,8 @@ from aro_robocop_goto_as.simulation.rates import JOINTS, ODOM, SCAN
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import Plan, world_of
+from ..plan import Plan
+from ..sites import world_of
 from ..viewer import Viewer
 from .display import Display
 
