@@ -18,7 +18,7 @@ From a hand-in to its grade:
       | record        of each scenario: samples of the truth, and everything that came from the node
       v
     judge             records + plan (config/grading.yaml) -> grade, by checks/, one function for each contract
-      | report/       report.html, report.json, junit.xml, summary.md, classroom.json
+      | report/       report.html, report.json, summary.md, results.json, classroom.json
       v
     grader            all of this for one submission: cli (robocop grade), classroom/ (robocop grade-class)
 

@@ -17,13 +17,11 @@ from aro_robocop_goto_as.process.ports import free_port
 from . import record as rec
 from .packages import provide
 from .plan import Plan
-from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
-from .sandbox.guard import Guard
-from .sandbox.limits import MAX_SESSION_MEMORY
+from .sandbox.guard import Guard, kernel_kills
+from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
 from .submission import AGENT, Script, Submission
-from .viewer import Viewer
 
 SESSION = "robocop_grading.session.main"
 Progress = Callable[[str, str], None]  # part, scenario
@@ -47,7 +45,6 @@ class Job:
     plan: Plan
     parameters: Mapping[str, Any]  # on the parameter server
     cpu_time: float  # [s] of the node and its children together
-    viewer: Optional[Viewer] = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,6 @@ class Runner:
     plan: Plan
     state: Path
     sandbox: Optional[Sandbox] = None
-    viewer: Optional[Viewer] = None  # shows the run in real time
     on_progress: Progress = lambda _part, _scenario: None
     budget: float = BUDGET  # [s, wall]
 
@@ -100,14 +96,11 @@ class Runner:
             command = self.sandbox.node_command(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
-        cpu_time = math.inf if self.sandbox is None else float(self.sandbox.cpu_time)
-        rec.write(
-            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time, self.viewer),
-            file,
-        )
+        cpu_time = math.inf if self.sandbox is None else float(MAX_CPU_TIME)
+        rec.write(Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time), file)
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
-            session = [*memory_group.prefix(), *self.sandbox.session_command(session)]
+            session = self.sandbox.session_command(session)
         return self.supervise(session, environment, out, script.part)
 
     def _environment(self, out: Path) -> Dict[str, str]:
@@ -132,10 +125,9 @@ class Runner:
         once it has begun a scenario is judged.
         """
         log = out / f"{part}-session.log"
-        inherited = self.viewer.descriptors if self.viewer is not None else ()
-        process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
+        process = child.start(command, log, environment, stdout=PIPE)
         guard = Guard(process.pid, memory=MAX_SESSION_MEMORY, processes=math.inf)  # the session limits the node's
-        kills = memory_group.kernel_kills()
+        kills = kernel_kills()
         deadline, scenario, grace = time.monotonic() + self.budget, "", 0.0
         timer = threading.Timer(self.budget, child.kill_tree, [process.pid])  # ends the lines, too
         timer.start()
@@ -161,7 +153,7 @@ class Runner:
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
-        excused = memory_group.kernel_kills() > kills
+        excused = kernel_kills() > kills
         if not problem and status != 0:
             problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first

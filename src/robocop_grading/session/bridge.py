@@ -58,7 +58,7 @@ class BridgeRun(Run):
         """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
-            self.announce(name, scenario.__doc__)
+            self.announce(name)
             scenario()
 
     # -- the server that it talks to --
@@ -143,9 +143,9 @@ class BridgeRun(Run):
             self.reports.add(name)
             self.stage.digest()
 
-    def tick(self, real_time: bool = True) -> None:
+    def tick(self) -> None:
         """One control tick, after which the server tells of its goals if that is due."""
-        super().tick(real_time)
+        super().tick()
         self._ticks += 1
         if self.server is not None and self._ticks % STATUS_TICKS == 0:
             self.server.tell()

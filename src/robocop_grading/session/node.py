@@ -14,7 +14,6 @@ from aro_robocop_goto_as.process import child
 from .. import record as rec
 from ..agent import wire
 from ..runner import Job
-from ..sandbox import memory_group
 from ..sandbox.guard import Guard
 from ..sandbox.limits import MAX_IDLE, MAX_STILL
 from ..submission import CHANNEL
@@ -91,8 +90,6 @@ class Node:
         status, reason = self._process.wait(), self._guard.reason or self._given_up
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"
-        elif not reason and status in rec.KILLED:
-            reason = memory_group.reason()
         return rec.Death(now, status, reason)
 
     def spent(self) -> Spent:

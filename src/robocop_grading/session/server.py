@@ -43,11 +43,11 @@ class ServerRun(Run):
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
-        self.announce(START, "The node starts")
+        self.announce(START)
         start = self._start()
         for index, scenario in enumerate(self.plan.scenarios, 1):
             if start.up and self.plan.examines(self.job.part, scenario.name):
-                self.announce(scenario.name, scenario.about)
+                self.announce(scenario.name)
                 self._scenario(index, scenario)
 
     def _start(self) -> Record:

@@ -32,7 +32,6 @@ from .node import Node
 from .scenario_bag import ScenarioBag
 from .step_messages import StepMessages
 from .topics import Topics
-from .watch import Watch
 
 # cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
 # A submission has to use odom, not the truth.
@@ -49,12 +48,12 @@ class Stage:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(plan), [robot])
         self.simulation = Simulation(self.sim)
-        self.shown = StepTopics(self.sim)  # to those who watch
-        self.robot = self.shown.robots[0]
-        self._messages = StepMessages(self.sim, self.shown)
+        published = StepTopics(self.sim)
+        self.robot = published.robots[0]
+        self._messages = StepMessages(self.sim, published)
         self._sensors: Dict[str, str] = {}  # by topic
         self.topics = Topics()
-        for sensor, topic in {**self.robot.topics, TF: self.shown.tf}.items():
+        for sensor, topic in {**self.robot.topics, TF: published.tf}.items():
             self._sensors[topic.name] = sensor
             self.topics.advertise(topic.name, topic.data_class)
         self.topics.advertise("/tf_static", TFMessage, latch=True)
@@ -66,7 +65,6 @@ class Stage:
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
-        self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
 
     @property
@@ -111,17 +109,14 @@ class Stage:
 
     # -- time --
 
-    def tick(self, real_time: bool = True) -> Sample:
-        """Advance by one control tick and publish what is due; returns the true state at its end.
-
-        A watched run is shown at real time, unless `real_time` is False.
-        """
+    def tick(self) -> Sample:
+        """Advance by one control tick and publish what is due; returns the true state at its end."""
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
             until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
             observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
-                self._publish(observed, real_time)
+                self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
                 self.digest()
         return self.sample()
@@ -138,12 +133,12 @@ class Stage:
             meanwhile()
 
     def _subscriptions(self) -> Subscriptions:
-        """The node's and the viewer's; odometry and transforms always, for the bag."""
+        """The node's; odometry and transforms always, for the bag."""
         wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
-        return {**self.shown.subscriptions(), **{sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}}
+        return {sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}
 
-    def _publish(self, observed: Observations, real_time: bool) -> None:
-        """One step's observations to the viewer, the submission and the bag."""
+    def _publish(self, observed: Observations) -> None:
+        """One step's observations to the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
             _make_odd(observed.scans[0])
         messages = self._messages.of(observed)
@@ -152,8 +147,6 @@ class Stage:
                 self.topics.send(topic, data)
         if observed.due.clock:
             self.clock_ns = self.sim.stamp_ns
-        if self.watch is not None:
-            self.watch.observe(observed, real_time)
         self.digest(partial(self.bag.write_step, observed.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
@@ -161,8 +154,6 @@ class Stage:
         frames = self._static_frames(Pose2D())
         frames.transforms += self._links()
         self.topics.publish("/tf_static", frames)
-        if self.watch is not None:
-            self.shown.publish_static()
         # In a replay, map is odom at the scenario's start; in the submission's map that is many metres away.
         self.bag.write("/tf_static", self._static_frames(self._site))
 
@@ -185,9 +176,7 @@ class Stage:
         ]
 
     def keep(self, topic: str, message: Any) -> None:
-        """Into the scenario's bag, and to the page where the run is shown."""
-        if self.watch is not None:
-            self.watch.forward(topic, message)
+        """Into the scenario's bag."""
         self.bag.write(topic, message)
 
     def odom_from_footprint(self) -> Pose2D:

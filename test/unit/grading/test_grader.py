@@ -11,7 +11,7 @@ from robocop_grading.grader import grade
 from robocop_grading.plan_file import load
 from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner
-from robocop_grading.sandbox import memory_group
+from robocop_grading.sandbox import guard
 from robocop_grading.submission import Script, Submission
 
 PLAN = load(Path(ROOT, "config", "grading.yaml"))
@@ -51,11 +51,11 @@ def test_part_that_is_killed_twice_though_the_kernel_has_killed_nothing_is_grade
 
 
 def test_the_kernel_tells_how_many_processes_it_has_killed(tmp_path, monkeypatch):
-    assert memory_group.kernel_kills() >= 0
-    monkeypatch.setattr(memory_group, "COUNTERS", tmp_path / "vmstat")
-    assert memory_group.kernel_kills() == 0
+    assert guard.kernel_kills() >= 0
+    monkeypatch.setattr(guard, "COUNTERS", tmp_path / "vmstat")
+    assert guard.kernel_kills() == 0
     (tmp_path / "vmstat").write_text("pgfault 5\noom_kill 3\nswap_ra 7\n")
-    assert memory_group.kernel_kills() == 3
+    assert guard.kernel_kills() == 3
 
 
 @pytest.mark.parametrize(
