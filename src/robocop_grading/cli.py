@@ -16,7 +16,8 @@ from .files import tree, unpacking
 from .files.scratch import scratch_folder
 from .grader import grade as grade_submission
 from .judge import CheckResult, Grade, Outcome, total
-from .plan import MIDDLE, Plan, load
+from .plan import MIDDLE, Plan
+from .plan_file import load
 from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox

@@ -1,4 +1,4 @@
-"""One part of a submission -> records: runs a session as a process, with a time limit that is no judgement."""
+"""Runs a session as a process for one part of a submission; when its time limit is exceeded there is no grade."""
 
 import math
 import os
@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import PIPE
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Callable, Dict, List, Optional
 
 from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
@@ -21,6 +21,7 @@ from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
 from .sandbox.guard import Guard, kernel_kills
 from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
+from .session.job import Job
 from .submission import AGENT, Script, Submission
 
 SESSION = "robocop_grading.session.main"
@@ -31,20 +32,6 @@ Progress = Callable[[str, str], None]  # part, scenario
 BUDGET = 3600.0
 END_TIMEOUT = 600.0  # [s, wall] for a session that has said all; it needs milliseconds
 LOG_LINES = 15
-
-
-@dataclass(frozen=True)
-class Job:
-    """What a session is to do: the scenarios of one part of a hand-in that the plan's checks examine."""
-
-    part: str
-    command: Tuple[str, ...]  # of the node, in the sandbox
-    environment: Mapping[str, str]
-    folder: Path  # the node's
-    out: Path  # for records and bags
-    plan: Plan
-    parameters: Mapping[str, Any]  # on the parameter server
-    cpu_time: float  # [s] of the node and its children together
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Callable, Dict, Sequence
 
 from robocop_grading import judge
 from robocop_grading.judge import Grade
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.runner import BUDGET, Recorded, Runner
 from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox
 from robocop_grading.submission import prepare_submission

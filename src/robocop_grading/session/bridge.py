@@ -17,8 +17,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
 from ..handout import ACTION, CLICKS
-from ..runner import Job
 from .goals import Goals
+from .job import Job
 from .run import TICK, Run
 from .stage import Stage
 

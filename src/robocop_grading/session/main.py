@@ -7,9 +7,9 @@ from pathlib import Path
 from aro_robocop_goto_as.errors import GraderLostError
 
 from ..record import read
-from ..runner import Job
 from . import progress
 from .bridge import BridgeRun
+from .job import Job
 from .run import Run
 from .server import ServerRun
 from .stage import Stage

@@ -13,11 +13,11 @@ from aro_robocop_goto_as.process import child
 
 from .. import record as rec
 from ..agent import wire
-from ..runner import Job
 from ..sandbox.guard import Guard
 from ..sandbox.limits import MAX_IDLE, MAX_STILL
 from ..submission import CHANNEL
 from .channel import UNREADABLE, Channel
+from .job import Job
 from .output import Output
 from .services import Services
 from .topics import Topics

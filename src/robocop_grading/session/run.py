@@ -14,8 +14,8 @@ from aro_robocop_goto_as.ros import convert
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
-from ..runner import Job
 from . import progress
+from .job import Job
 from .node import Node, Spent
 from .services import Services
 from .stage import Stage

@@ -15,7 +15,7 @@ from .. import record as rec
 from ..handout import ACTION
 from ..plan import START, Push, Scenario, Step
 from ..record import Record
-from ..runner import Job
+from .job import Job
 from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage

@@ -25,8 +25,9 @@ from aro_robocop_goto_as.simulation.running import Simulation
 from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
 
 from ..handout import AHEAD
-from ..plan import Plan, site, world_of
+from ..plan import Plan
 from ..record import Sample
+from ..sites import site, world_of
 from .node import Node
 from .scenario_bag import ScenarioBag
 from .step_messages import StepMessages

@@ -8,7 +8,7 @@ from support import ROOT
 
 from aro_robocop_goto_as.errors import UngradableError
 from robocop_grading.grader import grade
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner
 from robocop_grading.sandbox import guard

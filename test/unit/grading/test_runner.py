@@ -6,7 +6,7 @@ import pytest
 from support import ROOT
 
 from aro_robocop_goto_as.errors import GradingError, NoTimeError, UngradableError
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.runner import Runner
 
 PLAN = load(Path(ROOT, "config", "grading.yaml"))
