@@ -1,6 +1,5 @@
 """Runs all scenarios of one part of a submission, and writes a record file for each."""
 
-import os
 import sys
 from pathlib import Path
 
@@ -18,17 +17,13 @@ from .stage import Stage
 def main() -> None:
     """Usage: main JOB."""
     progress.start()
-    status = 1
     try:
         _run(read(Job, Path(sys.argv[1])))
-        status = 0
     except GraderLostError as error:
-        print(error, file=sys.stderr)
+        sys.exit(str(error))
     except OSError as error:  # a full disk, for example: nothing that a node can bring about
         progress.tell(f"error {error}")
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)  # rospy's threads may still wait
+        sys.exit(1)
 
 
 def _run(job: Job) -> None:
