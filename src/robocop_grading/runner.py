@@ -61,7 +61,6 @@ class Runner:
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
-        environment = self._environment(out)
         command, packages = script.command(), provide(self.plan.packages, self.state)
         reads = [*submission.reads, AGENT, *([packages] if packages is not None else [])]
         known = {**public(submission.environment), **script.variables}
@@ -75,7 +74,7 @@ class Runner:
             "HOME": str(home),
             "TMPDIR": str(home),
             "PYTHONUNBUFFERED": "1",
-            "ROS_MASTER_URI": environment["ROS_MASTER_URI"],
+            "ROS_MASTER_URI": f"http://localhost:{free_port()}",  # no master, for programs that it starts
         }
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
@@ -88,22 +87,12 @@ class Runner:
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
             session = self.sandbox.session_command(session)
-        return self.supervise(session, environment, out, script.part)
+        return self.supervise(session, self._environment(out), out, script.part)
 
     def _environment(self, out: Path) -> Dict[str, str]:
         """The session's environment: this workspace, with Gazebo's message types after it."""
         types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"
-        environment = {
-            **os.environ,
-            "ROS_MASTER_URI": f"http://localhost:{free_port()}",
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(out / "ros"),
-            "ROS_LOG_DIR": str(out / "ros"),
-            "TMPDIR": str(out),
-        }
-        environment["PYTHONPATH"] = f"{environment.get('PYTHONPATH', '')}:{types}"
-        environment.pop("ROS_IP", None)
-        return environment
+        return {**os.environ, "PYTHONPATH": f"{os.environ.get('PYTHONPATH', '')}:{types}", "TMPDIR": str(out)}
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.
