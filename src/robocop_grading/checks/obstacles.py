@@ -14,6 +14,7 @@ from .output import EXCEPTION_LOGGED, logged
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
+PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 
 
@@ -88,7 +89,10 @@ AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not 
 @check("distances", after=(ABORTS_EARLY, *ENDING))
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
-    return of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
+    verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
+    if verdict is PASSED and not any(sample.x > PAST * record.goals[0].x for sample in record.samples):
+        return NotReached("the robot did not drive past the obstacles")
+    return verdict
 
 
 @check("distances", after=(*ENDING, AT_WALL, STANDS))

@@ -62,6 +62,9 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
         if times and not results and times[-1] < requested + SILENT:
             return text("nothing_after_request", request)
         return f"The {request} is not noticed: {hint}"
+    newer = [it for it in record.feedback if it.id != goal.id and requested < it.time < results[0].time - SILENT]
+    if newer:
+        return text("result_late", results[0].time - requested, newer[0].time - requested)
     late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
