@@ -32,7 +32,6 @@ EXCEPTIONS = {
     "grade-class hand_ins --scheduler": "needs a scheduler: test/solutions/test_class.py",
     "image": "needs docker, podman or buildah: test_container.py",
     "shell python3 -m distributed": "runs until it is ended: test/solutions/test_class.py",
-    "shell python3 test/solutions/graded.py": "takes minutes: test/solutions",
     "shell python3 test/solutions/measure.py": "takes hours",
     "shell rosrun aro_robocop_goto_as robocop_rviz.py": "needs a display: test/gui/test_rviz_starts.py",
     "teleop": "needs a keyboard: teleop_test.py",

@@ -33,8 +33,7 @@ class RobotModel:
     """A differential-drive robot; base is base_link, footprint is base_footprint on the floor between the wheels."""
 
     name: str
-    urdf: str  # the complete description, for robot_state_publisher
-    physics_urdf: str  # the same, rooted at base_link and without massless links and visual meshes
+    physics_urdf: str  # its URDF, rooted at base_link and without massless links and visual meshes
     wheel_radius: float  # [m]
     wheel_separation: float  # [m]
     footprint_from_base: Pose3D

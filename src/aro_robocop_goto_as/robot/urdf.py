@@ -34,7 +34,6 @@ def load_robot(path: str, figures: ModelFigures) -> RobotModel:
         left, right = (urdf.joint(name) for name in WHEEL_JOINTS)
         return RobotModel(
             name=urdf.root.get("name") or os.path.splitext(os.path.basename(path))[0],
-            urdf=etree.tostring(urdf.root, encoding="unicode"),
             physics_urdf=urdf.for_physics(),
             wheel_radius=urdf.wheel_radius(left),
             wheel_separation=urdf.wheel_separation(left, right),

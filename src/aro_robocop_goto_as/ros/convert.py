@@ -62,9 +62,9 @@ def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:
     return Pose2D(pose.position.x, pose.position.y, yaw_of(orientation))
 
 
-def from_pose_msg_3d(pose: Pose, unset_is_level: bool = False) -> Pose3D:
-    """A geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
-    orientation = from_quaternion(pose.orientation, unset_is_level)
+def from_pose_msg_3d(pose: Pose) -> Pose3D:
+    """A request's geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
+    orientation = from_quaternion(pose.orientation, unset_is_level=True)
     x, y, z = pose.position.x, pose.position.y, pose.position.z
     require_near(x=x, y=y, z=z)
     return Pose3D((x, y, z), orientation)

@@ -52,7 +52,7 @@ class Status(Part):
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
         self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else "")
-        known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
+        known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)
         if self._robot.options != state.robots:
