@@ -92,7 +92,7 @@ WRONG = (
     _server(
         "forged_odometry",
         "feedback_position",
-        "",
+        "position_error is always zero",
         ("        self.cmd_pub = rospy.Publisher('/cmd_vel',", "        self.cmd_pub = rospy.Publisher('/odom_vel',"),
         (POSE, f"{POSE}\n        if self.goal:\n            self.pose = (self.goal.x, self.goal.y, yaw)"),
         ("self.count = 0", "self.goal = None"),
@@ -108,7 +108,7 @@ WRONG = (
     _server(
         "obstacle_checked_only_while_turning",
         "stops_at_obstacle",
-        "checked while the robot drives",
+        "is the distance checked while it drives, too",
         (f"            {ABORT}\n", ""),
         (
             f"                {TURN}\n",
@@ -119,24 +119,25 @@ WRONG = (
     _server(
         "goal_of_the_first_time",
         "next_goal",
-        "",
+        "is not reset when a goal begins",
         (BEGIN, f"        if not self.count:\n            self.count = goal\n        goal = self.count\n{BEGIN}"),
         alone=True,
     ),
     _server(
         "scan_callback_blocks_for_ever",
-        "odd_scans",
-        "",
+        "stops_at_obstacle",
+        "does the scan's callback return at once",
         (
             "    def scan_cb(self, msg):\n",
             "    def scan_cb(self, msg):\n        self.count += 1\n        if self.count == 320:\n"
-            "            import threading\n            lock = threading.Lock()\n            lock.acquire()\n            lock.acquire()\n",
+            "            import threading\n            lock = threading.Lock()\n"
+            "            lock.acquire()\n            lock.acquire()\n",
         ),
     ),
     Wrong(
         "result_of_the_older_goal_is_late",
-        "newer_goal",
-        "the feedback about the newer one began after",
+        "cancel",
+        "is noticed at once, but the older goal's result comes 6.1 s later",
         (
             (
                 "                handle.set_canceled(GoToPositionResult(False, 'preempted'))\n",
