@@ -38,6 +38,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = Fal
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
+            notes += [f"{script.part}: {it}" for it in recorded.told]
             notes += [f"{script.part}: {MISSING.format(name)}" for name in _missing_modules(recorded.records)]
         judged = judge.judge(submission.name, plan, records, problems)
         judged = replace(judged, files=tuple(submission.files), problems=(*judged.problems, *notes))

@@ -8,13 +8,14 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import PIPE
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Sequence
 
 from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
+from .attempts import AGAIN, counting
 from .packages import provide
 from .plan import Plan
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
@@ -42,6 +43,7 @@ class Recorded:
     problem: str = ""
     killed: str = ""  # what was killed, and not by the grader, if anything was
     excused: bool = False  # it may not have killed itself: the machine's memory ran out, or it was the grader's process
+    told: Sequence[str] = ()  # what the report says of scenarios that were repeated
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,10 @@ class Runner:
             guard.stop()
         if not scenario:
             raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}")
-        records, problem, killed = records_in(out, part), guard.reason, ""
+        records, counted, told = counting(self.plan, records_in(out, part))
+        for name in counted:
+            (out / f"{part}-{name}{AGAIN}.bag").replace(out / f"{part}-{name}.bag")
+        problem, killed = guard.reason, ""
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
@@ -134,7 +139,7 @@ class Runner:
             problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
-        return Recorded(records, problem, killed, excused)
+        return Recorded(records, problem, killed, excused, told)
 
 
 def _end_of(log: Path) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
 from ..texts import text
-from .consequences import died, nothing_came, unpublished
+from .consequences import NOT_RESET, died, nothing_came, unpublished
 from .feedback_causes import (
     ANGLE,
     OF_POSITION,
@@ -110,7 +110,11 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     return replace(failure, cause=cause, kind=WRONG_POSITION if found & OF_POSITION else UNTRUE)
 
 
-@check("errors", needs=("feedback_rate",), explain=partial(_explained, POSITION))
+# Feedback that is wrong from a later goal on, as a server keeps what an earlier one has set.
+KEPT = After("next_goal", lambda record, it, earlier: earlier.kind == NOT_RESET and it.time > record.goals[0].time)
+
+
+@check("errors", after=(KEPT,), needs=("feedback_rate",), explain=partial(_explained, POSITION))
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
     pairs = _compared(POSITION, record)
@@ -121,7 +125,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
 
 @check(
     "errors",
-    after=(After("feedback_position", kind=WRONG_POSITION),),
+    after=(After("feedback_position", kind=WRONG_POSITION), KEPT),
     needs=("feedback_rate",),
     explain=partial(_explained, ANGLE),
 )

@@ -137,11 +137,13 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
         if len(still) < len(situations):
             cause = text("stands_before_turn", angle)
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
-    away = [it for it in situations if it.command.w * it.angle < 0.0 and abs(it.angle) < math.pi - 0.2]
-    if len(away) > 0.15 * len(situations):
-        command, angle = away[0]
+    wrong = [it for it in situations if it.command.w * it.angle < 0.0]
+    away = [it for it in wrong if abs(it.angle) < math.pi - 0.2]  # beyond, a right command may be of the other side
+    if len(away) > 0.15 * len(situations) or len(wrong) > 0.5 * len(situations):
+        command, angle = (away or wrong)[0]
         wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
-        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, text("turns_away", angle))
+        cause = text("turns_away_behind" if abs(angle) > math.pi / 2.0 else "turns_away", angle)
+        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
     return None
 
 
