@@ -78,7 +78,10 @@ def drive(
 def kept(observed: Observations) -> Observations:
     """A copy of what the simulator changes in place with its next step, but for its fleet and its odometry."""
     kept = copy.copy(observed)
-    kept.scans, kept.imus = observed.scans.copy(), observed.imus.copy()
+    kept.scan, kept.imu, kept.bumper, kept.camera = map(
+        copy.copy, (observed.scan, observed.imu, observed.bumper, observed.camera)
+    )
+    kept.scan.ranges, kept.imu.samples = observed.scan.ranges.copy(), observed.imu.samples.copy()
     return kept
 
 

@@ -53,18 +53,14 @@ ORDER = {
     "raycast": "compiled errors geometry robot world",
     "physics": "compiled errors geometry param_loading raycast robot world",
     "sensors": "compiled geometry param_loading physics raycast robot world",
-    "simulation.jobs": "errors",
-    "simulation.rates": "param_loading",
-    "simulation.lockstep": "param_loading simulation.jobs",
-    "simulation.time_control": "param_loading simulation.jobs",
-    "sim_params": "param_loading physics robot sensors simulation.lockstep simulation.rates simulation.time_control",
+    "sim_params": "param_loading physics robot sensors",
     "goto": "geometry goto_params",
     "obstacle_ahead": "",
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading probes sim_params process robot names sensors simulation world",
     "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation suggestions world",
-    "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation",
+    "ros.server": "errors geometry goto goto_params obstacle_ahead process ros names",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
     "ros.web": "errors geometry param_loading ros ros.client names web web_params",
     "ros.cli": "errors geometry param_loading sim_params probes process reading robot ros ros.client names "
@@ -76,8 +72,8 @@ ORDER = {
     GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading probes process sim_params web "
     "web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.files {GRADER}.builds process",
-    f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sim_params simulation "
-    f"web world {GRADER}",
+    f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sensors sim_params "
+    f"simulation web world {GRADER}",
 }
 # Modules whose rosdep key differs from their name.
 ROSDEP_KEYS = {

@@ -16,10 +16,7 @@ from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .observations import Due, Observations, Subscriptions
-from .rates import CLOCK, CONTROL, IMU, ODOM
-from .schedule import Schedule, stamp_ns
-
-UNASKED = {CLOCK, CONTROL, ODOM}  # due also if nobody subscribes: odometry is integrated
+from .schedule import CLOCK, CONTROL, Schedule, stamp_ns
 
 
 class Simulator:
@@ -35,7 +32,7 @@ class Simulator:
         self.rate = params.rates.physics_rate  # [Hz]
         self.engine = engine
         self.observed = Observations(params, world, engine)
-        self.lidar = self.observed.lidar
+        self.lidar = self.observed.scan.lidar
         self._schedule_for({})
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
@@ -56,12 +53,12 @@ class Simulator:
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return self.observed.world_time
+        return self.observed.site.time
 
     @property
     def seed(self) -> int:
         """The seed of all noise."""
-        return self.observed.episode.seed
+        return self.observed.site.episode.seed
 
     # -- steps --
 
@@ -86,14 +83,12 @@ class Simulator:
             self._run(most)
             return None
         due = self._dues[names]
-        imus = due.sensors.get(IMU)
-        if imus:  # which compare the states before and after the step
+        if due.before:
             self._run(steps - 1)
-            before = [self.engine.body(robot) for robot in imus]
-            self._run(1)
-            self.observed.measure_imus(imus, before)
-        else:
-            self._run(steps)
+            for look in due.before:
+                look()
+            steps = 1
+        self._run(steps)
         for measure in due.measures:
             measure()
         self.observed.stamp_ns, self.observed.due = self.stamp_ns, due
@@ -103,24 +98,27 @@ class Simulator:
         for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
-            self.observed.episode.step += at_once
+            self.observed.site.episode.step += at_once
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.observed.scanners.move(self.world_time)
+            self.observed.site.scanners.move(self.world_time)
 
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
         self._subscriptions = subscriptions
-        rates = {
-            name: rate for name, rate in self.params.due_rates().items() if name in UNASKED or subscriptions.get(name)
-        }
+        rates = {CLOCK: self.params.rates.clock_rate, CONTROL: self.params.rates.control_rate}
+        for name, sensor in self.observed.by_name.items():
+            if sensor.unasked or subscriptions.get(name):
+                rates[name] = sensor.rate
         self._schedule = Schedule(rates, self.rate)
         self._dues = {names: self._due(names) for names in self._schedule.occurring}
 
     def _due(self, names: Tuple[str, ...]) -> Due:
         sensors = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
-        return Due(CLOCK in names, CONTROL in names, sensors, self.observed.measures_of(names, sensors))
+        due = Due(CLOCK in names, CONTROL in names, sensors)
+        self.observed.prepare(due, names)
+        return due
 
     # -- the state of the world and of its robots --
 
@@ -134,11 +132,11 @@ class Simulator:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
         self.engine.update_fleet()
         fan, range_max = self.lidar.fan, self.lidar.spec.range_max
-        return fan.scan(self.observed.scanners.scene, [robot], range_max)[0]
+        return fan.scan(self.observed.site.scanners.scene, [robot], range_max)[0]
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
-        return Pose2D(*self.observed.map_from_odom[robot].tolist())
+        return Pose2D(*self.observed.odometry.map_from_odom[robot].tolist())
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
@@ -166,7 +164,7 @@ class Simulator:
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
-        section = self.observed.scanners.section(0)
+        section = self.observed.site.scanners.section(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -179,7 +177,7 @@ class Simulator:
         self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
         for names, due in self._dues.items():
-            due.measures = self.observed.measures_of(names, due.sensors)
+            self.observed.prepare(due, names)
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
 
@@ -193,7 +191,7 @@ class Simulator:
         self.engine.place(robot, world_from_footprint)
         self._newly_placed.add(robot)
         if not self.observed.odometry.in_world:
-            self.observed.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
+            self.observed.odometry.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
     def require_room(self, pose: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""

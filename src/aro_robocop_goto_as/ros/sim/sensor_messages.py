@@ -1,19 +1,30 @@
-"""The packed message of each sensor: what is constant in it, and where the numbers of each step go."""
+"""The topic and the message of each sensor.
 
-from typing import List, Optional, Sequence, Tuple
+A packed message has what is constant in it, and where the numbers of each step go.
+"""
+
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import genpy
 import numpy as np
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, LaserScan
-from std_msgs.msg import Header
+from sensor_msgs.msg import Imu, JointState, LaserScan
+from std_msgs.msg import Bool, Header
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
-from ...sensors.imu import FORCE, ORIENTATION, RATES, ImuParams
+from ...names import prefixed
+from ...sensors.bumper import BUMPER
+from ...sensors.ground_truth import GROUND_TRUTH
+from ...sensors.imu import FORCE, IMU, ORIENTATION, RATES, ImuParams
+from ...sensors.joints import JOINTS
+from ...sensors.odometry import ODOM
 from ...sensors.scan_profiles import LidarSpec
+from ...sensors.scanner import SCAN
+from ...sim_params import SimParams
+from ...simulation.observations import Observations
 from .. import convert
 from ..publishing.packed import DOUBLES, FLOATS, HEADER, POSE, STAMP, TWIST, Field, PackedMessage, counter, string_size
 
@@ -102,3 +113,70 @@ def packed_transforms(transforms: Sequence[Tuple[str, str, Row]]) -> PackedMessa
         fields.append(Field(POSE, start, pose))
         start += POSE_SIZE
     return PackedMessage(TFMessage(template), fields)
+
+
+class Robot(NamedTuple):
+    """The robot of which messages are made: its row, its name and what it measured last."""
+
+    row: int
+    name: str
+    params: SimParams
+    observed: Observations
+    scans: np.ndarray  # counts them, whatever their number of beams
+
+    def frame(self, name: str) -> str:
+        """A frame of several robots has the robot's name as a prefix."""
+        return prefixed(self.name, name)
+
+    @property
+    def is_real(self) -> bool:
+        """Return whether covariances are those that a TurtleBot3 sends."""
+        return self.params.topics.covariances == "real"
+
+
+class Topic(NamedTuple):
+    """Where a sensor is published: with a message that is packed, or made anew each time."""
+
+    name: str
+    kind: Any
+    packed: Optional[Callable[[Robot], PackedMessage]] = None
+    message: Optional[Callable[[Robot], Any]] = None
+
+
+def _ground_truth(robot: Robot) -> PackedMessage:
+    frames, fleet = robot.params.frames, robot.observed.fleet
+    rows = fleet.poses[robot.row], fleet.twists[robot.row]
+    return packed_odometry(frames.world_frame, robot.frame(frames.base_frame), TRUTH_VARIANCES, *rows)
+
+
+def _imu(robot: Robot) -> PackedMessage:
+    frame, sample = robot.frame(robot.params.frames.imu_frame), robot.observed.imu.samples[robot.row]
+    return packed_imu(frame, robot.params.sensors.imu, robot.is_real, sample)
+
+
+def _joint_states(robot: Robot) -> PackedMessage:
+    return packed_joint_state(robot.observed.joints.angles[robot.row], robot.observed.fleet.wheel_speeds[robot.row])
+
+
+def _odometry(robot: Robot) -> PackedMessage:
+    frames, odometry = robot.params.frames, robot.observed.odometry
+    variances = NO_VARIANCES if robot.is_real else ODOM_VARIANCES
+    rows = odometry.poses[robot.row], odometry.twists[robot.row]
+    return packed_odometry(robot.frame(frames.odom_frame), robot.frame(frames.base_frame), variances, *rows)
+
+
+def _scan(robot: Robot) -> PackedMessage:
+    ranges, spec = robot.observed.scan.ranges[robot.row], robot.observed.scan.lidar.spec
+    spec = spec if len(ranges) == spec.samples else spec.with_samples(len(ranges))
+    return packed_scan(spec, robot.frame(robot.params.frames.scan_frame), ranges, robot.scans)
+
+
+# In the order in which they are sent on a step. Cameras have several topics each, in camera_topics.
+TOPICS: Dict[str, Topic] = {
+    BUMPER: Topic("bumper", Bool, message=lambda robot: robot.observed.bumper.touching[robot.row]),
+    GROUND_TRUTH: Topic("ground_truth_odom", Odometry, _ground_truth),
+    IMU: Topic("imu", Imu, _imu),
+    JOINTS: Topic("joint_states", JointState, _joint_states),
+    ODOM: Topic("odom", Odometry, _odometry),
+    SCAN: Topic("scan", LaserScan, _scan),
+}

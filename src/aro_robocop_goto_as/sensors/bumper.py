@@ -1,0 +1,35 @@
+"""The bumper: whether a robot touches anything but the floor."""
+
+from dataclasses import dataclass
+from typing import Mapping
+
+from ..param_loading import parameter
+from .sensor import Calls, Robots, Sensor, Site
+
+BUMPER = "bumper"
+
+
+@dataclass(frozen=True)
+class BumperParams:
+    """How often the bumper is read."""
+
+    bumper_rate: int = parameter(30, low=0)  # [Hz]; 0: never
+
+
+class Bumpers(Sensor):
+    """touching: by robot, of those for which it was due last."""
+
+    name = BUMPER
+
+    def __init__(self, params: BumperParams, site: Site) -> None:
+        self.rate = params.bumper_rate
+        self.touching: Mapping[int, bool] = {}
+        self._engine = site.engine
+
+    def measuring(self, robots: Robots) -> Calls:
+        """Read these robots' bumpers."""
+
+        def read() -> None:
+            self.touching = {robot: self._engine.touching(robot) for robot in robots}
+
+        return [self._engine.update_fleet, read]

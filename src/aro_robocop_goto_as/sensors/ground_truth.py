@@ -1,0 +1,30 @@
+"""The true poses and velocities of the robots, which are rows of the fleet."""
+
+from dataclasses import dataclass
+
+from ..param_loading import parameter
+from .sensor import Calls, Robots, Sensor, Site
+
+GROUND_TRUTH = "ground_truth"
+
+
+@dataclass(frozen=True)
+class TruthParams:
+    """Whether the truth is published, and how often."""
+
+    ground_truth: bool = True
+    ground_truth_rate: int = parameter(30, low=1)  # [Hz]
+
+
+class GroundTruth(Sensor):
+    """The rows of the fleet."""
+
+    name = GROUND_TRUTH
+
+    def __init__(self, params: TruthParams, site: Site) -> None:
+        self.rate = params.ground_truth_rate if params.ground_truth else 0
+        self._calls = [site.engine.update_fleet]
+
+    def measuring(self, _robots: Robots) -> Calls:
+        """Update the rows of all robots."""
+        return self._calls
