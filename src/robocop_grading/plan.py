@@ -12,7 +12,8 @@ import yaml
 from aro_robocop_goto_as.errors import HostingError, PlanError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose, compose3, lifted
 from aro_robocop_goto_as.param_loading import declared, from_dict, parameter, several
-from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, World
+from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Plane
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 from .checks import CHECKS
 from .files.tree import read_bytes

@@ -41,6 +41,7 @@ ORDER = {
     "names": "",
     "param_loading": "errors suggestions",
     "geometry": "param_loading",
+    "shapes": "geometry",
     "compiled": "errors",
     "reading": "errors",
     "goto_params": "param_loading",
@@ -48,10 +49,10 @@ ORDER = {
     "web_params": "param_loading",
     "process": "errors",
     "probes": "errors names",
-    "world": "errors geometry reading suggestions",
-    "robot": "compiled errors geometry param_loading reading suggestions world",
-    "raycast": "compiled errors geometry robot world",
-    "physics": "compiled errors geometry param_loading raycast robot world",
+    "world": "errors geometry reading shapes suggestions",
+    "robot": "compiled errors geometry param_loading reading shapes suggestions",
+    "raycast": "compiled errors geometry robot shapes world",
+    "physics": "compiled errors geometry param_loading raycast robot shapes world",
     "sensors": "compiled geometry param_loading physics raycast robot world",
     "sim_params": "param_loading physics robot sensors",
     "goto": "geometry goto_params",
@@ -59,7 +60,8 @@ ORDER = {
     "web": "errors geometry names world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading probes sim_params process robot names sensors simulation world",
-    "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation suggestions world",
+    "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors shapes simulation "
+    "suggestions world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead process ros names",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
     "ros.web": "errors geometry param_loading ros ros.client names web web_params",
@@ -69,7 +71,7 @@ ORDER = {
     f"{GRADER}.files": "errors process",
     f"{GRADER}.builds": f"errors process names {GRADER}.files",
     f"{GRADER}.sim_with": f"errors process ros.cli {GRADER}.files {GRADER}.builds",
-    GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading probes process sim_params web "
+    GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading probes process shapes sim_params web "
     "web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.files {GRADER}.builds process",
     f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sensors sim_params "

@@ -9,8 +9,9 @@ import numpy as np
 from ..geometry import STANDARD_GRAVITY, Pose2D, Pose3D, compose3, inverse3, lifted, yaw_of
 from ..robot.fleet import Fleet, library
 from ..robot.model import CASTER_PREFIX, WHEEL_JOINTS, BodyState, RobotModel
+from ..shapes import Plane
 from ..world.ground import is_in_ground
-from ..world.model import Obstacle, Plane, World
+from ..world.model import Obstacle, World
 from .bullet_shapes import FLOOR, load_urdf, shapes_of
 from .quiet_pybullet import pybullet
 

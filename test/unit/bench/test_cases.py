@@ -9,9 +9,9 @@ from bench import cases
 from bench.cases import parse_cases
 
 from aro_robocop_goto_as.param_loading import from_dict
+from aro_robocop_goto_as.shapes import Plane
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.world.load import find_world, load_world
-from aro_robocop_goto_as.world.model import Plane
 
 WORLDS = Path(__file__).resolve().parents[3] / "worlds"
 

@@ -9,10 +9,11 @@ from support import analytic_distances, drive, model_named, world_named
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, Vector3, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sensors.camera_image import CameraImage, CameraSpec, points_of
+from aro_robocop_goto_as.shapes import Box
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.simulator import Simulator
-from aro_robocop_goto_as.world.model import Box, Obstacle, World
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
