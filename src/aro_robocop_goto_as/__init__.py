@@ -13,8 +13,7 @@ From a velocity command to odometry, scan, tf and clock:
         sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
     ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.sim.sensor_topics     at the start: a robot's topics
-        ros.sim.sensor_messages   each sensor's topic and packed message, whose fields are bound to a robot's row
+        ros.sim.sensor_topics     at the start: each sensor's topic, and its packed message, bound to a robot's row
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, camera).

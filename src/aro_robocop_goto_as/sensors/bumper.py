@@ -22,14 +22,12 @@ class Bumpers(Sensor):
     name = BUMPER
 
     def __init__(self, params: BumperParams, site: Site) -> None:
-        self.rate = params.bumper_rate
+        super().__init__(site, params.bumper_rate)
         self.touching: Mapping[int, bool] = {}
-        self._engine = site.engine
 
     def measuring(self, robots: Robots) -> Calls:
         """Read these robots' bumpers."""
+        return [lambda: self._read(robots)]
 
-        def read() -> None:
-            self.touching = {robot: self._engine.touching(robot) for robot in robots}
-
-        return [self._engine.update_fleet, read]
+    def _read(self, robots: Robots) -> None:
+        self.touching = {robot: self.site.engine.touching(robot) for robot in robots}

@@ -50,12 +50,11 @@ class Cameras(Sensor):
     name = CAMERA
 
     def __init__(self, params: CameraParams, site: Site) -> None:
-        self.rate = params.camera_rate
+        super().__init__(site, params.camera_rate)
         self.specs: Sequence[Optional[CameraSpec]] = [
             None if model.base_from_camera is None else params.spec(model.name) for model in site.models
         ]
         self.images: Mapping[int, CameraImage] = {}
-        self._site = site
         self._make_renderer: Any = None
         if any(self.specs):
             from .camera_renderer import CameraRenderer  # imports pybullet
@@ -65,10 +64,10 @@ class Cameras(Sensor):
 
     def measuring(self, robots: Robots) -> Calls:
         """Take images with these robots' cameras."""
-        return [self._site.engine.update_fleet, lambda: self._take(robots)]
+        return [lambda: self._take(robots)]
 
     def _take(self, robots: Robots) -> None:
-        site, images = self._site, {}
+        site, images = self.site, {}
         bases = [site.engine.body(robot).world_from_base for robot in range(len(site.models))]
         for robot in robots:
             spec, base_from_camera = self.specs[robot], site.models[robot].base_from_camera

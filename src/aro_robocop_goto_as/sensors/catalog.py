@@ -8,8 +8,7 @@ from .bumper import BumperParams, Bumpers
 from .camera import CameraParams, Cameras
 from .ground_truth import GroundTruth, TruthParams
 from .imu import ImuParams, Imus
-from .joints import JointParams, Joints
-from .odometry import Odometers, OdometryParams, Transforms
+from .odometry import JointParams, Joints, Odometers, OdometryParams, Transforms
 from .scan_profiles import ScanParams
 from .scanner import Scanner
 from .sensor import Sensor, Site
@@ -42,10 +41,10 @@ class Sensors:
         self.ground_truth = GroundTruth(params.ground_truth, site)
         self.imu = Imus(params.imu, site)
         self.odometry = Odometers(params.odometry, site, follows_truth)
-        self.joints = Joints(params.joints, site, self.odometry)
+        self.joints = Joints(params.joints, self.odometry)
         self.scan = Scanner(params.scan, site)
         self.bumper = Bumpers(params.bumper, site)
         self.camera = Cameras(params.camera, site)
-        self.transforms = Transforms(params.odometry)
+        self.transforms = Transforms(site, params.odometry.odom_rate)
         sensors = [sensor for sensor in vars(self).values() if isinstance(sensor, Sensor)]
         self.by_name: Dict[str, Sensor] = {sensor.name: sensor for sensor in sensors}

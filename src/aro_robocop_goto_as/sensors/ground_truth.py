@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..param_loading import parameter
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import Sensor, Site
 
 GROUND_TRUTH = "ground_truth"
 
@@ -17,14 +17,9 @@ class TruthParams:
 
 
 class GroundTruth(Sensor):
-    """The rows of the fleet."""
+    """Has no rows of its own."""
 
     name = GROUND_TRUTH
 
     def __init__(self, params: TruthParams, site: Site) -> None:
-        self.rate = params.ground_truth_rate if params.ground_truth else 0
-        self._calls = [site.engine.update_fleet]
-
-    def measuring(self, _robots: Robots) -> Calls:
-        """Update the rows of all robots."""
-        return self._calls
+        super().__init__(site, params.ground_truth_rate if params.ground_truth else 0)

@@ -60,29 +60,27 @@ class Imus(Sensor):
     """samples: (n, 10), the parts of each as described above."""
 
     name = IMU
+    reads_fleet = False
 
     def __init__(self, params: ImuParams, site: Site) -> None:
-        self.rate = params.imu_rate
-        self.samples = np.zeros((len(site.fleet), 10))
-        self._params, self._site = params, site
+        super().__init__(site, params.imu_rate)
+        self.params, self.samples = params, np.zeros((len(site.fleet), 10))
         self._before: Dict[int, BodyState] = {}
 
     def before_step(self, robots: Robots) -> Calls:
         """Keep these robots' states, with which their states after the step are compared."""
+        return [lambda: self._keep(robots)]
 
-        def keep() -> None:
-            self._before = {robot: self._site.engine.body(robot) for robot in robots}
-
-        return [keep]
+    def _keep(self, robots: Robots) -> None:
+        self._before = {robot: self.site.engine.body(robot) for robot in robots}
 
     def measuring(self, robots: Robots) -> Calls:
         """Measure these robots' IMUs."""
-        site = self._site
+        return [lambda: self._measure(robots)]
 
-        def sample() -> None:
-            for robot in robots:
-                after, mount = site.engine.body(robot), site.models[robot].base_from_imu
-                noise = site.noise.stream(FIRST_STREAM + robot)
-                self.samples[robot] = measure(self._before[robot], after, 1.0 / site.rate, mount, self._params, noise)
-
-        return [sample]
+    def _measure(self, robots: Robots) -> None:
+        site = self.site
+        for robot in robots:
+            before, after, mount = self._before[robot], site.engine.body(robot), site.models[robot].base_from_imu
+            noise = site.noise.stream(FIRST_STREAM + robot)
+            self.samples[robot] = measure(before, after, 1.0 / site.rate, mount, self.params, noise)

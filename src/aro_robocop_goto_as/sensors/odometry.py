@@ -1,9 +1,9 @@
-"""Wheel odometry of a fleet, with its configured errors, or the true poses in the world."""
+"""The wheels' encoders: joint angles, and odometry with its configured errors, or the true poses in the world."""
 
 import ctypes
 from dataclasses import dataclass
 from functools import partial
-from typing import Callable, List, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..param_loading import parameter
 from ..robot.fleet import library
 from .sensor import Calls, Robots, Sensor, Site
 
-ODOM, TF = "odom", "tf"
+ODOM, JOINTS, TF = "odom", "joints", "tf"
 SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are numbered from 0 up
 
 
@@ -26,6 +26,13 @@ class OdometryParams:
     odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
     encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
     odom_rate: int = parameter(30, low=1)  # [Hz]
+
+
+@dataclass(frozen=True)
+class JointParams:
+    """How often the joints are read."""
+
+    joint_state_rate: int = parameter(30, low=1)  # [Hz]
 
 
 class _OdometersStruct(ctypes.Structure):
@@ -53,8 +60,8 @@ class Odometers(Sensor):
     def __init__(self, params: OdometryParams, site: Site, follows_truth: bool = False) -> None:
         """`follows_truth`: whether map_from_odom is corrected with each measurement."""
         n = len(site.fleet)
-        self.rate = params.odom_rate
-        self._site, self._fleet, self._follows_truth = site, site.fleet, follows_truth
+        super().__init__(site, params.odom_rate)
+        self._fleet, self._follows_truth = site.fleet, follows_truth
         self.in_world = params.odom_source == "world"
         self._slips = params.odom_slip > 0.0 and not self.in_world
         self._tick = params.encoder_tick
@@ -81,9 +88,8 @@ class Odometers(Sensor):
 
     def measuring(self, _robots: Robots) -> Calls:
         """Update the odometry of all robots."""
-        calls: List[Callable[[], object]] = [self._site.engine.update_fleet]
-        calls += [self._draw_slip] if self._slips else []
-        return [*calls, self.update, *([self._follow_truth] if self._follows_truth else [])]
+        slip, follow = [self._draw_slip] * self._slips, [self._follow_truth] * self._follows_truth
+        return [*slip, self.update, *follow]
 
     def reset(self, spawns: Sequence[Pose2D]) -> None:
         """Start at zero, or at the true poses, at the wheels' present angles."""
@@ -100,7 +106,7 @@ class Odometers(Sensor):
         return np.floor(angles / self._tick) * self._tick if self._tick else angles
 
     def _draw_slip(self) -> None:
-        self._site.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
+        self.site.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
 
     def _copy(self) -> None:
         self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
@@ -121,14 +127,24 @@ class Odometers(Sensor):
         return pose
 
 
+class Joints(Sensor):
+    """The wheels' joints; angles: (n, 2) [rad], left and right, as the encoders read them; speeds are the fleet's."""
+
+    name = JOINTS
+
+    def __init__(self, params: JointParams, odometry: Odometers) -> None:
+        super().__init__(odometry.site, params.joint_state_rate)
+        self.angles, self._odometry = np.zeros((len(odometry.site.fleet), 2)), odometry
+
+    def measuring(self, _robots: Robots) -> Calls:
+        """Read the joints of all robots."""
+        return [self._read]
+
+    def _read(self) -> None:
+        self.angles[:] = self._odometry.joint_angles()
+
+
 class Transforms(Sensor):
     """odom -> base_footprint and map -> odom, which are rows of the odometry, sent with it."""
 
     name = TF
-
-    def __init__(self, params: OdometryParams) -> None:
-        self.rate = params.odom_rate
-
-    def measuring(self, _robots: Robots) -> Calls:
-        """Nothing more: odometry is always measured."""
-        return ()

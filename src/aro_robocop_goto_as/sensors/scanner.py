@@ -18,30 +18,27 @@ class Scanner(Sensor):
     name = SCAN
 
     def __init__(self, params: ScanParams, site: Site) -> None:
-        self.rate = params.rate
+        super().__init__(site, params.rate)
         self.lidar = Lidar(params.lidar())
-        self._site = site
         self._ranges: Dict[int, np.ndarray] = {}
         self.ranges = self.ranges_of(self.lidar.spec.samples)
 
     def ranges_of(self, beams: int) -> np.ndarray:
         """The array (n, beams) [m] to which scans with so many beams are written."""
-        return self._ranges.setdefault(beams, np.zeros((len(self._site.fleet), beams)))
+        return self._ranges.setdefault(beams, np.zeros((len(self.site.fleet), beams)))
 
     def measuring(self, robots: Robots) -> Calls:
         """Scan with these robots' scanners."""
-        if not self.lidar.spec.varying:
-            return [self._site.engine.update_fleet, *self._scanning(self.lidar, robots)]
+        return [lambda: self._turn(robots)] if self.lidar.spec.varying else self._scanning(self.lidar, robots)
 
-        def scan() -> None:
-            lidar = self.lidar.next_turn(self._site.noise.stream(STREAM))
-            self.ranges = self.ranges_of(lidar.spec.samples)
-            for call in self._scanning(lidar, robots):
-                call()
-
-        return [self._site.engine.update_fleet, scan]
+    def _turn(self, robots: Robots) -> None:
+        """Scan with as many beams as this revolution has."""
+        lidar = self.lidar.next_turn(self.site.noise.stream(STREAM))
+        self.ranges = self.ranges_of(lidar.spec.samples)
+        for call in self._scanning(lidar, robots):
+            call()
 
     def _scanning(self, lidar: Lidar, robots: Robots) -> Calls:
-        site, ranges = self._site, self.ranges_of(lidar.spec.samples)
+        site, ranges = self.site, self.ranges_of(lidar.spec.samples)
         cast = lidar.fan.casting(site.scanners.scene, robots, lidar.spec.range_max, ranges)
         return [cast, lidar.measuring(robots, site.episode, ranges)]

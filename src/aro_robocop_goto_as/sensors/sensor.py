@@ -32,20 +32,21 @@ class Site:
 class Sensor:
     """A sensor that every robot has; of its arrays, each robot's row is changed in place when the sensor is due."""
 
-    name = ""  # also of its topic's entry in ros.sim.sensor_messages
-    rate = 0  # [Hz]; 0: never
+    name = ""
     unasked = False  # whether it is measured also while nobody subscribes
+    reads_fleet = True  # whether the fleet's rows have to be up to date before it measures
+
+    def __init__(self, site: Site, rate: int) -> None:
+        """`rate` [Hz]; 0: never."""
+        self.site, self.rate = site, rate
 
     def before_step(self, _robots: Robots) -> Calls:
         """What to call just before the step on which these robots are measured."""
         return ()
 
-    def measuring(self, robots: Robots) -> Calls:
-        """What to call to measure these robots; asked for once for all steps that are alike.
-
-        The fleet's rows are up to date only after a call of the engine's update_fleet, which is made once per step.
-        """
-        raise NotImplementedError
+    def measuring(self, _robots: Robots) -> Calls:
+        """What to call to measure these robots; asked for once for all steps that are alike."""
+        return ()
 
     def reset(self, _spawns: Sequence[Pose2D]) -> None:
         """Begin anew: the robots are at their spawn poses."""

@@ -46,12 +46,14 @@ class Observations(Sensors):
         return self.due.sensors.get(sensor, ())
 
     def prepare(self, due: Due, names: Sequence[str]) -> None:
-        """Find the calls for steps on which these sensors and ticks are due; no call is made twice on a step."""
+        """Find the calls for steps on which these sensors and ticks are due."""
         sensors = [self.by_name[name] for name in names if name in self.by_name]
         measured = [(sensor, due.sensors.get(sensor.name, ())) for sensor in sensors]
         measured = [(sensor, robots) for sensor, robots in measured if robots or sensor.unasked]
         due.before = [call for sensor, robots in measured for call in sensor.before_step(robots)]
-        due.measures = list(dict.fromkeys(call for sensor, robots in measured for call in sensor.measuring(robots)))
+        due.measures = [call for sensor, robots in measured for call in sensor.measuring(robots)]
+        if any(sensor.reads_fleet for sensor, _ in measured):
+            due.measures = [self.site.engine.update_fleet, *due.measures]
 
     def reset(self, seed: int, spawns: Sequence[Pose2D]) -> None:
         """Odometry to zero where the robots are, at their spawn poses; noise and moving obstacles to their start."""

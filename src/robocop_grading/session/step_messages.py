@@ -8,7 +8,7 @@ from std_msgs.msg import Bool
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
-from aro_robocop_goto_as.ros.sim.sensor_messages import NO_VARIANCES, packed_clock, packed_odometry
+from aro_robocop_goto_as.ros.sim.sensor_topics import NO_VARIANCES, packed_clock, packed_odometry
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.bumper import BUMPER
 from aro_robocop_goto_as.sensors.odometry import ODOM

@@ -19,8 +19,7 @@ from .. import convert
 from ..publishing.batch import Batch, Posted
 from ..publishing.publisher import publisher
 from ..publishing.rospy_internals import set_latched
-from .sensor_messages import TOPICS, packed_clock, packed_transforms
-from .sensor_topics import SensorTopics
+from .sensor_topics import TOPICS, SensorTopics, packed_clock, packed_transforms
 
 
 class StepTopics:
@@ -101,7 +100,9 @@ class StepTopics:
             for robot in self._due(due, sensor):
                 message = robot.packed(sensor)
                 messages += [] if message is None else [(robot.topics[sensor], message)]
-        transforms = [transform for robot in self._due(due, TF) for transform in robot.transforms()]
+        transforms = [
+            transform for robot in self._due(due, TF) for transform in robot.transforms(self._simulator.params.topics)
+        ]
         return [*messages, *([(self.tf, packed_transforms(transforms))] if transforms else [])]
 
     def _due(self, due: Due, sensor: str) -> List[SensorTopics]:

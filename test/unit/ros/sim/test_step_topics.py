@@ -2,7 +2,7 @@
 
 from typing import Callable
 
-from aro_robocop_goto_as.ros.sim.sensor_messages import TOPICS
+from aro_robocop_goto_as.ros.sim.sensor_topics import TOPICS
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 
