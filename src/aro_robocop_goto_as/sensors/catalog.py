@@ -8,9 +8,9 @@ from .bumper import BumperParams, Bumpers
 from .camera import CameraParams, Cameras
 from .ground_truth import GroundTruth, TruthParams
 from .imu import ImuParams, Imus
+from .lidar import Scanner
 from .odometry import JointParams, Joints, Odometers, OdometryParams, Transforms
 from .scan_profiles import ScanParams
-from .scanner import Scanner
 from .sensor import Sensor, Site
 
 

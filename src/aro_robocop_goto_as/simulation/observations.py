@@ -45,16 +45,6 @@ class Observations(Sensors):
         """The robots for which a sensor is due and subscribed to."""
         return self.due.sensors.get(sensor, ())
 
-    def prepare(self, due: Due, names: Sequence[str]) -> None:
-        """Find the calls for steps on which these sensors and ticks are due."""
-        sensors = [self.by_name[name] for name in names if name in self.by_name]
-        measured = [(sensor, due.sensors.get(sensor.name, ())) for sensor in sensors]
-        measured = [(sensor, robots) for sensor, robots in measured if robots or sensor.unasked]
-        due.before = [call for sensor, robots in measured for call in sensor.before_step(robots)]
-        due.measures = [call for sensor, robots in measured for call in sensor.measuring(robots)]
-        if any(sensor.reads_fleet for sensor, _ in measured):
-            due.measures = [self.site.engine.update_fleet, *due.measures]
-
     def reset(self, seed: int, spawns: Sequence[Pose2D]) -> None:
         """Odometry to zero where the robots are, at their spawn poses; noise and moving obstacles to their start."""
         for sensor in self.by_name.values():

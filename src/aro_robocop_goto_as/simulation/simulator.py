@@ -1,7 +1,7 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
 import math
-from typing import Optional, Sequence, Set, Tuple
+from typing import Optional, Sequence, Set
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
-from .observations import Due, Observations, Subscriptions
-from .schedule import CLOCK, CONTROL, Schedule, stamp_ns
+from .agenda import Agenda
+from .observations import Observations, Subscriptions
+from .schedule import stamp_ns
 
 
 class Simulator:
@@ -33,7 +34,7 @@ class Simulator:
         self.engine = engine
         self.observed = Observations(params, world, engine)
         self.lidar = self.observed.scan.lidar
-        self._schedule_for({})
+        self._agenda = Agenda(self.observed, params.rates)
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
         self.reset()
@@ -76,13 +77,10 @@ class Simulator:
 
     def advance(self, subscriptions: Subscriptions, most: int) -> Optional[Observations]:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
-        if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
-            self._schedule_for(subscriptions)
-        steps, names = self._schedule.after(self.steps)
+        steps, due = self._agenda.after(self.steps, subscriptions)
         if steps > most:
             self._run(most)
             return None
-        due = self._dues[names]
         if due.before:
             self._run(steps - 1)
             for look in due.before:
@@ -103,22 +101,6 @@ class Simulator:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
             self.observed.site.scanners.move(self.world_time)
-
-    def _schedule_for(self, subscriptions: Subscriptions) -> None:
-        """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
-        self._subscriptions = subscriptions
-        rates = {CLOCK: self.params.rates.clock_rate, CONTROL: self.params.rates.control_rate}
-        for name, sensor in self.observed.by_name.items():
-            if sensor.unasked or subscriptions.get(name):
-                rates[name] = sensor.rate
-        self._schedule = Schedule(rates, self.rate)
-        self._dues = {names: self._due(names) for names in self._schedule.occurring}
-
-    def _due(self, names: Tuple[str, ...]) -> Due:
-        sensors = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
-        due = Due(CLOCK in names, CONTROL in names, sensors)
-        self.observed.prepare(due, names)
-        return due
 
     # -- the state of the world and of its robots --
 
@@ -176,8 +158,7 @@ class Simulator:
         self.world = world.with_motion(self.params.world.moving)
         self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
-        for names, due in self._dues.items():
-            self.observed.prepare(due, names)
+        self._agenda.prepare()
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
 

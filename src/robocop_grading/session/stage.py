@@ -17,8 +17,8 @@ from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sensors.odometry import ODOM, TF
-from aro_robocop_goto_as.sensors.scanner import SCAN
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions

@@ -22,8 +22,8 @@ from aro_robocop_goto_as.ros.publishing.publisher import publisher
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
+from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sensors.odometry import JOINTS, ODOM
-from aro_robocop_goto_as.sensors.scanner import SCAN
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.observations import Observations
 

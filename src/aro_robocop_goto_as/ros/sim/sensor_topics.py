@@ -22,9 +22,9 @@ from ...sensors.bumper import BUMPER
 from ...sensors.camera import CAMERA
 from ...sensors.ground_truth import GROUND_TRUTH
 from ...sensors.imu import FORCE, IMU, ORIENTATION, RATES, ImuParams
+from ...sensors.lidar import SCAN
 from ...sensors.odometry import JOINTS, ODOM
 from ...sensors.scan_profiles import LidarSpec
-from ...sensors.scanner import SCAN
 from ...sim_params import TopicParams
 from ...simulation.observations import Observations
 from ...simulation.simulator import Simulator
