@@ -9,19 +9,18 @@ from .camera import CameraParams, Cameras
 from .ground_truth import GroundTruth, TruthParams
 from .imu import ImuParams, Imus
 from .lidar import Scanner
-from .odometry import JointParams, Joints, Odometers, OdometryParams, Transforms
+from .odometry import Joints, Odometers, OdometryParams, Transforms
 from .scan_profiles import ScanParams
 from .sensor import Sensor, Site
 
 
 @dataclass(frozen=True)
 class SensorParams:
-    """Parameters of the sensors; each group has a rate, whose name ends with _rate."""
+    """Parameters of the sensors; the names of their rates end with _rate."""
 
     ground_truth: TruthParams = group(TruthParams)
     imu: ImuParams = group(ImuParams)
     odometry: OdometryParams = group(OdometryParams)
-    joints: JointParams = group(JointParams)
     scan: ScanParams = group(ScanParams)
     bumper: BumperParams = group(BumperParams)
     camera: CameraParams = group(CameraParams)
@@ -41,7 +40,7 @@ class Sensors:
         self.ground_truth = GroundTruth(params.ground_truth, site)
         self.imu = Imus(params.imu, site)
         self.odometry = Odometers(params.odometry, site, follows_truth)
-        self.joints = Joints(params.joints, self.odometry)
+        self.joints = Joints(params.odometry, site, self.odometry)
         self.scan = Scanner(params.scan, site)
         self.bumper = Bumpers(params.bumper, site)
         self.camera = Cameras(params.camera, site)

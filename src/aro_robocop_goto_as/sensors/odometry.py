@@ -19,19 +19,13 @@ SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are number
 
 @dataclass(frozen=True)
 class OdometryParams:
-    """Errors of wheel odometry, and how often it is updated."""
+    """Errors of wheel odometry, and how often it is updated and the joints are read."""
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
     odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
     odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
     encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
     odom_rate: int = parameter(30, low=1)  # [Hz]
-
-
-@dataclass(frozen=True)
-class JointParams:
-    """How often the joints are read."""
-
     joint_state_rate: int = parameter(30, low=1)  # [Hz]
 
 
@@ -132,9 +126,9 @@ class Joints(Sensor):
 
     name = JOINTS
 
-    def __init__(self, params: JointParams, odometry: Odometers) -> None:
-        super().__init__(odometry.site, params.joint_state_rate)
-        self.angles, self._odometry = np.zeros((len(odometry.site.fleet), 2)), odometry
+    def __init__(self, params: OdometryParams, site: Site, odometry: Odometers) -> None:
+        super().__init__(site, params.joint_state_rate)
+        self.angles, self._odometry = np.zeros((len(site.fleet), 2)), odometry
 
     def measuring(self, _robots: Robots) -> Calls:
         """Read the joints of all robots."""
