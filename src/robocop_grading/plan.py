@@ -8,7 +8,7 @@ from typing import Any, List, Sequence, Tuple
 from aro_robocop_goto_as.errors import PlanError
 from aro_robocop_goto_as.geometry import Pose2D, compose
 from aro_robocop_goto_as.param_loading import parameter, several
-from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry
+from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry
 
 from .checks import CHECKS
 from .handout import Limits

@@ -1,7 +1,8 @@
 """Where the scenarios of a plan take place: each at a site of its own, in one world."""
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
-from aro_robocop_goto_as.world.model import Obstacle, Plane, World
+from aro_robocop_goto_as.shapes import Plane
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 from .plan import HEIGHT, MAX_OFFSET, Plan
 

@@ -9,9 +9,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from ..errors import FrameError
-from ..geometry import MAX_COORDINATE, Pose2D, Pose3D, Twist2D, yaw_of
+from ..geometry import MAX_COORDINATE, NANOSECONDS, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
-from ..simulation.schedule import NANOSECONDS
 
 # How far a quaternion's length may be from 1. A quarter turn typed as z 0.7 w 0.7 has length 0.99. A larger difference
 # is an error of the sender, which normalising would hide. tf2 refuses transforms from 0.005 on.

@@ -10,19 +10,19 @@ from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.geometry import NANOSECONDS, STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.obstacle_ahead import beams_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.sensors.lidar import SCAN
+from aro_robocop_goto_as.sensors.odometry import ODOM, TF
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
-from aro_robocop_goto_as.simulation.rates import ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.running import Simulation
-from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
 
 from ..handout import AHEAD
 from ..plan import Plan
@@ -140,7 +140,7 @@ class Stage:
     def _publish(self, observed: Observations) -> None:
         """One step's observations to the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
-            _make_odd(observed.scans[0])
+            _make_odd(observed.scan.ranges[0])
         messages = self._messages.of(observed)
         for topic, _, data in messages:
             if topic in self._sensors:  # the agent sends /clock when its callbacks may see it

@@ -14,11 +14,10 @@ from sensor_msgs.msg import LaserScan
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal, GoToPositionResult
 
 from ...errors import ClockError, RobocopError
-from ...geometry import STANDSTILL, Twist2D
+from ...geometry import NANOSECONDS, STANDSTILL, Twist2D
 from ...goto import Outcome
 from ...goto_params import GotoParams
 from ...names import ACTION, SERVER
-from ...simulation.schedule import NANOSECONDS
 from .. import convert
 from ..connected_nodes import is_connected_to, sender
 from ..node_main import answer_help, load_params, node
