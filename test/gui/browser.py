@@ -11,7 +11,7 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.web.page import AHEAD, FIELD, RIGHT, UP, corners_of, view_of
+from aro_robocop_goto_as.web.page import FIELD, RIGHT, axes_of, corners_of, view_of
 
 CHROMIUM = "/usr/bin/chromium"
 # As root Chromium raises its own priority, and drawing in software it then takes a processor from everything else.
@@ -108,11 +108,23 @@ class Tab:
         self.page.evaluate_handle(find, shown).as_element().click()
         self.page.get_by_role("option", name=wanted).click()
 
+    def scene(self):
+        """Width and height [pixel] of the scene, which begins in the window's upper left corner."""
+        box = self.page.locator("canvas[data-engine]").bounding_box()
+        return np.array((box["width"], box["height"]))
+
+    def pixels(self, points):
+        """Where the first view shows points (n, 3) [m]: (n, 2) [pixel] from the left and from the top."""
+        size = self.scene()
+        aspect = size[0] / size[1]
+        ahead, up = axes_of(aspect)
+        away = np.asarray(points) - view_of(corners_of(()), aspect)[0]
+        scale = size[1] / 2.0 / math.tan(FIELD / 2.0) / (away @ ahead)
+        return size / 2.0 + np.stack([scale * (away @ RIGHT), -scale * (away @ up)], axis=1)
+
     def pixel(self, x, y):
         """Where the first view shows a point of the floor [m]: columns from the left, rows from the top."""
-        away = np.subtract((x, y, 0.0), view_of(corners_of(()), *self.size)[0])
-        scale = self.size[1] / 2.0 / math.tan(FIELD / 2.0) / (away @ AHEAD)
-        return self.size[0] / 2.0 + scale * (away @ RIGHT), self.size[1] / 2.0 - scale * (away @ UP)
+        return self.pixels([(x, y, 0.0)])[0].tolist()
 
     def click_floor(self, x, y):
         """Click on a point of the floor [m], which nothing on the screen may cover."""
