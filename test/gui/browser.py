@@ -45,13 +45,12 @@ def chromium():
 class Tab:
     """One tab with the web page, and everything that it complained about or asked other servers for."""
 
-    def __init__(self, browser, url, size=SIZE, touch=False):
+    def __init__(self, browser, url, size=SIZE, touch=False, density=1.0):
         self.url = url
-        self.size = size
         self.errors = []
         self.foreign = []
         viewport = {"width": size[0], "height": size[1]}
-        self.page = browser.new_page(viewport=viewport, is_mobile=touch, has_touch=touch)
+        self.page = browser.new_page(viewport=viewport, is_mobile=touch, has_touch=touch, device_scale_factor=density)
         self.page.set_default_timeout(DEADLINE * 1000)
         self.page.on("console", lambda message: message.type == "error" and self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -130,14 +129,22 @@ class Tab:
         """Click on a point of the floor [m], which nothing on the screen may cover."""
         self.page.mouse.click(*self.pixel(x, y))
 
-    def tap_floor(self, x, y, seconds):
-        """Touch a point of the floor [m] with a finger, for so long."""
-        column, row = self.pixel(x, y)
+    def tap(self, column, row, seconds=0.05):
+        """Touch a pixel with a finger, for so long."""
         session = self.page.context.new_cdp_session(self.page)
         touch = "Input.dispatchTouchEvent"
         session.send(touch, {"type": "touchStart", "touchPoints": [{"x": column, "y": row}]})
         self.page.wait_for_timeout(1000.0 * seconds)
         session.send(touch, {"type": "touchEnd", "touchPoints": []})
+
+    def turn(self, size):
+        """Give the window another size [pixel], as turning a phone does."""
+        self.page.set_viewport_size({"width": size[0], "height": size[1]})
+
+    def covered(self, points):
+        """Those of the points (n, 2) [pixel] at which something else than the scene is seen."""
+        find = "([x, y]) => document.elementFromPoint(x, y)?.tagName"
+        return [point for point in points.tolist() if self.page.evaluate(find, point) != "CANVAS"]
 
     @contextlib.contextmanager
     def held(self, label):

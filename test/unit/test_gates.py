@@ -60,14 +60,14 @@ ORDER = {
     "sim_params": "param_loading physics robot sensors simulation.lockstep simulation.rates simulation.time_control",
     "goto": "geometry goto_params",
     "obstacle_ahead": "",
-    "web": "errors geometry names world",
+    "web": "errors geometry names raycast world",
     "simulation": "errors geometry sim_params physics raycast robot sensors world",
     "ros": "compiled errors geometry param_loading probes sim_params process robot names sensors simulation world",
     "ros.sim": "errors geometry sim_params probes process raycast robot ros names sensors simulation suggestions world",
     "ros.server": "errors geometry goto goto_params obstacle_ahead sim_params process ros names simulation",
     "ros.client": "bridge_params errors geometry process ros names suggestions",
     "ros.web": "errors geometry param_loading ros ros.client names web web_params",
-    "ros.cli": "errors geometry param_loading sim_params probes process reading robot ros ros.client names "
+    "ros.cli": "errors geometry param_loading sim_params probes process reading robot ros ros.client ros.web names "
     "suggestions web web_params world",
     f"{GRADER}.agent": "",
     f"{GRADER}.files": "errors process",
