@@ -110,16 +110,16 @@ class Tab:
     def scene(self):
         """Width and height [pixel] of the scene, which begins in the window's upper left corner."""
         box = self.page.locator("canvas[data-engine]").bounding_box()
-        return np.array((box["width"], box["height"]))
+        return box["width"], box["height"]
 
     def pixels(self, points):
         """Where the first view shows points (n, 3) [m]: (n, 2) [pixel] from the left and from the top."""
-        size = self.scene()
-        aspect = size[0] / size[1]
+        width, height = self.scene()
+        aspect = width / height
         ahead, up = axes_of(aspect)
         away = np.asarray(points) - view_of(corners_of(()), aspect)[0]
-        scale = size[1] / 2.0 / math.tan(FIELD / 2.0) / (away @ ahead)
-        return size / 2.0 + np.stack([scale * (away @ RIGHT), -scale * (away @ up)], axis=1)
+        scale = height / 2.0 / math.tan(FIELD / 2.0) / (away @ ahead)
+        return np.array((width, height)) / 2.0 + np.stack([scale * (away @ RIGHT), -scale * (away @ up)], axis=1)
 
     def pixel(self, x, y):
         """Where the first view shows a point of the floor [m]: columns from the left, rows from the top."""

@@ -78,29 +78,31 @@ def test_a_tap_on_a_phone_sends_a_goal_however_short_or_long_it_is(web, browser)
 def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_beside_the_room_sends_nothing(
     web, browser, upright, turned, density
 ):
-    goals = Recorder(web.ros, "/robocop_web", "/move_base_simple/goal")
+    goals = Recorder(web.ros, "/robocop_rviz_goto_ac_node", "/robocop_goto_as/goal")
+    wait_for(goals.connected, "recorder of goals")
+    web.place(*SPAWN)
     tab = Tab(browser, web.url, upright, touch=True, density=density)
     tab.wait_for_text(READY)
     tab.page.locator(".mantine-Notification-closeButton").click(force=True)  # of viser's warning of a slow browser
 
-    def goal_of_a_tap(x, y):
-        before = len(goals.messages())
-        tab.tap(*tab.pixel(x, y))
-        wait_for(lambda: len(goals.messages()) > before, f"a goal for a tap; {tab.text()}")
-        position = goals.messages()[-1]["pose"]["position"]
-        return position["x"], position["y"]
+    def sent():
+        positions = (message["goal"]["position"] for message in goals.messages())
+        return [(position["x"] + SPAWN[0], position["y"] + SPAWN[1]) for position in positions]
 
-    for size in (upright, turned, upright):
+    def a_tap_hits(place):
+        tab.tap(*tab.pixel(*place))
+        return sent() and math.dist(sent()[-1], place) < CLICK
+
+    for size, place in ((upright, (-0.5, 0.0)), (turned, (-0.5, 0.2)), (upright, (-0.5, 0.0))):
         tab.turn(size)
-        wait_for(lambda: math.dist(goal_of_a_tap(-0.5, 0.0), (-0.5, 0.0)) < CLICK, "the view fits the size")
+        wait_for(lambda at=place: a_tap_hits(at), "the view fits the size")
         corners = tab.pixels(corners_of(()))
         assert tab.covered(corners) == []
         assert max(np.ptp(corners, axis=0) / tab.scene()) > 0.9
-        sent, (_, height) = len(goals.messages()), tab.scene()
-        tab.tap(4, height - 4)
+        wait_for(lambda: "outside" not in tab.text(), "the taps are answered")
+        tab.tap(4.0, tab.scene()[1] - 4.0)
         tab.wait_for_text("outside of the walls, nothing was sent")
-        assert len(goals.messages()) == sent
-        wait_for(lambda: "outside" not in tab.text() or goal_of_a_tap(-0.5, 0.0), "the answer to the next tap")
+    assert all(max(abs(x), abs(y)) < 2.5 for x, y in sent())
     assert tab.errors == []
     tab.close()
 

@@ -66,7 +66,12 @@ class Plot(Part):
         title, *labels = plotted.texts
         # Dots, not lines, which would join the end of a goal with the start of the next.
         figures = (
-            {"label": label, "stroke": color, "width": 0, "points": {"show": True, "size": 3, "width": 0, "fill": color}}
+            {
+                "label": label,
+                "stroke": color,
+                "width": 0,
+                "points": {"show": True, "size": 3, "width": 0, "fill": color},
+            }
             for label, color in zip(labels, COLORS)
         )
         self._handle = context.server.gui.add_uplot(
