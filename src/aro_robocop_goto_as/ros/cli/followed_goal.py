@@ -11,16 +11,19 @@ import actionlib
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
+from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
 
 from ...errors import FrameError
-from ...names import ACTION, absolute_if_named, place, prefixed
+from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
 from ...process import signals
+from ...web.walls import is_outside
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
 from ..waiting import wait_until
+from ..web.marker_shapes import MarkerStore, obstacles
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
@@ -112,9 +115,25 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         if rospy.get_rostime() == started:
             complain(PAUSED)
         return NOT_REACHED
+    _watch_walls(position, transformer, lambda: latest[0])
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
     return _follow(client, position)
+
+
+def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
+    """Tell of a goal outside of the walls when the simulator, if there is one, has published its world."""
+
+    def on_world(message: MarkerArray) -> None:
+        world.unregister()
+        here, markers = odom(), MarkerStore()
+        markers.apply(message)
+        robot = None if here is None else here.pose.pose.position
+        walls = obstacles(markers.placed(transformer.pose_of))
+        if robot is not None and is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
+            complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
+
+    world = rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
 
 
 def _wait_or_explain(

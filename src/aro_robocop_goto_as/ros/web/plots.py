@@ -26,7 +26,8 @@ TIME: Dict[str, Any] = {
     "label": "time [s], 0 is now",
     "labelFont": "12px sans-serif",
     "labelSize": 18,
-    "size": 32,
+    "size": 30,
+    "gap": 3,
     "grid": {"show": False},
 }
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
@@ -63,14 +64,23 @@ class Plot(Part):
         super().__init__(context)
         self._plotted = plotted
         title, *labels = plotted.texts
-        figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
+        # Dots, not lines, which would join the end of a goal with the start of the next.
+        figures = (
+            {
+                "label": label,
+                "stroke": color,
+                "width": 0,
+                "points": {"show": True, "size": 3, "width": 0, "fill": color},
+            }
+            for label, color in zip(labels, COLORS)
+        )
         self._handle = context.server.gui.add_uplot(
             columns((), 0.0),
             ({"label": "t [s]"}, *figures),
             title=title,
             scales={"x": {"time": False, "range": (-SPAN, 0.0)}, "y": {"range": AROUND_ZERO}},
             axes=(TIME, {"size": 42, "space": 16}),
-            legend={"live": False},
+            legend={"live": False, "markers": {"width": 2}},
             height=HEIGHT,
             padding=(10, 12, 0, 0),
         )

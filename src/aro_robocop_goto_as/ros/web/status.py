@@ -1,5 +1,6 @@
 """Problems, the state of simulator and server, the answer to the last request, the choice of the robot."""
 
+import re
 import time
 from typing import Any, List, Optional, Tuple
 
@@ -13,6 +14,7 @@ from ...web.state import PageState
 from .part import Context, Inbox, Part
 
 SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
+WAITS = re.compile(r"; goal (x \S+ y \S+ in \S+) waits for it")  # in the bridge's report; shown as the newest goal
 
 
 class Status(Part):
@@ -37,7 +39,7 @@ class Status(Part):
         inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_sim)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._bridge = ""
+        self._on_bridge(0.0, String(""))
         inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
@@ -45,7 +47,8 @@ class Status(Part):
         self.context.state.change(simulated=True, factor_asked=message.factor_asked)
 
     def _on_bridge(self, _: float, message: String) -> None:
-        self._bridge = message.data
+        self._bridge, found = WAITS.sub("", message.data), WAITS.search(message.data)
+        self.context.state.change(waiting=found[1] if found else "")
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
