@@ -17,6 +17,7 @@ from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, Go
 
 from ...errors import FrameError
 from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
+from ...probes import master
 from ...process import signals
 from ...web.walls import is_outside
 from ..client import discovery
@@ -29,6 +30,11 @@ from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT,
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
 PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
 PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
+
+
+def standstill() -> str:
+    """Why simulated time may not advance, and what to do."""
+    return master.no_simulator(master.master_uri()) or PAUSED
 
 
 class _ProgressLine:
@@ -67,7 +73,7 @@ class _PauseNotice:
             self.time, self.since = now, time.monotonic()
         elif time.monotonic() - self.since > PAUSE_TIMEOUT:
             self.since = math.inf
-            complain(PAUSED)
+            complain(standstill())
 
 
 def _frame(robot: str, frame: str) -> str:
@@ -113,7 +119,7 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         if args.frame == DEFAULT_FRAME:
             complain("--frame odom gives X and Y relative to where the robot's odometry started")
         if rospy.get_rostime() == started:
-            complain(PAUSED)
+            complain(standstill())
         return NOT_REACHED
     _watch_walls(position, transformer, lambda: latest[0])
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
@@ -148,7 +154,7 @@ def _wait_or_explain(
     if discovery.is_up(client) and not ended():
         return ""
     if not rospy.get_rostime():
-        return PAUSED
+        return standstill()
     unknown = "; the terminal in which the system was started shows why its server ended, if it did"
     return f"no answer from {action} for {time.monotonic() - started:.0f} s{discovery.hint(action) or unknown}"
 

@@ -1,12 +1,11 @@
 """What ./robocop run prints when everything runs: the world, the robots, what to do next."""
 
-import os
 import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ...errors import RobocopError
-from ...names import COMMAND_VARIABLE, SERVER, WEB
+from ...names import SERVER, WEB, robocop
 from ...param_loading import from_dict
 from ...sim_params import SimParams
 from ...web.access import default_host, url
@@ -27,7 +26,7 @@ def overview(
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
-    command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
+    command = robocop()
     for node in running:
         if is_page(node):
             waits = "; it plays when the page is opened" if REPLAYED in node.args and "rviz" not in nodes else ""
