@@ -123,10 +123,12 @@ class Channel:
                 self._freeze()
 
     def _tell(self) -> None:
-        """Tell of topics, and of programs of ROS that the node has started, if there are others."""
+        """Tell of topics, of programs of ROS that the node has started, and of delays, if there are others."""
+        self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
             told = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
+            told["delays"] = sorted(self.grader.delays.items())
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:
