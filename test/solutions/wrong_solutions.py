@@ -1047,6 +1047,43 @@ WRONG = (
         (BEGIN, f"        if self.pose[0] < -1.0:\n            rospy.sleep(1.0)\n            undefined\n{BEGIN}"),
         alone=True,
     ),
+    _bridge(
+        "bridge_transforms_without_a_timeout",
+        "goal_frame",
+        "The click is newer than the newest transform from base_footprint to odom",
+        ("        msg.header.stamp = rospy.Time(0)\n", ""),
+        (", rospy.Duration(1.0))", ")"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_unsubscribes",
+        "cancels_older",
+        "After its first goal the bridge sent no other click",
+        ("        rospy.Subscriber(", "        self.clicks = rospy.Subscriber("),
+        ("        self.sent = True\n", "        self.clicks.unregister()\n"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_flag_is_never_cleared",
+        "cancels_older",
+        "After its first goal the bridge sent no other click",
+        ("        if self.sent:\n            self.client.cancel_goal()\n", "        if self.sent:\n            return\n"),
+        alone=True,
+    ),
+    _server(
+        "odometry_callback_takes_0.4_s",
+        "feedback_position",
+        "slow",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.4)\n"),
+        alone=True,
+    ),
+    _server(
+        "scan_callback_takes_1_s",
+        "stops_at_obstacle",
+        "slow",
+        ("def scan_cb(self, msg):\n", "def scan_cb(self, msg):\n        rospy.sleep(1.0)\n"),
+        alone=True,
+    ),
 )
 
 # Solutions that get full marks, and advice with these words.

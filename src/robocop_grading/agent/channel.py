@@ -126,10 +126,12 @@ class Channel:
                 self._freeze()
 
     def _tell(self) -> None:
-        """Tell the grader the node's topics and the programs of ROS that it has started, if they have changed."""
+        """Tell the grader the node's topics, the programs of ROS that it has started, and delays, if they have changed."""
+        self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
             told = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
+            told["delays"] = sorted(self.grader.delays.items())
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:

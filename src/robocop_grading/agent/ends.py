@@ -20,10 +20,17 @@ class End:
         self._reader: Optional[Waiter] = None
         self.on_close: Callable[[], object] = lambda: None
         self.is_open = True
+        self._since_ns = 0  # when what is not read yet began to arrive
+
+    @property
+    def waiting_ns(self) -> int:
+        """How long the first of what is not read yet has waited."""
+        return scheduler.now_ns - self._since_ns if self._data and self.is_open else 0
 
     def feed(self, data: bytes) -> None:
         """Something arrives."""
         with scheduler.guard:
+            self._since_ns = self._since_ns if self._data else scheduler.now_ns
             self._data += data
             self._wake()
 

@@ -20,6 +20,7 @@ MASTER_METHODS = (
     "lookupNode lookupService getPublishedTopics getTopicTypes getSystemState getUri getPid "
     "deleteParam setParam getParam searchParam subscribeParam unsubscribeParam hasParam getParamNames"
 ).split()
+DELAY_STEP_NS = 500_000_000  # [ns] in which delays of messages are told; shorter ones are not
 MAX_PROBES = 1000  # connections of rospy.wait_for_service() between two answers
 
 
@@ -54,6 +55,7 @@ class Grader:
         self.node: Any = None  # rospy's handler of requests to the node itself
         self.tell_of_child: Callable[[], object] = lambda: None
         self.has_news = False  # the node has told the master something
+        self.delays: Dict[str, float] = {}  # [s] by topic, of its messages until the node read them
         self._offered: Dict[str, Header] = {}  # topics that it publishes and services, by name
         self._wanted: Dict[str, Header] = {}  # topics that it subscribes to
         self._latched: Dict[str, bytes] = {}
@@ -66,6 +68,13 @@ class Grader:
         """Close the connections that rospy.wait_for_service() has made, so that there is room for others."""
         while files.wait([(self._port.fileno(), select.POLLIN)], 0.0):
             self._port.accept()[0].close()
+
+    def note_delays(self) -> None:
+        """Note of which topics the messages wait longer than before."""
+        for topic, ends in self._ends.items():
+            steps = max((end.waiting_ns for end in ends), default=0) // DELAY_STEP_NS
+            if steps * DELAY_STEP_NS > 1e9 * self.delays.get(topic, 0.0):
+                self.delays[topic], self.has_news = steps * DELAY_STEP_NS / 1e9, True
 
     def offer(self, header: Header) -> None:
         """The grader publishes a topic, subscribes to it, or offers a service."""

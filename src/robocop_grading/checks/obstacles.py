@@ -18,7 +18,7 @@ from ..record import (
     samples_between,
 )
 from ..texts import sentences, text
-from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, logged_cause, unpublished
+from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, late, logged_cause, unpublished
 from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
@@ -32,10 +32,13 @@ STANDS = After("stands_at_end", kind=MOVING)
 
 
 def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to notice an obstacle with its cause if no scan can come."""
+    """The failure to notice an obstacle with its cause if no scan can come, or comes late."""
     silent = unpublished(records, SCAN_TOPIC)
     unnoticed = failure.kind in (STATUS_NAMES[SUCCEEDED], SUCCESS, NO_RESULT, MOVES_FIRST)
-    return replace(failure, cause=text("scan_unpublished", silent)) if silent and unnoticed else failure
+    if silent and unnoticed:
+        return replace(failure, cause=text("scan_unpublished", silent))
+    of_old_scan = late(records, SCAN_TOPIC, "The distance ahead is that of an old scan")
+    return replace(failure, cause=of_old_scan) if of_old_scan and (unnoticed or not failure.kind) else failure
 
 
 @check("distances", after=(*ENDING, AT_FIRST, STANDS), needs=("stays_alive",), explain=_explained)

@@ -211,13 +211,17 @@ class BridgeRun(Run):
         self.finish("replace")
 
     def _frame(self) -> None:
-        """Clicks in other frames, after the robot has moved, where map differs from odom."""
+        """Clicks in other frames, after the robot has moved, where map differs from odom.
+
+        The first one is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
+        """
         self._finish_goals()
         self.begin("frame", 1)
         self.settle(0.5)
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
             self.settle(seconds)
+        self.stage.pass_transform()
         for frame in FRAMES:
             self._send_click(frame, 1.0, 0.2)
             self.settle(0.5)

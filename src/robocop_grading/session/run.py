@@ -70,6 +70,7 @@ class Run:
             marks=self.marks,
             other_types=others,
             programs=tuple(sorted(self.topics.programs)),
+            delays=tuple(sorted(self.topics.delays.items())),
             **parts,
             **more,
         )

@@ -121,6 +121,11 @@ class Stage:
                 self.digest()
         return self.sample()
 
+    def pass_transform(self) -> None:
+        """Advance, by the clock as well, to halfway between two transforms of the robot."""
+        self.sim.advance({}, self.sim.rate // PARAMS.odometry.odom_rate // 2)
+        self.clock_ns = self.sim.stamp_ns
+
     def _step_at(self, stamp_ns: int) -> int:
         """The first step that is not before a simulated time [ns]."""
         return -(-stamp_ns * self.sim.rate // NANOSECONDS)
