@@ -110,7 +110,7 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
 
 
 def no_simulator(uri: str) -> str:
-    """That no simulator runs and what to do; empty if a node publishes time or odometry, or the master has no answer."""
+    """That no simulator runs, and what to do; empty if a node publishes time or odometry, or no master answers."""
     try:
         if publishers(uri, "clock", "odom"):
             return ""

@@ -7,7 +7,8 @@ import numpy as np
 from ..geometry import Pose2D
 from ..raycast.cross_section import CrossSection
 from ..raycast.occupancy import FREE, occupancy_of
-from ..world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Sphere, World
+from ..shapes import Box, Cylinder, Geometry, Mesh, Sphere
+from ..world.model import Obstacle, World
 from .scene import BOX, CYLINDER, MESH, SPHERE, Placed, Shape
 
 HEIGHT = 0.1  # [m] above the floor, at which obstacles are in a robot's way

@@ -8,7 +8,7 @@ import math
 import os
 import pickle
 import socket
-from typing import List, Tuple
+from typing import Any, Dict, List, Tuple
 
 from . import connections, files, grader, ros, stuck, wire
 from .scheduler import allocate_lock, scheduler
@@ -126,11 +126,11 @@ class Channel:
                 self._freeze()
 
     def _tell(self) -> None:
-        """Tell the grader the node's topics, the programs of ROS that it has started, and delays, if they have changed."""
+        """Tell the grader the node's topics, programs of ROS that it has started, and delays, if they have changed."""
         self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
-            told = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
+            told: Dict[str, Any] = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
             told["delays"] = sorted(self.grader.delays.items())
             self._write(wire.TOPICS, json.dumps(told).encode())
 

@@ -123,7 +123,7 @@ class Stage:
 
     def pass_transform(self) -> None:
         """Advance, by the clock as well, to halfway between two transforms of the robot."""
-        self.sim.advance({}, self.sim.rate // PARAMS.odometry.odom_rate // 2)
+        self.sim.advance({}, self.sim.rate // PARAMS.sensors.odometry.odom_rate // 2)
         self.clock_ns = self.sim.stamp_ns
 
     def _step_at(self, stamp_ns: int) -> int:

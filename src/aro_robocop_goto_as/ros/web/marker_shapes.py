@@ -48,7 +48,7 @@ def to_shape(marker: Marker) -> Optional[Shape]:
 
 def obstacles(group: Group) -> List[Placed]:
     """Those of the shapes that are the simulator's markers for obstacles, not for robots."""
-    return [placed for (namespace, _), placed in group.items() if namespace == "world"]
+    return [placed for key, placed in group.items() if isinstance(key, tuple) and key[0] == "world"]
 
 
 class MarkerStore:
