@@ -28,7 +28,7 @@ MASTER_METHODS = (
     "lookupNode lookupService getPublishedTopics getTopicTypes getSystemState getUri getPid "
     "deleteParam setParam getParam searchParam subscribeParam unsubscribeParam hasParam getParamNames"
 ).split()
-DELAY_STEP_NS = 500_000_000  # [ns] in which delays of messages are told; shorter ones are not
+DELAY_STEP_NS = 250_000_000  # [ns] in which delays of messages are told; shorter ones are not
 PROBES = 1000  # of its services at one time, see Grader
 Header = Dict[str, str]  # of a connection, as on TCPROS
 
