@@ -984,6 +984,13 @@ WRONG = (
         alone=True,
     ),
     _bridge(
+        "bridge_without_tf2_geometry_msgs",
+        "bridge_alive",
+        "only after: import tf2_geometry_msgs",
+        ("import tf2_geometry_msgs\n", ""),
+        alone=True,
+    ),
+    _bridge(
         "bridge_unsubscribes",
         "cancels_older",
         "After its first goal the bridge sent no other click",
