@@ -1003,8 +1003,8 @@ WRONG = (
     _server(
         "odometry_callback_sleeps",
         "feedback_angle",
-        "or not stored at once by the callback of /odom?",
-        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.5)\n"),
+        "messages on /odom waited up to",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.4)\n"),
         alone=True,
     ),
     _server(
@@ -1056,6 +1056,13 @@ WRONG = (
         alone=True,
     ),
     _bridge(
+        "bridge_without_tf2_geometry_msgs",
+        "bridge_alive",
+        "only after: import tf2_geometry_msgs",
+        ("import tf2_geometry_msgs\n", ""),
+        alone=True,
+    ),
+    _bridge(
         "bridge_unsubscribes",
         "cancels_older",
         "After its first goal the bridge sent no other click",
@@ -1074,17 +1081,17 @@ WRONG = (
         alone=True,
     ),
     _server(
-        "odometry_callback_takes_0.4_s",
+        "odometry_callback_takes_a_little_too_long",
         "feedback_position",
-        "slow",
-        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.4)\n"),
+        "messages on /odom waited up to",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.1)\n"),
         alone=True,
     ),
     _server(
-        "scan_callback_takes_1_s",
+        "scan_callback_sleeps",
         "stops_at_obstacle",
-        "slow",
-        ("def scan_cb(self, msg):\n", "def scan_cb(self, msg):\n        rospy.sleep(1.0)\n"),
+        "messages on /scan waited up to",
+        ("def scan_cb(self, msg):\n", "def scan_cb(self, msg):\n        rospy.sleep(0.4)\n"),
         alone=True,
     ),
 )

@@ -20,7 +20,7 @@ MASTER_METHODS = (
     "lookupNode lookupService getPublishedTopics getTopicTypes getSystemState getUri getPid "
     "deleteParam setParam getParam searchParam subscribeParam unsubscribeParam hasParam getParamNames"
 ).split()
-DELAY_STEP_NS = 500_000_000  # [ns] in which delays of messages are told; shorter ones are not
+DELAY_STEP_NS = 250_000_000  # [ns] in which delays of messages are told; shorter ones are not
 MAX_PROBES = 1000  # connections of rospy.wait_for_service() between two answers
 
 

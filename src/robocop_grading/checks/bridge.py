@@ -11,6 +11,7 @@ from ..texts import text
 from .bridge_reports import NO_REPORT, UNTRUE, wrong_reports
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
+from .output import UNKNOWN_TYPE, logged
 from .topic_types import wrong_type
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
@@ -84,7 +85,7 @@ def _missing_connection(record: Record) -> str:
             return other
         similar = closest(CLICKS, record.unpublished)
         return text("other_topic", CLICKS, similar) if similar else text("no_subscriber", CLICKS)
-    return text("nothing_sent")
+    return text("tf2_types" if logged(record, UNKNOWN_TYPE) else "nothing_sent")
 
 
 def _unconnected(record: Record) -> str:
@@ -193,7 +194,7 @@ def bridge_alive(record: Record, limits: Limits) -> Verdict:
 
 def _looks_up_too_early(record: Record) -> bool:
     """Return whether tf2 refused a transform because the newest one was older than asked for."""
-    return any(TOO_EARLY.search(line.text) for line in record.lines)
+    return logged(record, TOO_EARLY)
 
 
 def _crash(record: Record, limits: Limits) -> Optional[Failed]:

@@ -72,11 +72,18 @@ def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outsi
     assert death.is_unexplained == outside
 
 
-def test_module_that_is_not_installed_is_named_as_one_that_the_lab_may_have(tmp_path, monkeypatch):
-    lines = ["Traceback (most recent call last):", "ModuleNotFoundError: No module named 'cv2'"]
+@pytest.mark.parametrize(
+    "module, words",
+    [
+        ("cv2", "; if the lab has it, name its package in the plan, under packages"),
+        ("scipy", "; if the lab has it, name its package in the plan, under packages"),
+        ("ropsy", "; did you mean rospy?"),
+    ],
+)
+def test_module_that_is_not_installed_is_named_as_mistyped_or_as_one_that_the_lab_may_have(
+    module, words, tmp_path, monkeypatch
+):
+    lines = ["Traceback (most recent call last):", f"ModuleNotFoundError: No module named '{module}'"]
     record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
     (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).problems
-    assert problem == (
-        "server: Python's module cv2 is not installed here; if the lab has it, name its package in the plan, under "
-        "packages"
-    )
+    assert problem == f"server: Python's module {module} is not installed here{words}"
