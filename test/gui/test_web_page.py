@@ -78,16 +78,15 @@ def test_a_tap_on_a_phone_sends_a_goal_however_short_or_long_it_is(web, browser)
 def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_beside_the_room_sends_nothing(
     web, browser, upright, turned, density
 ):
-    goals = Recorder(web.ros, "/robocop_rviz_goto_ac_node", "/robocop_goto_as/goal")
-    wait_for(goals.connected, "recorder of goals")
+    clicks = Recorder(web.ros, "/robocop_web", "/move_base_simple/goal")
     web.place(*SPAWN)
     tab = Tab(browser, web.url, upright, touch=True, density=density)
     tab.wait_for_text(READY)
     tab.page.locator(".mantine-Notification-closeButton").click(force=True)  # of viser's warning of a slow browser
 
     def sent():
-        positions = (message["goal"]["position"] for message in goals.messages())
-        return [(position["x"] + SPAWN[0], position["y"] + SPAWN[1]) for position in positions]
+        positions = (message["pose"]["position"] for message in clicks.messages())
+        return [(position["x"], position["y"]) for position in positions]
 
     def a_tap_hits(place):
         tab.tap(*tab.pixel(*place))

@@ -14,9 +14,9 @@ ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at lea
 MAX_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
 DESK = 1.2  # width by height of the scene that "reset view" is made for
 FILLED = 0.94  # share of the scene's width or height
-# The panel is beside the scene, so that it covers nothing: on a phone below it, where viser's lies over it and is as
-# narrow as elsewhere. And viser takes no notice of a press that its canvas has captured, as browsers do by themselves
-# for a finger: a tap was no click.
+# The panel is beside the scene, on a phone below it, so that it covers nothing: viser's covers more than half of a
+# phone, and is as narrow there as elsewhere. And viser takes no notice of a press on its canvas that the canvas has
+# captured, as browsers do by themselves for a finger: a tap was no click.
 STYLE = """<style onload="window.addEventListener(
   'pointerdown', e => e.target.tagName === 'CANVAS' && e.target.releasePointerCapture(e.pointerId), true
 )">
@@ -119,8 +119,8 @@ def view_of(corners: np.ndarray, aspect: float) -> Tuple[np.ndarray, np.ndarray]
     """
     look, above = axes_of(aspect)
     half = FILLED * math.tan(FIELD / 2.0)  # of what is filled, one metre ahead of the camera
-    # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ look) from a position p. So each edge of the view limits
-    # p @ (RIGHT - edge * look), by the corner that is nearest to this edge; the same for `above`.
+    # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ look) from a position p. So each edge of what is filled
+    # limits p @ (RIGHT - edge * look), by the corner that is nearest to this edge; the same for `above`.
     limits = []
     for axis, edge in ((RIGHT, half * aspect), (above, half)):
         low, high = float((corners @ (axis + edge * look)).min()), float((corners @ (axis - edge * look)).max())

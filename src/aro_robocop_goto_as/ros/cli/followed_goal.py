@@ -130,8 +130,12 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
 def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
     """Tell of a goal outside of the walls when the simulator, if there is one, has published its world."""
 
+    seen = threading.Event()  # the whole world comes first, then what moves
+
     def on_world(message: MarkerArray) -> None:
-        world.unregister()
+        if seen.is_set():
+            return
+        seen.set()
         here, markers = odom(), MarkerStore()
         markers.apply(message)
         robot = None if here is None else here.pose.pose.position
@@ -139,7 +143,7 @@ def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], O
         if robot is not None and is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
             complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
 
-    world = rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
+    rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
 
 
 def _wait_or_explain(

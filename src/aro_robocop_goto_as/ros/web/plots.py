@@ -26,8 +26,7 @@ TIME: Dict[str, Any] = {
     "label": "time [s], 0 is now",
     "labelFont": "12px sans-serif",
     "labelSize": 18,
-    "size": 30,
-    "gap": 3,
+    "size": 32,
     "grid": {"show": False},
 }
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
@@ -65,15 +64,8 @@ class Plot(Part):
         self._plotted = plotted
         title, *labels = plotted.texts
         # Dots, not lines, which would join the end of a goal with the start of the next.
-        figures = (
-            {
-                "label": label,
-                "stroke": color,
-                "width": 0,
-                "points": {"show": True, "size": 3, "width": 0, "fill": color},
-            }
-            for label, color in zip(labels, COLORS)
-        )
+        dots = ({"show": True, "size": 2.5, "width": 1, "stroke": color, "fill": color} for color in COLORS)
+        figures = ({"label": label, "width": 0, "points": style} for label, style in zip(labels, dots))
         self._handle = context.server.gui.add_uplot(
             columns((), 0.0),
             ({"label": "t [s]"}, *figures),
