@@ -23,8 +23,8 @@ from ...web.walls import is_outside
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
+from ..marker_shapes import MarkerStore, obstacles
 from ..waiting import wait_until
-from ..web.marker_shapes import MarkerStore, obstacles
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own

@@ -21,7 +21,7 @@ from ...web.walls import is_outside
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
-from .marker_shapes import MarkerStore, obstacles
+from ..marker_shapes import MarkerStore, obstacles
 from .part import Context, Inbox, Part
 from .requests import Requests
 

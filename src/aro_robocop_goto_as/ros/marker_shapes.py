@@ -6,11 +6,11 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...errors import FrameError
-from ...geometry import Pose3D, compose3
-from ...web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape, color_of
-from ...web.text import short
-from ..convert import from_quaternion
+from ..errors import FrameError
+from ..geometry import Pose3D, compose3
+from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape, color_of
+from ..web.text import short
+from .convert import from_quaternion
 
 KINDS = {
     Marker.CUBE: BOX,
