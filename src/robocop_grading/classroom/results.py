@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..files import tree
+from robocop_hosting import tree
+
 from ..judge import total, without_figures
 from ..plan import PARTS, Plan
 from ..report.write import render

@@ -8,8 +8,8 @@ from typing import IO, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.process import child
+from robocop_hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 
-from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
 from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE

@@ -17,8 +17,8 @@ import psutil
 
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
+from robocop_hosting import tree
 
-from ..files import tree
 from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
