@@ -1002,7 +1002,10 @@ WRONG = (
         "bridge_flag_is_never_cleared",
         "cancels_older",
         "After its first goal the bridge sent no other click",
-        ("        if self.sent:\n            self.client.cancel_goal()\n", "        if self.sent:\n            return\n"),
+        (
+            "        if self.sent:\n            self.client.cancel_goal()\n",
+            "        if self.sent:\n            return\n",
+        ),
         alone=True,
     ),
     _server(

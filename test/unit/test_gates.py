@@ -73,8 +73,8 @@ ORDER = {
     f"{GRADER}.files": "errors process",
     f"{GRADER}.builds": f"errors process names {GRADER}.files",
     f"{GRADER}.sim_with": f"errors process ros.cli {GRADER}.files {GRADER}.builds",
-    GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading probes process sim_params web "
-    "web_params world",
+    GRADER: f"errors geometry {GRADER}.files {GRADER}.builds param_loading probes process sim_params "
+    "suggestions web web_params world",
     f"{GRADER}.classroom": f"errors {GRADER} {GRADER}.files {GRADER}.builds process",
     f"{GRADER}.session": "errors geometry goto obstacle_ahead process robot ros names ros.sim sim_params simulation "
     f"web world {GRADER}",

@@ -112,7 +112,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
 
 
 def _explained(records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to forward a click with what it means if no click of the scenario became a goal, but earlier ones did."""
+    """The failure to forward a click with its cause if earlier clicks became goals and none of the scenario's did."""
     number = sum(len(record.goals) for record in records.values())
     if failure.cause != NOT_FORWARDED or not number or any(records[name].goals for name in names):
         return failure
@@ -204,7 +204,12 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check("track", after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)), needs=NEEDS, explain=_explained)
+@check(
+    "track",
+    after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)),
+    needs=NEEDS,
+    explain=_explained,
+)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:

@@ -167,7 +167,7 @@ def page(
 
 
 def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
-    """For each check the number of each outcome and the most frequent causes of failures that follow from no other one."""
+    """For each check the number of each outcome and the most frequent causes, without those of failures that follow."""
     counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
     causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
     for result in results:

@@ -13,7 +13,7 @@ from ...web.access import default_host, url
 from ...web_params import WebParams
 
 DEFAULT_WORLD = SimParams().world.world
-# In this world, at the start and after a reset: a goal in front of the robot, and one that no moving pillar comes near to.
+# In this world, seen from its start: a goal in front of the robot, and one that no moving pillar comes near.
 IN_FRONT, BESIDE = "0.3 0", "-0.7 -0.6"
 WITH_PILLARS = ("stage_3", "stage_4")  # that moving:=true moves
 REPLAYED = "replay:="  # an argument of the web page
