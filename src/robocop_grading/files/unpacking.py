@@ -61,6 +61,8 @@ def unpack(path: Path) -> Unpacked:
                 unpack_archive(file, contents)
         else:
             _add_from_disk(path, contents)
+        if path.is_dir() and not os.listdir(path):
+            raise SubmissionError("the folder is empty")
     except OSError as error:
         raise SubmissionError(f"can't be read: {error}") from error
     _unpack_nested(contents)

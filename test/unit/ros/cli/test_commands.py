@@ -120,6 +120,7 @@ def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_p
         assert (done.returncode, done.stdout) == (1, "")
         assert done.stderr.startswith(f"robocop: {command}: expected a file or folder with something to grade, got: ")
         assert done.stderr.count("\n") == 1, "no other messages"
+        assert ("hand_ins (the folder is empty)" in done.stderr) is ("--unsafe" in words)
 
 
 @pytest.mark.slow
