@@ -194,6 +194,16 @@ def test_link_created_by_the_build_is_not_followed(name, package, tmp_path):
         prepared(package, tmp_path / "workshop")
 
 
+@pytest.mark.parametrize("place", ["elsewhere.py", "lab/elsewhere.py"])
+def test_script_that_is_a_link_out_of_the_package_or_with_an_absolute_path_is_named(place, package, tmp_path):
+    script = package / "scripts" / "robocop_goto_as.py"
+    script.rename(tmp_path / place)
+    script.symlink_to(tmp_path / place)
+    (package / "scripts" / "same.py").symlink_to("robocop_rviz_goto_ac.py")
+    with pytest.raises(RobocopError, match=f"^scripts/robocop_goto_as.py -> .*/{place}: links .* are not followed"):
+        prepared(package, tmp_path / "workshop")
+
+
 def build_attack(package, code, then=""):
     """Have the package's build run some code."""
     (package / "attack.py").write_text(code)
