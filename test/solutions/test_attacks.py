@@ -16,6 +16,7 @@ from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan_file import load
 from robocop_grading.runner import Runner
+from robocop_grading.sandbox import build
 from robocop_grading.submission import prepare_submission
 
 BUDGET = 900.0  # [s, wall] for an attack's two scenarios, on however busy a machine
@@ -231,6 +232,20 @@ def test_what_a_build_made_of_its_log_and_its_sources_does_not_stop_the_next_one
     (folder / "src").rename(folder / "elsewhere")
     (folder / "src").symlink_to(folder / "elsewhere")
     assert {script.part for script in prepared(package, workshop).scripts} == {"server", "bridge"}
+
+
+def test_what_an_interrupted_build_has_left_is_removed_by_the_next_one(package, tmp_path, monkeypatch):
+    def interrupted(folder, *_):
+        (folder / "half").write_text("a message's class that is cut short")
+        raise KeyboardInterrupt
+
+    workshop = tmp_path / "workshop"
+    with monkeypatch.context() as during, pytest.raises(KeyboardInterrupt):
+        during.setattr(build, "make", interrupted)
+        prepared(package, workshop)
+    assert len(list(workshop.glob("*/half"))) == 1
+    prepared(package, workshop)
+    assert list(workshop.glob("*/half")) == [] and len(list(workshop.iterdir())) == 1
 
 
 def test_endless_line_of_a_build_is_cut(package, tmp_path):

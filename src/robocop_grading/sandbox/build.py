@@ -12,6 +12,7 @@ from aro_robocop_goto_as.process import child
 from ..builds.package import MAX_NAMED
 from ..builds.scripts import files_below
 from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
+from ..files import tree
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
 from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE
@@ -66,8 +67,13 @@ def build(
     """Build copies of packages (name -> folder) in a workspace at `folder`; the environment with it on top.
 
     In the sandbox links are copied as links: they must not lead to files that the author may not read. GradingError
-    says why the build failed, and names links that lead elsewhere.
+    says why the build failed, and names links that lead elsewhere. What an unfinished build has left is removed.
     """
+    unfinished = folder.with_name(f"{folder.name}.unfinished")  # beside it: what is in it, a build may change
+    if unfinished.exists():
+        tree.remove(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    unfinished.touch()
     copied, names = 0, " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
@@ -83,12 +89,14 @@ def build(
         raise GradingError(f"{names}: can't be copied: {error}") from error
     links = [] if sandbox is None else list(_links_elsewhere(folder / "src", sources))
     try:
-        return make(folder, names, underlay, runner_in(sandbox, folder, reads))
+        environment = make(folder, names, underlay, runner_in(sandbox, folder, reads))
     except HostingError as error:
         if not links:
             raise
         told = "links that lead out of the package are not followed: put the files themselves in their places"
         raise HostingError(f"{', '.join(links[:MAX_NAMED])}: {told}\n{error}") from error
+    unfinished.unlink()
+    return environment
 
 
 def _links_elsewhere(copies: Path, names: Iterable[str]) -> Iterator[str]:

@@ -42,7 +42,7 @@ class Guard:
     ) -> None:
         """`memory` [bytes], `processor_time` [s], `processes`: limits of all processes; a build's folder has its own.
 
-        With a `folder`, what a command of the build leaves running is ended: the build may wait for the end of its output.
+        With a `folder`, what a command of the build leaves running is ended: others wait for the end of its output.
         `used`: processor time [s] that others have used, and that counts, too.
         """
         self.reason = ""  # why they were killed, if they were
@@ -103,7 +103,7 @@ def _processes(pid: int) -> List["psutil.Process"]:
 
 
 def _end_left_behind(processes: Sequence["psutil.Process"]) -> None:
-    """End the processes whose parents have ended: bubblewrap's init has adopted them, whose first child is the command."""
+    """End what has lost its parents: bubblewrap's init has adopted it, whose first child is the command."""
     with contextlib.suppress(psutil.Error):  # one of them has ended
         for init in [it for it in processes[1:2] if it.name() == processes[0].name() == BUBBLEWRAP]:
             for orphan in sorted(init.children(), key=lambda it: (it.create_time(), it.pid))[1:]:
