@@ -212,6 +212,11 @@ def build_attack(package, code, then=""):
         text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/attack.py {then})\n")
 
 
+def test_build_is_over_when_its_command_has_ended_whatever_it_leaves_running(package, tmp_path):
+    build_attack(package, "import subprocess\nsubprocess.Popen(['setsid', 'sleep', '600'])  # has CMake's pipe, too")
+    assert [script.part for script in prepared(package, tmp_path / "workshop").scripts] == ["server", "bridge"]
+
+
 @pytest.mark.parametrize(
     "name, reason",
     [("BUILD_FULL", "it wrote more than 512 MB"), ("BUILD_NESTED", "it made more than 100 nested folders")],

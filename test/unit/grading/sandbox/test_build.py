@@ -7,13 +7,6 @@ from robocop_grading.builds.workspace import output_of
 from robocop_grading.sandbox import build
 
 
-def test_a_build_is_over_when_its_command_has_ended_whatever_it_leaves_running(sandbox, tmp_path):
-    (tmp_path / "workspace").mkdir()
-    run = build.runner_in(sandbox, tmp_path / "workspace", [])
-    leaves = "(setsid sleep 600 &) | cat; echo done"  # cat waits for the end of sleep's output, as CMake does
-    assert output_of(run, ["sh", "-c", leaves], {}) == (0, b"done\n", "")
-
-
 def test_command_that_waits_for_something_that_does_not_come_is_ended(sandbox, tmp_path, monkeypatch):
     (tmp_path / "workspace").mkdir()
     run = build.runner_in(sandbox, tmp_path / "workspace", [])
