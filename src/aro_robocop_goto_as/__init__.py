@@ -47,8 +47,8 @@ From the system to a browser and back, by viser:
 From ./robocop COMMAND to the program that does the work:
 
     robocop                       the shell script: a state folder, a clean environment
-    ros.cli.commands              names the function of each command, which checks the arguments and chooses the program
-        ros.cli.program           has the script install and build what that program needs, then becomes it
+    cli.commands                  names the function of each command, which checks the arguments and chooses the program
+        cli.program               has the script install and build what that program needs, then becomes it
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 

@@ -9,8 +9,8 @@ import subprocess
 import sys
 from typing import Callable, Dict, List, NoReturn, Sequence
 
-from ...errors import MasterError
-from ...suggestions import did_you_mean
+from ..errors import MasterError
+from ..suggestions import did_you_mean
 from . import completion, container_image, developer_commands, doctor, program, system_commands
 from .program import ROOT, refuse, say
 
