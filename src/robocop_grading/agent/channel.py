@@ -127,8 +127,8 @@ class Channel:
         self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
-            told = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
-            told["delays"] = sorted(self.grader.delays.items())
+            told = connections.topics(self.grader)
+            told.update(programs=sorted(stuck.others.of_ros), delays=sorted(self.grader.delays.items()))
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:
