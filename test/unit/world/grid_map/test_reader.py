@@ -69,6 +69,3 @@ def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
         sim.step({})
     assert 1.2 < sim.world_from_footprint().x < 1.45 and sim.touching()
     sim.close()
-
-
-# Big maps
