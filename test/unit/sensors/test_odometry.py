@@ -36,6 +36,36 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
     assert odometers.twists[0] == pytest.approx((v, w), abs=1e-6)
 
 
+@pytest.mark.parametrize(
+    "params, x, yaw",
+    [
+        (OdometryParams(odom_wheel_radius_error=0.1), 1.1 * 0.033, 0.0),
+        (OdometryParams(odom_slip=0.1), 0.033 * (1.2 + 1.1) / 2.0, 0.033 * (1.1 - 1.2) / 0.16),
+        (OdometryParams(encoder_tick=0.3), 0.9 * 0.033, 0.0),
+    ],
+)
+def test_each_error_of_odometry_has_its_size(params: OdometryParams, x: float, yaw: float) -> None:
+    fleet = _fleet()
+    odometers = Odometers(params, fleet)
+    fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
+    odometers.noise[0] = 2.0, -1.0  # in sigmas; only their size counts
+    odometers.update()
+    chord = x * np.sinc(yaw / (2.0 * math.pi))
+    assert odometers.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
+
+
+def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
+    fleet = _fleet()
+    odometers = Odometers(OdometryParams(odom_slip=0.1), fleet)
+    fleet.wheel_angles[0] = 1.0, 1.0
+    odometers.noise[0] = 2.0, 2.0
+    assert odometers.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
+    assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
+    odometers.noise[0] = 2.0, 2.0
+    odometers.update()
+    assert odometers.poses[0] == pytest.approx((1.2 * 0.033, 0.0, 0.0))
+
+
 def test_odometry_of_the_world_has_no_errors() -> None:
     fleet = _fleet()
     fleet.place(0, Pose2D(1.0, 2.0, 3.0))
