@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Iterator, List, NamedTuple
+from typing import Iterator, List, NamedTuple, Set
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -32,6 +32,17 @@ def blocks() -> Iterator[Block]:
                 block.lines.append(line)
             elif line.startswith("#"):
                 heading = line.lstrip("# ")
+
+
+def links(page: Path) -> List[str]:
+    """The relative links of a page, images included."""
+    return re.findall(r"\]\((?!\w+:)([^)\s]+)\)", page.read_text(encoding="utf-8"))
+
+
+def anchors(page: Path) -> Set[str]:
+    """The anchors of a page's headings, as GitHub and GitLab name them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.M)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def commands(*programs: str) -> List[str]:

@@ -9,12 +9,12 @@ From a velocity command to odometry, scan, tf and clock:
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
-    simulation.observations       measures what is due and subscribed to
-        sensors                   models of odometry, scanner, IMU and camera
+    simulation.agenda             what is due and subscribed to, and the calls that measure it, prepared once
+        sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
+    simulation.observations       what the sensors have measured
     ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.sim.sensor_topics     at the start: a robot's topics
-        ros.sim.sensor_messages   their packed messages, whose fields are bound to the rows of a robot
+        ros.sim.sensor_topics     at the start: each sensor's topic, and its packed message, bound to a robot's row
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, camera).

@@ -92,10 +92,6 @@ class GradingSetupError(GradingError):
     """Something that grading needs is not installed or not running here; the person grading has to provide it."""
 
 
-class WatchError(GradingSetupError):
-    """Neither RViz nor the web page can show the run; the message says why."""
-
-
 class UngradableError(GradingError):
     """The grader could not start its part of a run, or the run was ended from outside twice; it can be repeated."""
 

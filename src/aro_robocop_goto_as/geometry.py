@@ -1,4 +1,4 @@
-"""Poses and twists in the plane and in space, in the units and axes of REP-103."""
+"""Poses and twists in the plane and in space, in the units and axes of REP-103, and constants of physics."""
 
 import math
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ import numpy as np
 from .param_loading import MAX_COORDINATE as MAX_COORDINATE
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
+NANOSECONDS = 1000000000  # per second
 UPRIGHT = 1e-9  # largest |qx| + |qy| of an orientation without roll and pitch
 
 Vector3 = Tuple[float, float, float]

@@ -1,5 +1,7 @@
 """Names in ROS: the lab's package, nodes and action, what belongs to a robot, and places. It imports nothing of ROS."""
 
+import os
+
 PACKAGE = "aro_robocop_goto_as"
 SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
 SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"  # nodes, fixed by the handout
@@ -7,6 +9,11 @@ COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another te
 RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
 ACTION = "robocop_goto_as"  # fixed by the handout
 ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
+
+
+def robocop() -> str:
+    """What to type for ./robocop."""
+    return os.environ.get(COMMAND_VARIABLE) or "./robocop"
 
 
 def prefixed(robot: str, name: str) -> str:

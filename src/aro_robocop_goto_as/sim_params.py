@@ -1,24 +1,19 @@
 """All parameters of the simulator: the groups that its components declare, and which values exclude one another.
 
-A group is a frozen dataclass beside the component that reads it, with every default and bound. A field's name is the
-name of the ROS parameter, whatever the group; config/sim.yaml documents each one with its unit and source. A default of
-None means "not given": ROS parameters can't hold a null, so the key is simply left out.
+A group is a frozen dataclass with every default and bound, beside the component that reads it, or here if
+that is above this module. A field's name is the name of the ROS parameter, whatever the group; config/sim.yaml
+documents each one with its unit and source. A default of None means "not given": ROS parameters can't hold a null, so
+the key is simply left out.
 """
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, List, Mapping, Optional
 
 from .param_loading import MODELS_OWN, frame_problems, from_dict, group, parameter, positive
 from .physics.engine import EngineParams
 from .robot.base_controller import LimitParams
 from .robot.model_names import DEFAULT_MODEL
-from .sensors.camera import CameraParams
-from .sensors.imu import ImuParams
-from .sensors.odometry import OdometryParams
-from .sensors.scan_profiles import ScanParams
-from .simulation import rates as due
-from .simulation.lockstep import LockstepParams
-from .simulation.time_control import TimeParams
+from .sensors.catalog import SensorParams
 
 
 @dataclass(frozen=True)
@@ -42,6 +37,36 @@ class RobotParams:
 
 
 @dataclass(frozen=True)
+class Rates:
+    """How often each thing happens that is no sensor [Hz]."""
+
+    physics_rate: int = parameter(240, low=1, high=10000)
+    clock_rate: int = parameter(60, low=1)
+    control_rate: int = parameter(10, low=1)  # lockstep control ticks
+
+
+@dataclass(frozen=True)
+class TimeParams:
+    """How simulated time starts and runs."""
+
+    real_time_factor: float = parameter(1.0, low=0.0, high=1e6)  # 0: as fast as possible
+    start_paused: bool = False
+
+
+@dataclass(frozen=True)
+class LockstepParams:
+    """Whether simulated time waits for the controllers at each control tick, and for how long."""
+
+    sync: str = parameter("free", choices=("free", "lockstep"))
+    lockstep_timeout: float = positive(2.0)  # [s, wall]
+
+    @property
+    def enabled(self) -> bool:
+        """Return whether simulated time waits for the controllers."""
+        return self.sync == "lockstep"
+
+
+@dataclass(frozen=True)
 class FrameNames:
     """TF frames; of several robots, odom, base, scan and imu get the robot's name as a prefix."""
 
@@ -60,7 +85,6 @@ class TopicParams:
     localization: str = parameter("static", choices=("static", "truth", "none"))  # of map -> odom
     initialpose: bool = True  # a pose on initialpose places the robot there, unless localization is left to others
     odom_tf: bool = True
-    ground_truth: bool = True
     gazebo_services: bool = False
     gazebo_topics: bool = False  # /gazebo/model_states, /gazebo/link_states, imu_service
     publish_map: bool = False
@@ -79,14 +103,11 @@ class SimParams:
     world: WorldParams = group(WorldParams)
     robots: RobotParams = group(RobotParams)
     engine: EngineParams = group(EngineParams)
-    rates: due.Rates = group(due.Rates)
+    rates: Rates = group(Rates)
     time: TimeParams = group(TimeParams)
     lockstep: LockstepParams = group(LockstepParams)
     limits: LimitParams = group(LimitParams)
-    scan: ScanParams = group(ScanParams)
-    odometry: OdometryParams = group(OdometryParams)
-    imu: ImuParams = group(ImuParams)
-    camera: CameraParams = group(CameraParams)
+    sensors: SensorParams = group(SensorParams)
     frames: FrameNames = group(FrameNames)
     topics: TopicParams = group(TopicParams)
 
@@ -95,40 +116,19 @@ class SimParams:
         """These parameters by their ROS names, and the defaults of all others; ParameterError as from_dict."""
         return from_dict(cls, given, "arguments")
 
-    def due_rates(self) -> Dict[str, int]:
-        """How often each sensor and tick is due [Hz], in the order in which they are measured; 0 = never."""
-        rates, odom_rate = self.rates, self.odometry.odom_rate
-        return {
-            due.CLOCK: rates.clock_rate,
-            due.CONTROL: rates.control_rate,
-            due.GROUND_TRUTH: rates.ground_truth_rate,
-            due.IMU: self.imu.imu_rate,
-            due.JOINTS: rates.joint_state_rate,
-            due.ODOM: odom_rate,
-            due.SCAN: self.scan.rate,
-            due.BUMPER: rates.bumper_rate,
-            due.CAMERA: self.camera.camera_rate,
-            due.TF: odom_rate,
-        }
-
     def conflicts(self) -> List[str]:
         """Combinations of values that are impossible, in words; empty when there are none."""
         return self._rate_conflicts() + self._frame_conflicts() + self._range_conflicts()
 
     def _rate_conflicts(self) -> List[str]:
-        physics, imu = self.rates.physics_rate, self.imu.imu_rate
-        others = {
-            "scan_rate": self.scan.rate,
-            "odom_rate": self.odometry.odom_rate,
-            "camera_rate": self.camera.camera_rate,
-        }
-        rates: Dict[str, int] = {**vars(self.rates), **others}
+        physics, rates = self.rates.physics_rate, {**vars(self.rates), **self.sensors.rates()}
+        imu = rates.pop("imu_rate")  # it need not divide physics_rate
         problems = [
             f"{name}: {rate} Hz does not divide physics_rate {physics} Hz"
             for name, rate in rates.items()
             if rate and physics % rate
         ]
-        if imu > physics:  # it need not divide physics_rate
+        if imu > physics:
             problems.append(f"imu_rate: {imu} Hz is above physics_rate {physics} Hz")
         if self.lockstep.enabled and self.rates.clock_rate % self.rates.control_rate:
             problems.append(
@@ -148,7 +148,7 @@ class SimParams:
         return problems
 
     def _range_conflicts(self) -> List[str]:
-        lidar, camera = self.scan.lidar(), self.camera
+        lidar, camera = self.sensors.scan.lidar(), self.sensors.camera
         return [
             f"{high_name}: expected more than {low_name} {low}, got {high}"
             for low_name, low, high_name, high in (

@@ -5,11 +5,11 @@ from typing import Collection, Iterable
 MAX_LINE = 78  # characters; `rosservice call` wraps a longer text
 
 
-def did_you_mean(word: str, known: Iterable[str], form: str = "{}") -> str:
+def did_you_mean(word: str, known: Iterable[str], form: str = "{}", similarity: float = 0.6) -> str:
     """The end of an error message about a mistyped word, which shows the one meant; empty if none is similar."""
     import difflib  # only where there is an error
 
-    close = difflib.get_close_matches(word, list(known), n=1)
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=similarity)
     return f"; did you mean {form.format(close[0])}?" if close else ""
 
 

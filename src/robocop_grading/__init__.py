@@ -13,12 +13,12 @@ From a hand-in to its grade:
       | GO    | MESSAGE ... DONE      one socket to the node's process: until when, messages; what it has published
       v       |
     agent/            in that process: channel (turns), scheduler (one thread at a time, simulated time),
-                      connections (rospy's topics and services, and the master, without a network)
+                      connections, grader (rospy's topics and services, and the master, without a network)
       |
       | record        of each scenario: samples of the truth, and everything that came from the node
       v
     judge             records + plan (config/grading.yaml) -> grade, by checks/, one function for each contract
-      | report/       report.html, report.json, junit.xml, summary.md, classroom.json
+      | report/       report.html, report.json, summary.md, results.json, classroom.json
       v
     grader            all of this for one submission: cli (robocop grade), classroom/ (robocop grade-class)
 

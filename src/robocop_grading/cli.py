@@ -16,19 +16,17 @@ from .files import tree, unpacking
 from .files.scratch import scratch_folder
 from .grader import grade as grade_submission
 from .judge import CheckResult, Grade, Outcome, total
-from .plan import MIDDLE, Plan, load
+from .plan import MIDDLE, Plan
+from .plan_file import load
 from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
-from .sandbox.limits import MAX_CPU_TIME, MAX_WATCHED_CPU_TIME
 from .submission import prepare_submission
 from .texts import printable, printable_lines
-from .viewer import choose_viewer
 
 NO_GRADE = 3  # exit status: the machine had no time, or something was killed from outside
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
-PAGE_ADVICE = "open {url} in a browser to watch; server and bridge each wait a minute for it"
 MAX_SHOWN = 1_000  # characters of an error
 LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
@@ -115,9 +113,6 @@ def main() -> None:
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
-    parser.add_argument(
-        "--watch", action="store_true", help="show the run in real time, in RViz or, without a display, in a browser"
-    )
     parser.add_argument("--only", nargs="+", default=(), metavar="CHECK", help="run only what these checks need")
     args = parser.parse_args()
     interrupt_on_signal()
@@ -126,11 +121,7 @@ def main() -> None:
         plan_file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
         plan = load(plan_file, args.seed).restricted(args.only)
         given = make_report_folder(Path(args.report)) if args.report else None
-        cpu_time = MAX_WATCHED_CPU_TIME if args.watch else MAX_CPU_TIME
-        sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"], cpu_time)
-        viewer = choose_viewer(sandbox) if args.watch else None
-        if viewer is not None and viewer.is_page:
-            print(f"robocop grade: {PAGE_ADVICE.format(url=viewer.url)}", file=sys.stderr, flush=True)
+        sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
             if sys.stderr.isatty():
@@ -143,7 +134,7 @@ def main() -> None:
             name = submission.name + ("" if plan.is_whole else "-only")
             folder = given or make_report_folder(state / "reports" / name)
             progress = Progress(plan, [script.part for script in submission.scripts])
-            runner = Runner(plan, state, sandbox, viewer=viewer, on_progress=progress.begin)
+            runner = Runner(plan, state, sandbox, on_progress=progress.begin)
             grade = grade_submission(runner, submission, folder, keep=True)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)

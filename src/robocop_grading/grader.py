@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Dict, List, Mapping
 
 from aro_robocop_goto_as.errors import UngradableError
+from aro_robocop_goto_as.suggestions import did_you_mean
 
 from . import judge
 from .files.tree import remove, temporary_folder
@@ -19,7 +20,13 @@ from .submission import Script, Submission
 ATTEMPTS = 2
 KILLED = " by a SIGKILL that did not come from the grader"
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
-MISSING = "Python's module {} is not installed here; if the lab has it, name its package in the plan, under packages"
+MISSING = "Python's module {} is not installed here{}"
+NAME_IT = "; if the lab has it, name its package in the plan, under packages"
+LAB_MODULES = (
+    "actionlib actionlib_msgs aro_robocop_goto_as geometry_msgs nav_msgs numpy ros_numpy rospy sensor_msgs std_msgs tf "
+    "tf2_geometry_msgs tf2_ros"
+).split()
+MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
@@ -38,7 +45,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = Fal
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
-            notes += [f"{script.part}: {MISSING.format(name)}" for name in _missing_modules(recorded.records)]
+            notes += [f"{script.part}: {it}" for it in (*recorded.told, *_missing_modules(recorded.records))]
         judged = judge.judge(submission.name, plan, records, problems)
         judged = replace(judged, files=tuple(submission.files), problems=(*judged.problems, *notes))
         folder.mkdir(parents=True, exist_ok=True)
@@ -52,7 +59,8 @@ def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = Fal
 
 def _missing_modules(records: Mapping[str, Record]) -> List[str]:
     lines = [line.text for record in records.values() for line in record.lines]
-    return sorted({name for line in lines for name in _NO_MODULE.findall(line)})
+    names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
+    return [MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT) for it in names]
 
 
 def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:

@@ -155,6 +155,7 @@ class Record:
     unpublished: Tuple[str, ...] = ()  # topics that the node subscribes to and nobody publishes
     other_types: Tuple[Tuple[str, str, str], ...] = ()  # the node's topics with a wrong type: name, type, expected one
     programs: Tuple[str, ...] = ()  # of ROS, such as rostopic, that the node has started
+    delays: Tuple[Tuple[str, float], ...] = ()  # topics, and how long [s] messages waited for the node since its start
     problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()

@@ -1,4 +1,4 @@
-"""One part of a submission -> records: runs a session as a process, with a time limit that is no judgement."""
+"""Runs a session as a process for one part of a submission; when its time limit is exceeded there is no grade."""
 
 import math
 import os
@@ -8,22 +8,22 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import PIPE
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Sequence
 
 from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
+from .attempts import AGAIN, counting
 from .packages import provide
 from .plan import Plan
-from .sandbox import memory_group
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
-from .sandbox.guard import Guard
-from .sandbox.limits import MAX_SESSION_MEMORY
+from .sandbox.guard import Guard, kernel_kills
+from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
+from .session.job import Job
 from .submission import AGENT, Script, Submission
-from .viewer import Viewer
 
 SESSION = "robocop_grading.session.main"
 Progress = Callable[[str, str], None]  # part, scenario
@@ -36,21 +36,6 @@ LOG_LINES = 15
 
 
 @dataclass(frozen=True)
-class Job:
-    """What a session is to do: the scenarios of one part of a hand-in that the plan's checks examine."""
-
-    part: str
-    command: Tuple[str, ...]  # of the node, in the sandbox
-    environment: Mapping[str, str]
-    folder: Path  # the node's
-    out: Path  # for records and bags
-    plan: Plan
-    parameters: Mapping[str, Any]  # on the parameter server
-    cpu_time: float  # [s] of the node and its children together
-    viewer: Optional[Viewer] = None
-
-
-@dataclass(frozen=True)
 class Recorded:
     """The outcome of one part: records by scenario, and why some are missing."""
 
@@ -58,6 +43,7 @@ class Recorded:
     problem: str = ""
     killed: str = ""  # what was killed, and not by the grader, if anything was
     excused: bool = False  # it may not have killed itself: the machine's memory ran out, or it was the grader's process
+    told: Sequence[str] = ()  # what the report says of scenarios that were repeated
 
 
 @dataclass(frozen=True)
@@ -67,7 +53,6 @@ class Runner:
     plan: Plan
     state: Path
     sandbox: Optional[Sandbox] = None
-    viewer: Optional[Viewer] = None  # shows the run in real time
     on_progress: Progress = lambda _part, _scenario: None
     budget: float = BUDGET  # [s, wall]
 
@@ -78,7 +63,6 @@ class Runner:
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
-        environment = self._environment(out)
         command, packages = script.command(), provide(self.plan.packages, self.state)
         reads = [*submission.reads, AGENT, *([packages] if packages is not None else [])]
         known = {**public(submission.environment), **script.variables}
@@ -92,7 +76,7 @@ class Runner:
             "HOME": str(home),
             "TMPDIR": str(home),
             "PYTHONUNBUFFERED": "1",
-            "ROS_MASTER_URI": environment["ROS_MASTER_URI"],
+            "ROS_MASTER_URI": f"http://localhost:{free_port()}",  # no master, for programs that it starts
         }
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
@@ -100,30 +84,17 @@ class Runner:
             command = self.sandbox.node_command(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
-        cpu_time = math.inf if self.sandbox is None else float(self.sandbox.cpu_time)
-        rec.write(
-            Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time, self.viewer),
-            file,
-        )
+        cpu_time = math.inf if self.sandbox is None else float(MAX_CPU_TIME)
+        rec.write(Job(script.part, tuple(command), node_environment, home, out, self.plan, parameters, cpu_time), file)
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
-            session = [*memory_group.prefix(), *self.sandbox.session_command(session)]
-        return self.supervise(session, environment, out, script.part)
+            session = self.sandbox.session_command(session)
+        return self.supervise(session, self._environment(out), out, script.part)
 
     def _environment(self, out: Path) -> Dict[str, str]:
         """The session's environment: this workspace, with Gazebo's message types after it."""
         types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"
-        environment = {
-            **os.environ,
-            "ROS_MASTER_URI": f"http://localhost:{free_port()}",
-            "ROS_HOSTNAME": "localhost",
-            "ROS_HOME": str(out / "ros"),
-            "ROS_LOG_DIR": str(out / "ros"),
-            "TMPDIR": str(out),
-        }
-        environment["PYTHONPATH"] = f"{environment.get('PYTHONPATH', '')}:{types}"
-        environment.pop("ROS_IP", None)
-        return environment
+        return {**os.environ, "PYTHONPATH": f"{os.environ.get('PYTHONPATH', '')}:{types}", "TMPDIR": str(out)}
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.
@@ -132,10 +103,9 @@ class Runner:
         once it has begun a scenario is judged.
         """
         log = out / f"{part}-session.log"
-        inherited = self.viewer.descriptors if self.viewer is not None else ()
-        process = child.start(command, log, environment, stdout=PIPE, pass_fds=inherited)
+        process = child.start(command, log, environment, stdout=PIPE)
         guard = Guard(process.pid, memory=MAX_SESSION_MEMORY, processes=math.inf)  # the session limits the node's
-        kills = memory_group.kernel_kills()
+        kills = kernel_kills()
         deadline, scenario, grace = time.monotonic() + self.budget, "", 0.0
         timer = threading.Timer(self.budget, child.kill_tree, [process.pid])  # ends the lines, too
         timer.start()
@@ -157,16 +127,19 @@ class Runner:
             guard.stop()
         if not scenario:
             raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}")
-        records, problem, killed = records_in(out, part), guard.reason, ""
+        records, counted, told = counting(self.plan, records_in(out, part))
+        for name in counted:
+            (out / f"{part}-{name}{AGAIN}.bag").replace(out / f"{part}-{name}.bag")
+        problem, killed = guard.reason, ""
         for record in records.values():
             if any(death.is_unexplained for death in record.deaths):
                 killed = f"the {part} was killed in scenario {record.name}"
-        excused = memory_group.kernel_kills() > kills
+        excused = kernel_kills() > kills
         if not problem and status != 0:
             problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
-        return Recorded(records, problem, killed, excused)
+        return Recorded(records, problem, killed, excused, told)
 
 
 def _end_of(log: Path) -> str:

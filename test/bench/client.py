@@ -20,7 +20,7 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 from rosgraph.network import decode_ros_handshake_header, write_ros_handshake_header
 
-from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
+from aro_robocop_goto_as.geometry import NANOSECONDS
 
 from . import BenchError
 

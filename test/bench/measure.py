@@ -11,7 +11,7 @@ from typing import Any, Dict
 from systems import System
 from waiting import wait_for
 
-from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
+from aro_robocop_goto_as.geometry import NANOSECONDS
 
 from . import BenchError
 from .cases import Case

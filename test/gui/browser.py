@@ -11,7 +11,7 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.web.page import AHEAD, FIELD, RIGHT, UP, corners_of, view_of
+from aro_robocop_goto_as.web.page import FIELD, RIGHT, axes_of, corners_of, view_of
 
 CHROMIUM = "/usr/bin/chromium"
 # As root Chromium raises its own priority, and drawing in software it then takes a processor from everything else.
@@ -45,13 +45,12 @@ def chromium():
 class Tab:
     """One tab with the web page, and everything that it complained about or asked other servers for."""
 
-    def __init__(self, browser, url, size=SIZE, touch=False):
+    def __init__(self, browser, url, size=SIZE, touch=False, density=1.0):
         self.url = url
-        self.size = size
         self.errors = []
         self.foreign = []
         viewport = {"width": size[0], "height": size[1]}
-        self.page = browser.new_page(viewport=viewport, is_mobile=touch, has_touch=touch)
+        self.page = browser.new_page(viewport=viewport, is_mobile=touch, has_touch=touch, device_scale_factor=density)
         self.page.set_default_timeout(DEADLINE * 1000)
         self.page.on("console", lambda message: message.type == "error" and self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -108,24 +107,44 @@ class Tab:
         self.page.evaluate_handle(find, shown).as_element().click()
         self.page.get_by_role("option", name=wanted).click()
 
+    def scene(self):
+        """Width and height [pixel] of the scene, which begins in the window's upper left corner."""
+        box = self.page.locator("canvas[data-engine]").bounding_box()
+        return box["width"], box["height"]
+
+    def pixels(self, points):
+        """Where the first view shows points (n, 3) [m]: (n, 2) [pixel] from the left and from the top."""
+        width, height = self.scene()
+        aspect = width / height
+        ahead, up = axes_of(aspect)
+        away = np.asarray(points) - view_of(corners_of(()), aspect)[0]
+        scale = height / 2.0 / math.tan(FIELD / 2.0) / (away @ ahead)
+        return np.array((width, height)) / 2.0 + np.stack([scale * (away @ RIGHT), -scale * (away @ up)], axis=1)
+
     def pixel(self, x, y):
         """Where the first view shows a point of the floor [m]: columns from the left, rows from the top."""
-        away = np.subtract((x, y, 0.0), view_of(corners_of(()), *self.size)[0])
-        scale = self.size[1] / 2.0 / math.tan(FIELD / 2.0) / (away @ AHEAD)
-        return self.size[0] / 2.0 + scale * (away @ RIGHT), self.size[1] / 2.0 - scale * (away @ UP)
+        return self.pixels([(x, y, 0.0)])[0].tolist()
 
     def click_floor(self, x, y):
         """Click on a point of the floor [m], which nothing on the screen may cover."""
         self.page.mouse.click(*self.pixel(x, y))
 
-    def tap_floor(self, x, y, seconds):
-        """Touch a point of the floor [m] with a finger, for so long."""
-        column, row = self.pixel(x, y)
+    def tap(self, column, row, seconds=0.05):
+        """Touch a pixel with a finger, for so long."""
         session = self.page.context.new_cdp_session(self.page)
         touch = "Input.dispatchTouchEvent"
         session.send(touch, {"type": "touchStart", "touchPoints": [{"x": column, "y": row}]})
         self.page.wait_for_timeout(1000.0 * seconds)
         session.send(touch, {"type": "touchEnd", "touchPoints": []})
+
+    def turn(self, size):
+        """Give the window another size [pixel], as turning a phone does."""
+        self.page.set_viewport_size({"width": size[0], "height": size[1]})
+
+    def covered(self, points):
+        """Those of the points (n, 2) [pixel] at which something else than the scene is seen."""
+        find = "([x, y]) => document.elementFromPoint(x, y)?.tagName"
+        return [point for point in points.tolist() if self.page.evaluate(find, point) != "CANVAS"]
 
     @contextlib.contextmanager
     def held(self, label):

@@ -6,7 +6,7 @@ import pytest
 from browser import chromium
 
 from robocop_grading.classroom.results import SHOWN, Check, Result, page
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
 COUNT = SHOWN + 100

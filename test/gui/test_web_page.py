@@ -3,6 +3,7 @@
 import contextlib
 import math
 
+import numpy as np
 import pytest
 from actionlib_msgs.msg import GoalStatus
 from browser import Tab, chromium
@@ -12,6 +13,7 @@ from waiting import wait_for
 from web import REACHED, READY, Web
 
 from aro_robocop_goto_as.ros.web.goals import PLACE_ROBOT, SEND_GOAL
+from aro_robocop_goto_as.web.page import corners_of
 
 pytestmark = [pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
 
@@ -54,6 +56,7 @@ def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_err
 
 
 PIXEL_5 = (393, 727)  # [pixel] of its browser's window
+PHONES = {"Pixel 5": (PIXEL_5, (802, 293), 2.75), "iPhone 12": ((390, 664), (750, 340), 3.0)}  # and turned; density
 
 
 @pytest.mark.slow
@@ -63,9 +66,42 @@ def test_a_tap_on_a_phone_sends_a_goal_however_short_or_long_it_is(web, browser)
     tab = Tab(browser, web.url, PIXEL_5, touch=True)
     tab.wait_for_text(READY)
     for sent, (x, seconds) in enumerate(((0.0, 0.01), (-0.2, 0.08), (-0.4, 0.15)), 1):
-        tab.tap_floor(x, 0.0, seconds)
+        tab.tap(*tab.pixel(x, 0.0), seconds)
         wait_for(lambda n=sent: len(goals.messages()) == n, f"a goal for a touch of {seconds} s; {tab.text()}")
     wait_for(lambda: math.dist(web.position(), (-0.4, 0.0)) < REACHED, "the robot is at the newest goal")
+    assert tab.errors == []
+    tab.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("upright, turned, density", PHONES.values(), ids=PHONES)
+def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_beside_the_room_sends_nothing(
+    web, browser, upright, turned, density
+):
+    clicks = Recorder(web.ros, "/robocop_web", "/move_base_simple/goal")
+    web.place(*SPAWN)
+    tab = Tab(browser, web.url, upright, touch=True, density=density)
+    tab.wait_for_text(READY)
+    tab.page.locator(".mantine-Notification-closeButton").click(force=True)  # of viser's warning of a slow browser
+
+    def sent():
+        positions = (message["pose"]["position"] for message in clicks.messages())
+        return [(position["x"], position["y"]) for position in positions]
+
+    def a_tap_hits(place):
+        tab.tap(*tab.pixel(*place))
+        return sent() and math.dist(sent()[-1], place) < CLICK
+
+    for size, place in ((upright, (-0.5, 0.0)), (turned, (-0.5, 0.2)), (upright, (-0.5, 0.0))):
+        tab.turn(size)
+        wait_for(lambda at=place: a_tap_hits(at), "the view fits the size")
+        corners = tab.pixels(corners_of(()))
+        assert tab.covered(corners) == []
+        assert max(np.ptp(corners, axis=0) / tab.scene()) > 0.9
+        wait_for(lambda: "outside" not in tab.text(), "the taps are answered")
+        tab.tap(4.0, tab.scene()[1] - 4.0)
+        tab.wait_for_text("outside of the walls, nothing was sent")
+    assert all(max(abs(x), abs(y)) < 2.5 for x, y in sent())
     assert tab.errors == []
     tab.close()
 

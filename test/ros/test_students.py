@@ -80,7 +80,7 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
     done = system.goto("0.3", "0.3")
     assert (done.returncode, "SUCCEEDED: there" in done.stdout) == (0, True), done.stdout + system.output
     assert "PARAMETERS" not in system.output
-    assert "world         empty, moving:=true\nrobot         burger\nsend a goal" in system.output
+    assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
     types = Path(os.environ["ROBOCOP_STATE"], "compat", "devel", "lib", "python3", "dist-packages")
     output = system.call(
         sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"

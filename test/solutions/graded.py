@@ -1,18 +1,12 @@
 """Grades the solutions in this folder like a student's file."""
 
-import multiprocessing
 import os
-import sys
-import tempfile
-import time
 from pathlib import Path
 from typing import Callable, Dict, Sequence
 
-from wrong_solutions import WRONG, Wrong
-
 from robocop_grading import judge
 from robocop_grading.judge import Grade
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.runner import BUDGET, Recorded, Runner
 from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox
 from robocop_grading.submission import prepare_submission
@@ -47,7 +41,7 @@ def recorded(
     opened = sandbox()
     submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
     script, plan = submission.scripts[0], load(PLAN, seed).restricted(only)
-    chosen = Runner(plan, STATE, opened, None, lambda _part, scenario: on_progress(scenario), budget)
+    chosen = Runner(plan, STATE, opened, lambda _part, scenario: on_progress(scenario), budget)
     return chosen.run(submission, script, folder / "out")
 
 
@@ -56,38 +50,3 @@ def graded(name: str, text: str, folder: Path, seed: int = 0) -> Grade:
     run = recorded(text, folder, seed=seed)
     part = "bridge" if "no_server" in run.records else "server"
     return judge.judge(name, load(PLAN, seed), {part: run.records}, {part: run.problem})
-
-
-def row(wrong: Wrong) -> str:
-    """Grade a wrong solution by all checks; a row of the table in docs/grading.md."""
-    started = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        grade = graded(wrong.name, wrong.text(), Path(folder))
-    seconds = time.monotonic() - started
-    check = {check.name: check for check in grade.checks}[wrong.check]
-    others = ", ".join(name for name in grade.failed() if name != wrong.check)
-    cells = (
-        wrong.name,
-        wrong.check if check.failure is not None else "NO",
-        "yes" if wrong.words in check.words else "NO",
-        others,
-        f"{grade.points:g}",
-        f"{seconds:.0f}",
-    )
-    return f"| {' | '.join(cells)} |"
-
-
-def main() -> None:
-    """Print the table of wrong solutions, two graded at a time; arguments: names (default: all)."""
-    print(
-        "| mistake | failed the intended check | expected words | also failed | points | seconds |\n"
-        "| --- | --- | --- | --- | --- | --- |"
-    )
-    chosen = [wrong for wrong in WRONG if len(sys.argv) == 1 or wrong.name in sys.argv[1:]]
-    with multiprocessing.get_context("spawn").Pool(2, maxtasksperchild=1) as pool:
-        for line in pool.imap(row, chosen):
-            print(line, flush=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -12,10 +12,7 @@ scenarios, with seeds from 1 on.
 grades correct solutions with one change: an operator, a comparison, a number, a text, a negated condition, a statement
 that is removed. It lists those that keep full marks: they are allowed, or show a gap of the checks.
 
-    ./robocop shell python3 test/solutions/measure.py class [--size 10000]
-
-sends a class through dask, results, table and overview, with a stub in place of the grading: time and memory for each
-hand-in. The log holds a JSON object per grading; with an existing log a measurement is continued.
+The log holds a JSON object per grading; with an existing log a measurement is continued.
 """
 
 import argparse
@@ -24,31 +21,23 @@ import contextlib
 import copy
 import json
 import multiprocessing
-import os
 import random
 import sys
 import tempfile
 import time
 import zlib
 from collections import defaultdict
-from functools import partial
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Set, Tuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
-import psutil
-from graded import PLAN, RIGHT, graded
+from graded import RIGHT, graded
 from processes import busy_processes
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_grading.classroom.hand_ins import collect, unpacked
-from robocop_grading.classroom.main import Class
-from robocop_grading.classroom.main import grade as grade_class
-from robocop_grading.classroom.results import Results
 from robocop_grading.judge import Outcome, without_figures
-from robocop_grading.plan import load
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")
@@ -232,53 +221,11 @@ def mutate(args: argparse.Namespace) -> int:
     return 0
 
 
-# -- a large class --
-
-
-def stub(path: Path, results: Results, checks: List[Entry]) -> None:
-    """Stands for grading a hand-in: every third one fails each check, with a figure of its own."""
-    number, report = int(path.stem[1:]), []
-    for check in checks:
-        failure = {"cause": f"The robot stopped {number / 1000} m away"} if number % 3 == 0 else None
-        report.append({**check, "outcome": "failed" if failure else "passed", "failure": failure})
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "report.json").write_text(json.dumps({"name": path.name, "checks": report, "problems": []}))
-        results.keep(path.name, unpacked(path).digest, Path(folder), 0.0)
-
-
-def large_class(args: argparse.Namespace) -> int:
-    """Print time and memory for each hand-in; 0."""
-    here, plan, memory = psutil.Process(), load(PLAN), []  # type: Any, Any, List[int]
-    with tempfile.TemporaryDirectory() as top:
-        folder = Path(top, "class")
-        folder.mkdir()
-        for number in range(args.size):
-            (folder / f"s{number:05}.py").write_text(f"{RIGHT['base_server'].read_text()}# {number}")
-        started, used = time.monotonic(), time.process_time()
-        hand_ins, _ = collect(folder)
-        results = Results(Path(top, "results"), {})
-        checks = [{"name": it.name, "part": it.part, "points": 0.0, "extra": it.extra} for it in plan.checks]
-        group = Class(folder, results, plan, hand_ins, again=())
-        add = group.add
-
-        def noted(name: str, problem: str) -> str:
-            memory.append(here.memory_info().rss)
-            return add(name, problem)
-
-        group.add = noted  # type: ignore[method-assign]
-        grade_class(group, "", len(os.sched_getaffinity(0)), partial(stub, results=results, checks=checks))
-        wall, used = (time.monotonic() - started) / args.size, (time.process_time() - used) / args.size
-    print(f"{1e3 * wall:.1f} ms of wall time and {1e3 * used:.1f} ms of this process for each hand-in")
-    growth = (memory[-1] - memory[args.size // 2]) / (args.size / 2)
-    print(f"{growth:.0f} bytes of memory for each hand-in of the second half; {group.figures.counts}")
-    return 0
-
-
 def main() -> None:
     """Exit status 1 if a repeated grade is not as expected or differs."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(required=True)
-    repeated, mutated, large = (kinds.add_parser(name) for name in ("repeats", "mutants", "class"))
+    repeated, mutated = (kinds.add_parser(name) for name in ("repeats", "mutants"))
     for part in (repeated, mutated):
         part.add_argument("names", nargs="*", metavar="NAME")
         part.add_argument("--log", type=Path, required=True)
@@ -287,10 +234,8 @@ def main() -> None:
     repeated.add_argument("--load", type=int, default=0)
     repeated.add_argument("--drawn", action="store_true")
     mutated.add_argument("--sample", type=int, default=10**6)
-    large.add_argument("--size", type=int, default=10_000)
     repeated.set_defaults(measure=repeats)
     mutated.set_defaults(measure=mutate)
-    large.set_defaults(measure=large_class)
     args = parser.parse_args()
     sys.exit(1 if args.measure(args) else 0)
 

@@ -14,7 +14,7 @@ from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.runner import Runner
 from robocop_grading.submission import prepare_submission
 

@@ -16,7 +16,7 @@ from wrong_solutions import ADVISED, WRONG
 from aro_robocop_goto_as.errors import GradingError
 from robocop_grading.cli import INTERRUPTED
 from robocop_grading.judge import Outcome
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.sandbox import bubblewrap as sandbox
 from robocop_grading.submission import prepare_submission
 
@@ -147,7 +147,7 @@ def test_skeleton_or_its_server_is_graded_and_the_one_file_report_names_what_is_
     html = (tmp_path / "report" / "report.html").read_text()
     assert "No action server was created" in html and "http" not in html and "src=" not in html
     assert f"./robocop replay {tmp_path / 'report' / 'server-start.bag'}" in html
-    assert {path.name for path in (tmp_path / "report").iterdir()} >= {"report.json", "junit.xml", "server-start.bag"}
+    assert {path.name for path in (tmp_path / "report").iterdir()} >= {"report.json", "report.html", "server-start.bag"}
     assert command("robocop_new.py", str(tmp_path / "lab")).returncode == 1
 
 

@@ -82,6 +82,71 @@ WRONG = (
         ("import rospy\n", "import rospy\nfrom actionlib.msg import TestAction as GoToPositionAction\n"),
     ),
     _server("crashes_at_start", "action_server", "ended while starting", ("self.count = 0", "self.count = undefined")),
+    _server(
+        "success_at_once",
+        "reaches_goal",
+        "before position_error is below 0.1 m",
+        ("if position_error < 0.1:", "if True:"),
+        alone=True,
+    ),
+    _server(
+        "forged_odometry",
+        "feedback_position",
+        "position_error is always zero",
+        ("        self.cmd_pub = rospy.Publisher('/cmd_vel',", "        self.cmd_pub = rospy.Publisher('/odom_vel',"),
+        (POSE, f"{POSE}\n        if self.goal:\n            self.pose = (self.goal.x, self.goal.y, yaw)"),
+        ("self.count = 0", "self.goal = None"),
+        (BEGIN, f"        self.goal = goal.position\n        rospy.sleep(2.0)\n{BEGIN}"),
+    ),
+    _server(
+        "turns_away_beyond_two_radians",
+        "turns_to_goal",
+        "also for large angles",
+        (TURN, TURN.replace("2.0 * angle_error", "2.0 * angle_error * (1 if abs(angle_error) < 2.0 else -1)")),
+        alone=True,
+    ),
+    _server(
+        "obstacle_checked_only_while_turning",
+        "stops_at_obstacle",
+        "is the distance checked while it drives, too",
+        (f"            {ABORT}\n", ""),
+        (
+            f"                {TURN}\n",
+            f"                if self.min_dist_ahead < 0.3:\n                    break\n                {TURN}\n",
+        ),
+        alone=True,
+    ),
+    _server(
+        "goal_of_the_first_time",
+        "next_goal",
+        "is not reset when a goal begins",
+        (BEGIN, f"        if not self.count:\n            self.count = goal\n        goal = self.count\n{BEGIN}"),
+        alone=True,
+    ),
+    _server(
+        "scan_callback_blocks_for_ever",
+        "stops_at_obstacle",
+        "does the scan's callback return at once",
+        (
+            "    def scan_cb(self, msg):\n",
+            "    def scan_cb(self, msg):\n        self.count += 1\n        if self.count == 320:\n"
+            "            import threading\n            lock = threading.Lock()\n"
+            "            lock.acquire()\n            lock.acquire()\n",
+        ),
+    ),
+    Wrong(
+        "result_of_the_older_goal_is_late",
+        "cancel",
+        "is noticed at once, but the older goal's result comes 6.1 s later",
+        (
+            (
+                "                handle.set_canceled(GoToPositionResult(False, 'preempted'))\n",
+                "                result = [GoToPositionResult(False, 'preempted')]\n"
+                "                threading.Timer(6.0, handle.set_canceled, result).start()\n",
+            ),
+        ),
+        "right/action_server_subclass.py.in",
+    ),
     _server("not_wrapped", "feedback_angle", "not wrapped", (ERROR, "angle_error = math.atan2(dy, dx) - yaw")),
     _server(
         "degrees", "feedback_angle", "degrees", (ERROR, "angle_error = math.degrees(wrap(math.atan2(dy, dx) - yaw))")
@@ -531,6 +596,13 @@ WRONG = (
         ),
     ),
     _bridge(
+        "bridge_reports_all_states",
+        "reports_status",
+        "names several states",
+        (STATE, "'PENDING or ACTIVE or PREEMPTED or SUCCEEDED or ABORTED'"),
+        alone=True,
+    ),
+    _bridge(
         "bridge_misspelt",
         "forwards_goal",
         "looks for robocop_goto; the handout says robocop_goto_as",
@@ -931,8 +1003,8 @@ WRONG = (
     _server(
         "odometry_callback_sleeps",
         "feedback_angle",
-        "or not stored at once by the callback of /odom?",
-        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.5)\n"),
+        "messages on /odom waited up to",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.4)\n"),
         alone=True,
     ),
     _server(
@@ -973,6 +1045,53 @@ WRONG = (
         "no_exception",
         "NameError",
         (BEGIN, f"        if self.pose[0] < -1.0:\n            rospy.sleep(1.0)\n            undefined\n{BEGIN}"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_transforms_without_a_timeout",
+        "goal_frame",
+        "The click is newer than the newest transform from base_footprint to odom",
+        ("        msg.header.stamp = rospy.Time(0)\n", ""),
+        (", rospy.Duration(1.0))", ")"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_without_tf2_geometry_msgs",
+        "bridge_alive",
+        "only after: import tf2_geometry_msgs",
+        ("import tf2_geometry_msgs\n", ""),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_unsubscribes",
+        "cancels_older",
+        "After its first goal the bridge sent no other click",
+        ("        rospy.Subscriber(", "        self.clicks = rospy.Subscriber("),
+        ("        self.sent = True\n", "        self.clicks.unregister()\n"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_flag_is_never_cleared",
+        "cancels_older",
+        "After its first goal the bridge sent no other click",
+        (
+            "        if self.sent:\n            self.client.cancel_goal()\n",
+            "        if self.sent:\n            return\n",
+        ),
+        alone=True,
+    ),
+    _server(
+        "odometry_callback_takes_a_little_too_long",
+        "feedback_position",
+        "messages on /odom waited up to",
+        ("def odom_cb(self, msg):\n", "def odom_cb(self, msg):\n        rospy.sleep(0.1)\n"),
+        alone=True,
+    ),
+    _server(
+        "scan_callback_sleeps",
+        "stops_at_obstacle",
+        "messages on /scan waited up to",
+        ("def scan_cb(self, msg):\n", "def scan_cb(self, msg):\n        rospy.sleep(0.4)\n"),
         alone=True,
     ),
 )

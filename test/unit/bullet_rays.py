@@ -3,7 +3,8 @@
 import numpy as np
 
 from aro_robocop_goto_as.geometry import Vector3
-from aro_robocop_goto_as.physics.bullet import WORLD_GROUP, BulletEngine
+from aro_robocop_goto_as.physics.bullet import BulletEngine
+from aro_robocop_goto_as.physics.bullet_obstacles import WORLD_GROUP
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.world.model import World

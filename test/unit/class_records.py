@@ -7,7 +7,7 @@ from pathlib import Path
 from support import ROOT
 
 from robocop_grading.classroom.results import Check, Result
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 
 PLAN = load(Path(ROOT, "config", "grading.yaml"))
 

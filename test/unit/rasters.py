@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import rotation_matrix
-from aro_robocop_goto_as.world.model import Box, Plane
+from aro_robocop_goto_as.shapes import Box, Plane
 
 BURGER_RADIUS = 0.105  # [m]
 

@@ -12,12 +12,13 @@ import pytest
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
+from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
-from aro_robocop_goto_as.world.model import Box, Cylinder, World
+from aro_robocop_goto_as.world.model import World
 
 ORIGIN = Pose2D()
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -78,7 +79,10 @@ def drive(
 def kept(observed: Observations) -> Observations:
     """A copy of what the simulator changes in place with its next step, but for its fleet and its odometry."""
     kept = copy.copy(observed)
-    kept.scans, kept.imus = observed.scans.copy(), observed.imus.copy()
+    kept.scan, kept.imu, kept.bumper, kept.camera = map(
+        copy.copy, (observed.scan, observed.imu, observed.bumper, observed.camera)
+    )
+    kept.scan.ranges, kept.imu.samples = observed.scan.ranges.copy(), observed.imu.samples.copy()
     return kept
 
 

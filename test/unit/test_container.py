@@ -15,7 +15,7 @@ from aro_robocop_goto_as.errors import GradingError, GradingSetupError
 from robocop_grading import new
 from robocop_grading.checks import Failed
 from robocop_grading.judge import CheckResult, Grade, Outcome
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.report.write import write
 from robocop_grading.sandbox import bubblewrap as sandbox
 

@@ -1,11 +1,11 @@
-"""Every ./robocop command that the documentation prints exists, with its launch arguments."""
+"""The documentation's links lead somewhere, and every ./robocop command in it exists, with its launch arguments."""
 
 import os
 import re
 import subprocess
 
 import pytest
-from documentation import ROOT, commands, inline_commands
+from documentation import PAGES, ROOT, anchors, commands, inline_commands, links
 
 PROGRAM = "./robocop"
 # `doctor` reports by its exit status what this machine lacks; `image` needs docker, podman or buildah.
@@ -14,6 +14,18 @@ COMMANDS = sorted(
     for command in {*commands(PROGRAM), *inline_commands(PROGRAM)}
     if not re.search("robocop (doctor|image)", command)
 )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_relative_links_and_their_anchors_lead_somewhere(page):
+    assert [link for link in links(page) if not leads_somewhere(page, link)] == []
+
+
+def leads_somewhere(page, link):
+    """Return whether a link of a page names a file or folder and, after a #, a heading of a page."""
+    name, _, anchor = link.partition("#")
+    target = page.parent / name if name else page
+    return target.exists() and (not anchor or anchor in anchors(target))
 
 
 @pytest.mark.slow

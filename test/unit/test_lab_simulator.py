@@ -5,7 +5,7 @@ import runpy
 import pytest
 from support import ROOT
 
-LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true"]
+LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false"]
 simulator_from = runpy.run_path(f"{ROOT}/compat/aro_sim/scripts/lab_simulator.py")["simulator_from"]
 
 

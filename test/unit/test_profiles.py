@@ -45,31 +45,31 @@ def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, exp
 
 def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
     p = _params("turtlebot3_gazebo")
-    lidar = p.scan.lidar()
-    assert (p.scan.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
+    lidar = p.sensors.scan.lidar()
+    assert (p.sensors.scan.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
     assert (p.topics.localization, p.topics.has_initialpose, p.topics.gazebo_topics) == ("none", False, True)
-    cameras = [p.camera.spec(f"turtlebot3_{name}") for name in ("waffle", "waffle_pi", "burger_rgbd")]
+    cameras = [p.sensors.camera.spec(f"turtlebot3_{name}") for name in ("waffle", "waffle_pi", "burger_rgbd")]
     assert [(camera.width, camera.height, camera.angle) for camera in cameras] == [
         (1920, 1080, 1.3439),
         (640, 480, 1.0856),
         (160, 120, 1.02974),
     ]
-    assert _params("turtlebot3_gazebo", camera_width=80).camera.spec("turtlebot3_waffle").width == 80
-    assert SimParams().camera.spec("turtlebot3_waffle").width == 160
+    assert _params("turtlebot3_gazebo", camera_width=80).sensors.camera.spec("turtlebot3_waffle").width == 80
+    assert SimParams().sensors.camera.spec("turtlebot3_waffle").width == 160
 
 
 def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
     sim = simulator("stage_1", Pose2D(0.5, 0.0), **_profile("turtlebot3_gazebo"))
     seen = drive(sim, STANDSTILL, 1.0, everything(1))
-    samples = [observed.imus[0, FORCE] for observed in seen if observed.of("imu")]
+    samples = [observed.imu.samples[0, FORCE] for observed in seen if observed.of("imu")]
     assert len(samples) == 240
     assert np.mean(samples, axis=0) == pytest.approx([0.1, 0.1, 9.90665], abs=0.01)
-    scans = [observed.scans[0] for observed in seen if observed.of("scan")]
+    scans = [observed.scan.ranges[0] for observed in seen if observed.of("scan")]
     assert len(scans) == 5 and not np.isinf(scans[0]).any()
 
 
 def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make) -> None:
-    assert _params("real").scan.lidar().range_max == 3.5
+    assert _params("real").sensors.scan.lidar().range_max == 3.5
     seen = drive(simulator("stage_1", **_profile("real")), STANDSTILL, 1.0, everything(1))
     expected = dict(scan=5, odom=30, joints=30, imu=200, bumper=0)
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected
@@ -78,7 +78,7 @@ def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make
 def test_the_real_profiles_encoders_count_ticks(simulator: Make) -> None:
     sim = simulator("empty", **_profile("real"))
     seen = drive(sim, Twist2D(0.1, 0.5), 1.0, ["joints", "odom"])
-    angles = seen[-1].joint_angles[0] / TICK
+    angles = seen[-1].joints.angles[0] / TICK
     assert angles == pytest.approx(np.round(angles), abs=1e-6) and angles.all()
     half = sim.fleet.wheels[0, 0] * TICK / 2.0 * 30.0  # [m/s] one tick of one wheel between two updates
     speed = seen[-1].odometry.twists[0, 0] / half

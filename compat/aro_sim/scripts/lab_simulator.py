@@ -16,10 +16,10 @@ import sys
 LAUNCH = "robocop_launch.py"
 SHADOWING = ("PYTHONPATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")  # would resolve to this workspace first
 SERVICES = "gazebo_services:=true"
-LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false", "moving:=true"]  # unless a profile says what is simulated
+LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false"]  # unless a profile says what is simulated
 LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint,
-aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map. odom_tf:=true adds the
-aro_sim: transform."""
+aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map, and a bridge that transforms goals gets
+aro_sim: tf2's ConnectivityException. odom_tf:=true adds the transform."""
 
 
 def spawn_from(words):

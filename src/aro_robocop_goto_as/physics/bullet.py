@@ -2,19 +2,18 @@
 
 import ctypes
 import math
-from typing import Dict, List, Sequence, Set, Tuple
+from typing import List, Sequence
 
 import numpy as np
 
 from ..geometry import STANDARD_GRAVITY, Pose2D, Pose3D, compose3, inverse3, lifted, yaw_of
 from ..robot.fleet import Fleet, library
 from ..robot.model import CASTER_PREFIX, WHEEL_JOINTS, BodyState, RobotModel
-from ..world.ground import is_in_ground
-from ..world.model import Obstacle, Plane, World
-from .bullet_shapes import FLOOR, load_urdf, shapes_of
+from ..world.model import World
+from .bullet_obstacles import ROBOT_GROUP, WORLD_GROUP, BulletObstacles
+from .bullet_shapes import load_urdf
 from .quiet_pybullet import pybullet
 
-ROBOT_GROUP, WORLD_GROUP = 1, 2  # Bullet's collision filter bits; its rays are of group 1
 REST_LINEAR, REST_ANGULAR = 2e-3, 2e-2  # [m/s], [rad/s]: slower motion with stopped wheels is solver creep
 REST_STEPS = 24  # consecutive steps below these speeds until the robot is parked
 WAKE_DISTANCE = 1.0  # [m] between the centres, within which a moving obstacle keeps a robot awake
@@ -49,18 +48,26 @@ class BulletEngine:
         """`rate` [Hz] of the steps; `wheel_torque` [Nm]: each wheel motor's maximum; `gui` opens pybullet's window."""
         self.client = pybullet.connect(pybullet.GUI if gui else pybullet.DIRECT)
         self.fleet = fleet
-        self._world, self._rate, self._solver_iterations = world, rate, solver_iterations
+        self._obstacles = BulletObstacles(world, self.client)
+        self._rate, self._solver_iterations = rate, solver_iterations
         self._wheel_torque = wheel_torque
         self._control, self._fleet_struct = library().aro_control, ctypes.byref(fleet.struct)
         self._robots: List[_Body] = []
         self._is_read = True  # whether the fleet's rows are of the last step
-        self._floors: Set[int] = set()
-        self._moving: List[Tuple[int, Obstacle]] = []  # body and obstacle
-        self._bodies: Dict[str, List[int]] = {}  # by the name of the obstacle
 
-    def _fill(self) -> None:
-        """Add the floor and the obstacles to an empty Bullet world."""
-        self._floors, self._moving, self._bodies = set(), [], {}
+    def change_world(self, world: World, time: float) -> None:
+        """Replace the world; obstacles that are in both worlds are not touched."""
+        self._obstacles.replace(world)
+        self.move_obstacles(time)
+        for robot in self._robots:
+            self._unpark(robot)
+
+    def reset(self, poses: Sequence[Pose2D]) -> None:
+        """Start again with all robots at these poses and wheels at angle zero, in an empty Bullet world.
+
+        Bullet keeps state between steps (contact caches), so only an empty world makes what follows bit-identical.
+        """
+        pybullet.resetSimulation(physicsClientId=self.client)
         pybullet.setGravity(0.0, 0.0, -STANDARD_GRAVITY, physicsClientId=self.client)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / self._rate,
@@ -69,63 +76,7 @@ class BulletEngine:
             deterministicOverlappingPairs=1,
             physicsClientId=self.client,
         )
-        self._add_obstacle(FLOOR)
-        for obstacle in self._world.obstacles:
-            self._add_unless_ground(obstacle)
-
-    def change_world(self, world: World, time: float) -> None:
-        """Replace the world; obstacles that are in both worlds are not touched."""
-        before, now = set(map(id, self._world.obstacles)), set(map(id, world.obstacles))
-        for obstacle in self._world.obstacles:
-            if id(obstacle) not in now:
-                self._remove_obstacle(obstacle)
-        for obstacle in world.obstacles:
-            if id(obstacle) not in before:
-                self._add_unless_ground(obstacle)
-        self._world = world
-        self.move_obstacles(time)
-        for robot in self._robots:
-            self._unpark(robot)
-
-    def _remove_obstacle(self, obstacle: Obstacle) -> None:
-        bodies = self._bodies.pop(obstacle.name, [])
-        for body in bodies:
-            pybullet.removeBody(body, physicsClientId=self.client)
-        self._floors.difference_update(bodies)
-        self._moving = [(body, other) for body, other in self._moving if body not in bodies]
-
-    def _add_unless_ground(self, obstacle: Obstacle) -> None:
-        if not is_in_ground(obstacle):  # most world files have a floor of their own
-            self._add_obstacle(obstacle)
-
-    def _add_obstacle(self, obstacle: Obstacle) -> None:
-        """One static body per shape; as rigid bodies, not multibodies, they cost 0.7 us less per step."""
-        client = self.client
-        for shape in shapes_of(obstacle.geometry, client):
-            body = pybullet.createMultiBody(
-                0.0,
-                shape,
-                basePosition=obstacle.pose.position,
-                baseOrientation=obstacle.pose.orientation,
-                useMaximalCoordinates=1,
-                physicsClientId=client,
-            )
-            pybullet.changeDynamics(body, -1, lateralFriction=1.0, restitution=0.0, physicsClientId=client)
-            # Without the world's own group, as Bullet would compare walls with the floor on every step.
-            pybullet.setCollisionFilterGroupMask(body, -1, WORLD_GROUP, ROBOT_GROUP, physicsClientId=client)
-            self._bodies.setdefault(obstacle.name, []).append(body)
-            if isinstance(obstacle.geometry, Plane):
-                self._floors.add(body)
-            if obstacle.motion is not None:
-                self._moving.append((body, obstacle))
-
-    def reset(self, poses: Sequence[Pose2D]) -> None:
-        """Start again with all robots at these poses and wheels at angle zero, in an empty Bullet world.
-
-        Bullet keeps state between steps (contact caches), so only an empty world makes what follows bit-identical.
-        """
-        pybullet.resetSimulation(physicsClientId=self.client)
-        self._fill()
+        self._obstacles.fill()
         self._robots = [self._load(model) for model in self.fleet.models]
         for robot, pose in enumerate(poses):
             self.place(robot, pose)
@@ -222,12 +173,12 @@ class BulletEngine:
 
         It also keeps nearby robots awake: in Bullet, setting the pose of one body does not wake another.
         """
-        for body, obstacle in self._moving:
-            pose = obstacle.at(time)
-            pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self.client)
+        for x, y in self._obstacles.move(time):
             for robot in self._robots:
-                (x, y, _), _ = pybullet.getBasePositionAndOrientation(robot.body, physicsClientId=self.client)
-                if math.hypot(x - pose.position[0], y - pose.position[1]) < WAKE_DISTANCE:
+                (robot_x, robot_y, _), _ = pybullet.getBasePositionAndOrientation(
+                    robot.body, physicsClientId=self.client
+                )
+                if math.hypot(robot_x - x, robot_y - y) < WAKE_DISTANCE:
                     self._unpark(robot)
 
     def _park_when_at_rest(self, robot: _Body) -> None:
@@ -256,7 +207,7 @@ class BulletEngine:
     def touching(self, robot: int) -> bool:
         """Return whether the robot touches anything but the floor."""
         points = pybullet.getContactPoints(bodyA=self._robots[robot].body, physicsClientId=self.client)
-        return any(point[2] not in self._floors for point in points)
+        return any(point[2] not in self._obstacles.floors for point in points)
 
     def close(self) -> None:
         """Free Bullet's memory."""

@@ -9,7 +9,8 @@ import numpy as np
 from ..errors import RobotModelError
 from ..geometry import Pose3D
 from ..robot.model import RobotModel
-from ..world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls
+from ..shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere, Walls
+from ..world.model import Obstacle
 from .quiet_pybullet import pybullet
 
 FLOOR = Obstacle("floor", Pose3D(), Plane((0.0, 0.0, 1.0)))

@@ -1,14 +1,14 @@
-"""Asks by XML-RPC, with timeouts, whether a ROS master and the simulator answer."""
+"""Asks by XML-RPC, with timeouts, whether a ROS master, the simulator and other nodes answer."""
 
 import http.client
 import os
 import socket
 import xml.parsers.expat
 import xmlrpc.client
-from typing import Any, Optional, cast
+from typing import Any, Dict, List, Optional, cast
 
 from ..errors import MasterError
-from ..names import SIMULATOR, absolute
+from ..names import SIMULATOR, absolute, robocop
 
 DEFAULT_URI = "http://localhost:11311"  # roscore's port
 TIMEOUT = 5.0  # [s, wall] without data, for each request; a healthy master answers in milliseconds
@@ -72,8 +72,13 @@ def master_answers(uri: str) -> bool:
         return False
 
 
-def running_simulator(uri: str, name: str = absolute("", SIMULATOR)) -> Optional[str]:
-    """A description of the simulator of this name on this master, None if there is none; MasterError as above.
+def running_simulator(uri: str) -> Optional[str]:
+    """A description of the simulator on this master, None if there is none; MasterError as above."""
+    return running_node(uri, absolute("", SIMULATOR), "a simulator")
+
+
+def running_node(uri: str, name: str, kind: str = "a node of this name") -> Optional[str]:
+    """A description of the node of this name on this master, None if there is none; MasterError as above.
 
     The master also lists nodes that were killed, or that ended after reading a cached parameter (rospy's rosout does
     that), so the node itself is asked.
@@ -83,8 +88,34 @@ def running_simulator(uri: str, name: str = absolute("", SIMULATOR)) -> Optional
     except OSError:
         return None
     try:
-        return None if node is None or _request(node, "getPid") is None else "a simulator is already running"
+        return None if node is None or _request(node, "getPid") is None else f"{kind} is already running"
     except _TIMEOUTS:
-        return f"a simulator that does not respond ({name} at {node}) is registered"
+        return f"{kind} that does not respond ({name} at {node}) is registered"
     except (OSError, *_FOREIGN):  # it has ended, or another program has got its port
         return None
+
+
+def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
+    """The running nodes that publish topics of these names, in any namespace; topics without one are left out.
+
+    OSError and MasterError as ask_master().
+    """
+    topics = (ask_master(uri, "getSystemState") or [[]])[0]
+    found = {
+        topic: [node for node in nodes if running_node(uri, node)]
+        for topic, nodes in topics
+        if topic.rpartition("/")[2] in names
+    }
+    return {topic: nodes for topic, nodes in found.items() if nodes}
+
+
+def no_simulator(uri: str) -> str:
+    """That no simulator runs, and what to do; empty if a node publishes time or odometry, or no master answers."""
+    try:
+        if publishers(uri, "clock", "odom"):
+            return ""
+        stands = ask_master(uri, "getParam", "/use_sim_time") is True
+    except (OSError, MasterError):
+        return ""
+    without = "; without one, time stands still until: rosparam set /use_sim_time false" if stands else ""
+    return f"no simulator is running: {robocop()} run starts one{without}"

@@ -26,7 +26,7 @@ def start(
     """Start a command whose output goes to `log` (overwritten; None: discarded) and whose input is empty.
 
     It leads a session, so Ctrl-C in a terminal reaches only the caller, and kill_tree() finds its process group.
-    `options` of subprocess.Popen take precedence: stdout=PIPE, text=True, start_new_session=False, ...
+    `options` of subprocess.Popen take precedence: stdout=PIPE, text=True, pass_fds=[3], ...
     """
     with open(log or os.devnull, "wb") as output:
         defaults: Dict[str, Any] = {

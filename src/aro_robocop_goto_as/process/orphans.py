@@ -12,8 +12,8 @@ LIBC = ctypes.CDLL(None, use_errno=True)  # loaded here: between fork and exec l
 POLL = 0.02  # [s, wall]
 
 
-def end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
-    """A preexec_fn for subprocess.Popen: Linux sends the child a signal when this process ends, however that ends.
+def end_with_parent() -> Callable[[], None]:
+    """A preexec_fn for subprocess.Popen: Linux sends the child SIGTERM when this process ends, however that ends.
 
     Linux ties the signal to the thread that starts the child, so that thread must live as long as this process. What
     the child starts itself is not affected.
@@ -21,11 +21,10 @@ def end_with_parent(number: int = signal.SIGTERM) -> Callable[[], None]:
     parent = os.getpid()
 
     def between_fork_and_exec() -> None:
-        if number != signal.SIGKILL:  # until the exec it is this process's handler that would get the signal
-            signal.signal(number, signal.SIG_DFL)
-        LIBC.prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # until the exec this process's handler would get the signal
+        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
         if os.getppid() != parent:  # it has ended already
-            os.kill(os.getpid(), number)
+            os.kill(os.getpid(), signal.SIGTERM)
 
     return between_fork_and_exec
 

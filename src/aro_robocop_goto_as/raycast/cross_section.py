@@ -6,7 +6,8 @@ from typing import Optional, Sequence, Tuple
 import numpy as np
 
 from ..geometry import Pose3D, Vector3, rotation_matrix
-from ..world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
+from ..shapes import Box, Cylinder, Geometry, Mesh, PlacedShape, Plane, Sphere, Walls
+from ..world.model import World
 from ..world.scripted_motion import Motion
 from .grid_index import Tiles
 from .movers import Movers
@@ -37,12 +38,12 @@ class CrossSection:
         self.move = Movers(self.circles, moving).move  # to be called with a time [s]
 
 
-def outline(obstacle: Obstacle, height: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Where the horizontal plane at a height [m] cuts an obstacle: segments (m, 2, 2) and circles (0 or 1, 3) [m].
+def outline(placed: PlacedShape, height: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Where the horizontal plane at a height [m] cuts a shape: segments (m, 2, 2) and circles (0 or 1, 3) [m].
 
-    Spheres and upright cylinders are circles, everything else is segments. Both are empty above or below the obstacle.
+    Spheres and upright cylinders are circles, everything else is segments. Both are empty above or below the shape.
     """
-    geometry, pose = obstacle.geometry, obstacle.pose
+    geometry, pose = placed.geometry, placed.pose
     x, y, z = pose.position
     if isinstance(geometry, Sphere):
         squared = geometry.radius**2 - (height - z) ** 2

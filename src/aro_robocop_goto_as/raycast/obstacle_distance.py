@@ -7,7 +7,8 @@ from typing import NamedTuple, Tuple
 import numpy as np
 
 from ..robot.model import RobotModel
-from ..world.model import Mesh, Plane, World
+from ..shapes import Mesh, Plane
+from ..world.model import World
 from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
 MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section

@@ -7,7 +7,8 @@ import numpy as np
 
 from ..geometry import Pose3D
 from ..robot.model import RobotModel
-from ..world.model import Box, Cylinder, Obstacle, World
+from ..shapes import Box, Cylinder, PlacedShape
+from ..world.model import World
 from .beams import ScanPlane, Scene
 from .cross_section import NO_CIRCLES, CrossSection, outline
 
@@ -24,7 +25,7 @@ def circles_at(model: RobotModel, height: float) -> np.ndarray:
         if isinstance(shape, Box):
             shape = Cylinder(math.sqrt(shape.size[0] * shape.size[1] / math.pi), shape.size[2])
         if isinstance(shape, Cylinder):
-            circles.append(outline(Obstacle(obstacle.name, Pose3D(obstacle.pose.position), shape), height)[1])
+            circles.append(outline(PlacedShape(obstacle.name, Pose3D(obstacle.pose.position), shape), height)[1])
     return np.concatenate(circles)
 
 

@@ -5,7 +5,7 @@ from typing import Optional, Tuple
 
 from ..geometry import Pose2D, Pose3D, Vector3
 from ..param_loading import positive
-from ..world.model import Obstacle
+from ..shapes import PlacedShape
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
 CASTER_PREFIX = "caster"
@@ -33,8 +33,7 @@ class RobotModel:
     """A differential-drive robot; base is base_link, footprint is base_footprint on the floor between the wheels."""
 
     name: str
-    urdf: str  # the complete description, for robot_state_publisher
-    physics_urdf: str  # the same, rooted at base_link and without massless links and visual meshes
+    physics_urdf: str  # its URDF, rooted at base_link and without massless links and visual meshes
     wheel_radius: float  # [m]
     wheel_separation: float  # [m]
     footprint_from_base: Pose3D
@@ -42,7 +41,7 @@ class RobotModel:
     base_from_scan: Pose3D
     base_from_imu: Pose3D
     base_from_camera: Optional[Pose3D]  # the optical frame; None: no camera
-    collisions: Tuple[Obstacle, ...]  # of all links with mass, poses in base_footprint, wheels at angle zero
+    collisions: Tuple[PlacedShape, ...]  # of all links with mass, poses in base_footprint, wheels at angle zero
     figures: ModelFigures
 
     @property

@@ -9,7 +9,7 @@ from lxml import etree
 from ..errors import RobotModelError
 from ..geometry import Pose2D, Pose3D, Vector3, compose3
 from ..reading import Element, finite_numbers, parse_xml, reading
-from ..world.model import Box, Cylinder, Geometry, Obstacle, Sphere
+from ..shapes import Box, Cylinder, Geometry, PlacedShape, Sphere
 from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
 BASE = "base_link"
@@ -34,7 +34,6 @@ def load_robot(path: str, figures: ModelFigures) -> RobotModel:
         left, right = (urdf.joint(name) for name in WHEEL_JOINTS)
         return RobotModel(
             name=urdf.root.get("name") or os.path.splitext(os.path.basename(path))[0],
-            urdf=etree.tostring(urdf.root, encoding="unicode"),
             physics_urdf=urdf.for_physics(),
             wheel_radius=urdf.wheel_radius(left),
             wheel_separation=urdf.wheel_separation(left, right),
@@ -117,10 +116,10 @@ class _Urdf:
             ancestor = _end_of(joint, "parent")
         raise self.error(f"no joints lead from link {link!r} to link {root!r}")
 
-    def collisions(self) -> List[Obstacle]:
+    def collisions(self) -> List[PlacedShape]:
         """All collision shapes of links with mass, with poses in base_footprint."""
         return [
-            Obstacle(
+            PlacedShape(
                 f"{link.get('name')}/{number}",
                 compose3(self.pose_of(link.get("name")), _origin(collision)),
                 self.shape(link, collision),

@@ -9,9 +9,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from ..errors import FrameError
-from ..geometry import MAX_COORDINATE, Pose2D, Pose3D, Twist2D, yaw_of
+from ..geometry import MAX_COORDINATE, NANOSECONDS, Pose2D, Pose3D, Twist2D, yaw_of
 from ..robot.model import WHEEL_JOINTS, Pair
-from ..simulation.schedule import NANOSECONDS
 
 # How far a quaternion's length may be from 1. A quarter turn typed as z 0.7 w 0.7 has length 0.99. A larger difference
 # is an error of the sender, which normalising would hide. tf2 refuses transforms from 0.005 on.
@@ -62,9 +61,9 @@ def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:
     return Pose2D(pose.position.x, pose.position.y, yaw_of(orientation))
 
 
-def from_pose_msg_3d(pose: Pose, unset_is_level: bool = False) -> Pose3D:
-    """A geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
-    orientation = from_quaternion(pose.orientation, unset_is_level)
+def from_pose_msg_3d(pose: Pose) -> Pose3D:
+    """A request's geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
+    orientation = from_quaternion(pose.orientation, unset_is_level=True)
     x, y, z = pose.position.x, pose.position.y, pose.position.z
     require_near(x=x, y=y, z=z)
     return Pose3D((x, y, z), orientation)

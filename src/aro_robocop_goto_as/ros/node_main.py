@@ -13,6 +13,7 @@ import rosgraph
 import rospy
 
 from ..errors import MasterError, RobocopError
+from ..names import SIMULATOR
 from ..param_loading import from_dict
 from ..probes import master
 from ..process.signals import ending_signals
@@ -53,6 +54,25 @@ def wait_for_master() -> None:
         sys.exit(128 + signal.SIGINT)
 
 
+def leave_name_to_another(node_name: str, always: bool = False) -> None:
+    """End the program if a node of its name runs, which the master would end, and with it perhaps a whole system.
+
+    always: also if not roslaunch has started this one. By hand, a node takes the other one's place, as is usual in ROS.
+    """
+    given = rosgraph.names.load_mappings(sys.argv)
+    if not always and "__log" not in given:  # which roslaunch gives to all of its nodes
+        return
+    name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), given.get("__name", node_name))
+    uri = master.master_uri()
+    kind = "a simulator" if node_name == SIMULATOR else "a node of this name"
+    try:
+        running = master.running_node(uri, name, kind)
+    except MasterError as error:
+        sys.exit(f"{node_name}: {error}")
+    if running:
+        sys.exit(f"{node_name}: {running} as {name} on {uri}; stop it first, or use another ROS_MASTER_URI")
+
+
 @contextlib.contextmanager
 def node(name: str, **options: Any) -> Iterator[None]:
     """rospy.init_node for the block in which the node lives; a RobocopError in it is logged, with exit status 1.
@@ -61,6 +81,10 @@ def node(name: str, **options: Any) -> Iterator[None]:
     for the lock that this call holds. Here a thread shuts down, so that the call can complete.
     """
     wait_for_master()
+    leave_name_to_another(name, always=name == SIMULATOR)
+    log = rosgraph.names.load_mappings(sys.argv).get("__log")
+    if log:  # unless it is in this folder itself, rospy replaces the link `latest`; nodes that do so at once fail
+        os.environ["ROS_LOG_DIR"] = os.path.dirname(log)
     for number in ending_signals():
         signal.signal(number, _shut_down)
     raise_descriptor_limit()

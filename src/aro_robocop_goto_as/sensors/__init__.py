@@ -1,1 +1,1 @@
-"""Sensor models: measurements from the states of robots and from exact distances, one sensor per file."""
+"""The sensors, one a module, and catalog, the list of them. A module has a sensor's parameters and measurements."""

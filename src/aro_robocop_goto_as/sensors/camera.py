@@ -1,15 +1,14 @@
-"""The image geometry of an RGB-D camera: a pinhole camera without distortion, pixel centres at integer coordinates.
+"""The cameras of the robots whose models have one."""
 
-Images have shape (height, width), row 0 at the top; the optical frame has z forward, x right, y down (REP-103).
-"""
-
-import math
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Tuple
+from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
-import numpy as np
-
+from ..geometry import compose3
 from ..param_loading import PROFILES_OWN, parameter, positive
+from .camera_image import CameraImage, CameraSpec
+from .sensor import Calls, Robots, Sensor, Site
+
+CAMERA = "camera"
 
 Figures = Tuple[int, int, float]  # width, height [pixels], horizontal field of view [rad]
 
@@ -19,33 +18,6 @@ PROFILES: Dict[str, Dict[str, Figures]] = {
     "small": {},
     "gazebo": {"turtlebot3_waffle": (1920, 1080, 1.3439), "turtlebot3_waffle_pi": (640, 480, 1.0856)},
 }
-ROUNDING = 1e-3  # relative error of a single-precision depth buffer near the farthest depth
-
-
-@dataclass(frozen=True)
-class CameraSpec:
-    """Image size [pixels], horizontal field of view [rad], nearest and farthest depth [m]."""
-
-    width: int
-    height: int
-    angle: float
-    near: float
-    far: float
-
-    @property
-    def focal(self) -> float:
-        """Focal length [pixels], the same in both directions."""
-        return self.width / 2.0 / math.tan(self.angle / 2.0)
-
-    @property
-    def centre_x(self) -> float:
-        """Column [pixels] of the optical axis."""
-        return (self.width - 1) / 2.0
-
-    @property
-    def centre_y(self) -> float:
-        """Row [pixels] of the optical axis."""
-        return (self.height - 1) / 2.0
 
 
 @dataclass(frozen=True)
@@ -72,37 +44,41 @@ class CameraParams:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class CameraImage:
-    """rgb (height, width, 3) uint8; depth (height, width) float32 [m] along the optical frame's z, +inf = no return."""
+class Cameras(Sensor):
+    """specs: of each robot, None for one without a camera; images: by robot, of those that were due last."""
 
-    rgb: np.ndarray
-    depth: np.ndarray
+    name = CAMERA
 
-
-def projection(spec: CameraSpec) -> List[float]:
-    """OpenGL's projection matrix, column-major, for a renderer that samples at integer pixels from the lower left."""
-    deep = spec.far - spec.near
-    matrix = np.array(
-        [
-            [2.0 * spec.focal / spec.width, 0.0, 1.0 / spec.width, 0.0],
-            [0.0, 2.0 * spec.focal / spec.height, 1.0 / spec.height, 0.0],
-            [0.0, 0.0, -(spec.far + spec.near) / deep, -2.0 * spec.far * spec.near / deep],
-            [0.0, 0.0, -1.0, 0.0],
+    def __init__(self, params: CameraParams, site: Site) -> None:
+        super().__init__(site, params.camera_rate)
+        self.specs: Sequence[Optional[CameraSpec]] = [
+            None if model.base_from_camera is None else params.spec(model.name) for model in site.models
         ]
-    )
-    return [float(value) for value in matrix.T.ravel()]
+        self.images: Mapping[int, CameraImage] = {}
+        self._make_renderer: Any = None
+        if any(self.specs):
+            from .camera_renderer import CameraRenderer  # imports pybullet
 
+            self._make_renderer = CameraRenderer
+        self._renderer: Any = None  # a CameraRenderer of the present world, made for the first image
 
-def depth_of(buffer: np.ndarray, spec: CameraSpec) -> np.ndarray:
-    """Depth (height, width) float32 [m] from an OpenGL depth buffer with values from 0 to 1; the background is +inf."""
-    depth = spec.far * spec.near / (spec.far - (spec.far - spec.near) * buffer.astype(np.float64))
-    return np.where(depth < spec.far * (1.0 - ROUNDING), depth, np.inf).astype(np.float32)
+    def measuring(self, robots: Robots) -> Calls:
+        """Take images with these robots' cameras."""
+        return [lambda: self._take(robots)]
 
+    def _take(self, robots: Robots) -> None:
+        site, images = self.site, {}
+        bases = [site.engine.body(robot).world_from_base for robot in range(len(site.models))]
+        for robot in robots:
+            spec, base_from_camera = self.specs[robot], site.models[robot].base_from_camera
+            if spec is not None and base_from_camera is not None:
+                self._renderer = self._renderer or self._make_renderer(site.world, site.models)
+                world_from_camera = compose3(bases[robot], base_from_camera)
+                images[robot] = self._renderer.render(spec, world_from_camera, robot, bases, site.time)
+        self.images = images
 
-def points_of(depth: np.ndarray, spec: CameraSpec) -> np.ndarray:
-    """Points (height, width, 3) float32 [m] in the optical frame; NaN where there is no return."""
-    z = np.where(np.isfinite(depth), depth, np.nan)
-    columns, rows = np.arange(spec.width), np.arange(spec.height)[:, None]
-    x, y = z * (columns - spec.centre_x) / spec.focal, z * (rows - spec.centre_y) / spec.focal
-    return np.stack([x, y, z], axis=-1).astype(np.float32)
+    def close(self) -> None:
+        """Free the renderer; the next image makes a new one."""
+        if self._renderer is not None:
+            self._renderer.close()
+            self._renderer = None

@@ -13,7 +13,7 @@ from ..physics.quiet_pybullet import pybullet
 from ..robot.model import RobotModel
 from ..world.ground import is_in_ground
 from ..world.model import Obstacle, World
-from .camera import CameraImage, CameraSpec, depth_of, projection
+from .camera_image import CameraImage, CameraSpec, depth_of, projection
 
 OUT_OF_SIGHT = (0.0, 0.0, -1e4)  # [m] where a robot is placed while its own camera renders
 SKY = np.array([178, 200, 222], np.uint8)

@@ -1,12 +1,17 @@
-"""The measurements of an IMU: orientation, angular velocity and specific force."""
+"""The IMU: orientation, angular velocity and specific force."""
 
 from dataclasses import dataclass
+from typing import Dict
 
 import numpy as np
 
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
 from ..param_loading import parameter
 from ..robot.model import BodyState
+from .sensor import Calls, Robots, Sensor, Site
+
+IMU = "imu"
+FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...
 
 
 @dataclass(frozen=True)
@@ -49,3 +54,33 @@ def measure(
     sample[RATES] = imu_from_world @ np.array(after.angular_velocity) + rng.normal(0.0, noise.gyro_noise, 3)
     sample[FORCE] = imu_from_world @ force + rng.normal(noise.accelerometer_bias, noise.accelerometer_noise, 3)
     return sample
+
+
+class Imus(Sensor):
+    """samples: (n, 10), the parts of each as described above."""
+
+    name = IMU
+    reads_fleet = False
+
+    def __init__(self, params: ImuParams, site: Site) -> None:
+        super().__init__(site, params.imu_rate)
+        self.params, self.samples = params, np.zeros((len(site.fleet), 10))
+        self._before: Dict[int, BodyState] = {}
+
+    def before_step(self, robots: Robots) -> Calls:
+        """Keep these robots' states, with which their states after the step are compared."""
+        return [lambda: self._keep(robots)]
+
+    def _keep(self, robots: Robots) -> None:
+        self._before = {robot: self.site.engine.body(robot) for robot in robots}
+
+    def measuring(self, robots: Robots) -> Calls:
+        """Measure these robots' IMUs."""
+        return [lambda: self._measure(robots)]
+
+    def _measure(self, robots: Robots) -> None:
+        site = self.site
+        for robot in robots:
+            before, after, mount = self._before[robot], site.engine.body(robot), site.models[robot].base_from_imu
+            noise = site.noise.stream(FIRST_STREAM + robot)
+            self.samples[robot] = measure(before, after, 1.0 / site.rate, mount, self.params, noise)

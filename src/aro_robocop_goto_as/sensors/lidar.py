@@ -1,4 +1,4 @@
-"""A planar laser scanner: its beams, along which raycast measures, and its errors, such as noise, added by lidar.c."""
+"""Planar laser scanners: raycast measures along their beams, lidar.c adds noise and the scanner's other errors."""
 
 import ctypes
 import math
@@ -11,7 +11,11 @@ from ..compiled import address, members
 from ..raycast.beams import Fan
 from ..raycast.caster_library import load
 from .noise_streams import Episode
-from .scan_profiles import LidarSpec
+from .scan_profiles import LidarSpec, ScanParams
+from .sensor import Calls, Robots, Sensor, Site
+
+SCAN = "scan"
+STREAM = 0  # of the noise of the number of beams
 
 
 class _LidarStruct(ctypes.Structure):
@@ -66,3 +70,35 @@ class Lidar:
         numbers = (ctypes.c_int64 * len(robots))(*robots)
         address("ranges", ranges, (None, self.spec.samples))
         return partial(load().aro_measure, self, len(robots), numbers, ctypes.pointer(episode), ranges.ctypes)
+
+
+class Scanner(Sensor):
+    """ranges: (n, n_beams) [m] in base_scan; another array where the number of beams varies."""
+
+    name = SCAN
+
+    def __init__(self, params: ScanParams, site: Site) -> None:
+        super().__init__(site, params.rate)
+        self.lidar = Lidar(params.lidar())
+        self._ranges: Dict[int, np.ndarray] = {}
+        self.ranges = self.ranges_of(self.lidar.spec.samples)
+
+    def ranges_of(self, beams: int) -> np.ndarray:
+        """The array (n, beams) [m] to which scans with so many beams are written."""
+        return self._ranges.setdefault(beams, np.zeros((len(self.site.fleet), beams)))
+
+    def measuring(self, robots: Robots) -> Calls:
+        """Scan with these robots' scanners."""
+        return [lambda: self._turn(robots)] if self.lidar.spec.varying else self._scanning(self.lidar, robots)
+
+    def _turn(self, robots: Robots) -> None:
+        """Scan with as many beams as this revolution has."""
+        lidar = self.lidar.next_turn(self.site.noise.stream(STREAM))
+        self.ranges = self.ranges_of(lidar.spec.samples)
+        for call in self._scanning(lidar, robots):
+            call()
+
+    def _scanning(self, lidar: Lidar, robots: Robots) -> Calls:
+        site, ranges = self.site, self.ranges_of(lidar.spec.samples)
+        cast = lidar.fan.casting(site.scanners.scene, robots, lidar.spec.range_max, ranges)
+        return [cast, lidar.measuring(robots, site.episode, ranges)]

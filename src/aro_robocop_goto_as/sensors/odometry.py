@@ -1,27 +1,32 @@
-"""Wheel odometry of a fleet, with its configured errors, or the true poses in the world."""
+"""The wheels' encoders: joint angles, and odometry with its configured errors, or the true poses in the world."""
 
 import ctypes
 from dataclasses import dataclass
 from functools import partial
-from typing import Callable
+from typing import Callable, Sequence
 
 import numpy as np
 
 from ..compiled import address, members
-from ..geometry import Pose2D
+from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
-from ..robot.fleet import Fleet, library
+from ..robot.fleet import library
+from .sensor import Calls, Robots, Sensor, Site
+
+ODOM, JOINTS, TF = "odom", "joints", "tf"
+SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are numbered from 0 up
 
 
 @dataclass(frozen=True)
 class OdometryParams:
-    """Errors of wheel odometry, and how often it is updated."""
+    """Errors of wheel odometry, and how often it is updated and the joints are read."""
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
     odom_wheel_radius_error: float = parameter(0.0, low=-0.5, high=0.5)  # relative, of the radius that it assumes
     odom_slip: float = parameter(0.0, low=0.0, high=1.0)  # sigma; overcount by |Gaussian|, relative
     encoder_tick: float = parameter(0.0, low=0.0, high=1.0)  # [rad]; 0: exact
     odom_rate: int = parameter(30, low=1)  # [Hz]
+    joint_state_rate: int = parameter(30, low=1)  # [Hz]
 
 
 class _OdometersStruct(ctypes.Structure):
@@ -34,23 +39,28 @@ class _OdometersStruct(ctypes.Structure):
     ]
 
 
-class Odometers:
+class Odometers(Sensor):
     """One odometry per robot: wheel odometry that starts at zero, or the true pose in the world.
 
     poses: (n, 3) odom_from_footprint at the latest update: x, y [m], yaw [rad]
     twists: (n, 2) mean velocity since the update before: v [m/s], w [rad/s]
-    noise: (n, 2) standard normal, of the next update if wheels are slipping
+    map_from_odom: (n, 3) x, y [m], yaw [rad]
     update(): bring all of them to the fleet's present state
     """
 
-    def __init__(self, params: OdometryParams, fleet: Fleet) -> None:
-        n = len(fleet)
-        self._fleet = fleet
+    name = ODOM
+    unasked = True  # as it is integrated
+
+    def __init__(self, params: OdometryParams, site: Site, follows_truth: bool = False) -> None:
+        """`follows_truth`: whether map_from_odom is corrected with each measurement."""
+        n = len(site.fleet)
+        super().__init__(site, params.odom_rate)
+        self._fleet, self._follows_truth = site.fleet, follows_truth
         self.in_world = params.odom_source == "world"
-        self.slipping = params.odom_slip > 0.0 and not self.in_world
+        self._slips = params.odom_slip > 0.0 and not self.in_world
         self._tick = params.encoder_tick
-        self._wheels = fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
-        self.poses, self.twists = np.zeros((n, 3)), np.zeros((n, 2))
+        self._wheels = site.fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
+        self.poses, self.twists, self.map_from_odom = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 3))
         self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
         self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
         self._struct = _OdometersStruct(
@@ -64,36 +74,71 @@ class Odometers:
             params.odom_slip,
             self._tick,
         )
-        self.noise = np.zeros((n, 2))
-        self.update: Callable[[], None] = self._copy
+        self._noise = np.zeros((n, 2))  # standard normal, of the next update if wheels slip
+        self.update: Callable[[], object] = self._copy
         if not self.in_world:
-            rows = ctypes.addressof(self._struct), fleet.struct.wheel_angles, address("noise", self.noise, (n, 2))
+            rows = ctypes.addressof(self._struct), site.fleet.struct.wheel_angles, address("noise", self._noise, (n, 2))
             self.update = partial(library().aro_odometry, *rows, 1.0 / params.odom_rate)
-        self.reset()
 
-    def reset(self) -> None:
+    def measuring(self, _robots: Robots) -> Calls:
+        """Update the odometry of all robots."""
+        slip, follow = [self._draw_slip] * self._slips, [self._follow_truth] * self._follows_truth
+        return [*slip, self.update, *follow]
+
+    def reset(self, spawns: Sequence[Pose2D]) -> None:
         """Start at zero, or at the true poses, at the wheels' present angles."""
         self.poses[:], self.twists[:] = 0.0, 0.0
         self._read[:] = self.joint_angles()
         self._counted[:] = self._rolled[:] = self._fleet.wheel_angles
         if self.in_world:
             self.update()
+        self.map_from_odom[:] = 0.0 if self.in_world else spawns
 
     def joint_angles(self) -> np.ndarray:
         """Wheel angles (n, 2) [rad] at the resolution of the encoders, without slip."""
         angles = self._fleet.wheel_angles
         return np.floor(angles / self._tick) * self._tick if self._tick else angles
 
+    def _draw_slip(self) -> None:
+        self.site.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
+
     def _copy(self) -> None:
         self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
+
+    def _follow_truth(self) -> None:
+        for robot, pose in enumerate(self.poses.tolist()):
+            self.map_from_odom[robot] = compose(self._fleet.pose(robot), inverse(Pose2D(*pose)))
 
     def pose_now(self, robot: int) -> Pose2D:
         """odom_from_footprint as the next update will see it, without the slip that it draws."""
         rows = (self.poses, self.twists, self._read, self._counted, self._rolled)
         before = [row.copy() for row in rows]
-        self.noise[:] = 0.0
+        self._noise[:] = 0.0
         self.update()
         pose = Pose2D(*self.poses[robot].tolist())
         for row, values in zip(rows, before):
             row[:] = values
         return pose
+
+
+class Joints(Sensor):
+    """The wheels' joints; angles: (n, 2) [rad], left and right, as the encoders read them; speeds are the fleet's."""
+
+    name = JOINTS
+
+    def __init__(self, params: OdometryParams, site: Site, odometry: Odometers) -> None:
+        super().__init__(site, params.joint_state_rate)
+        self.angles, self._odometry = np.zeros((len(site.fleet), 2)), odometry
+
+    def measuring(self, _robots: Robots) -> Calls:
+        """Read the joints of all robots."""
+        return [self._read]
+
+    def _read(self) -> None:
+        self.angles[:] = self._odometry.joint_angles()
+
+
+class Transforms(Sensor):
+    """odom -> base_footprint and map -> odom, which are rows of the odometry, sent with it."""
+
+    name = TF

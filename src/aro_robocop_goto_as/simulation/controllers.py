@@ -3,8 +3,9 @@
 from typing import Dict, Optional
 
 from ..geometry import STANDSTILL, Twist2D
+from ..sim_params import LockstepParams
 from .jobs import Clock
-from .lockstep import Connected, ControllerId, Lockstep, LockstepParams, TickReport
+from .lockstep import Connected, ControllerId, Lockstep, TickReport
 from .simulator import Simulator
 
 

@@ -9,25 +9,11 @@ its first answer on. An expected node is waited for until the timeout, any other
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Dict, List, NamedTuple, Set
 
-from ..param_loading import parameter, positive
 from .jobs import Clock
 
 SILENCE_TIMEOUT = 0.02  # [s, wall] for a node that is not expected to answer
 EXPECTED_AFTER = 2  # ticks that a node has answered in a row
 DISCONNECT_PERIOD = 0.05  # [s, wall] between two checks for disconnected nodes while time is held
-
-
-@dataclass(frozen=True)
-class LockstepParams:
-    """Whether simulated time waits for the controllers at each control tick, and for how long."""
-
-    sync: str = parameter("free", choices=("free", "lockstep"))
-    lockstep_timeout: float = positive(2.0)  # [s, wall]
-
-    @property
-    def enabled(self) -> bool:
-        """Return whether simulated time waits for the controllers."""
-        return self.sync == "lockstep"
 
 
 class ControllerId(NamedTuple):

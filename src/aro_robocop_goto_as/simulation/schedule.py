@@ -2,7 +2,9 @@
 
 from typing import List, Mapping, Tuple
 
-NANOSECONDS = 1000000000
+from ..geometry import NANOSECONDS
+
+CLOCK, CONTROL = "clock", "control"  # the ticks
 
 
 def stamp_ns(step: int, physics_rate: int) -> int:

@@ -1,7 +1,7 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
 import math
-from typing import Optional, Sequence, Set, Tuple
+from typing import Optional, Sequence, Set
 
 import numpy as np
 
@@ -15,11 +15,9 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
-from .observations import Due, Observations, Subscriptions
-from .rates import CLOCK, CONTROL, IMU, ODOM
-from .schedule import Schedule, stamp_ns
-
-UNASKED = {CLOCK, CONTROL, ODOM}  # due also if nobody subscribes: odometry is integrated
+from .agenda import Agenda
+from .observations import Observations, Subscriptions
+from .schedule import stamp_ns
 
 
 class Simulator:
@@ -35,8 +33,8 @@ class Simulator:
         self.rate = params.rates.physics_rate  # [Hz]
         self.engine = engine
         self.observed = Observations(params, world, engine)
-        self.lidar = self.observed.lidar
-        self._schedule_for({})
+        self.lidar = self.observed.scan.lidar
+        self._agenda = Agenda(self.observed, params.rates)
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
         self.reset()
@@ -56,12 +54,12 @@ class Simulator:
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return self.observed.world_time
+        return self.observed.site.time
 
     @property
     def seed(self) -> int:
         """The seed of all noise."""
-        return self.observed.episode.seed
+        return self.observed.site.episode.seed
 
     # -- steps --
 
@@ -79,21 +77,16 @@ class Simulator:
 
     def advance(self, subscriptions: Subscriptions, most: int) -> Optional[Observations]:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
-        if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
-            self._schedule_for(subscriptions)
-        steps, names = self._schedule.after(self.steps)
+        steps, due = self._agenda.after(self.steps, subscriptions)
         if steps > most:
             self._run(most)
             return None
-        due = self._dues[names]
-        imus = due.sensors.get(IMU)
-        if imus:  # which compare the states before and after the step
+        if due.before:
             self._run(steps - 1)
-            before = [self.engine.body(robot) for robot in imus]
-            self._run(1)
-            self.observed.measure_imus(imus, before)
-        else:
-            self._run(steps)
+            for look in due.before:
+                look()
+            steps = 1
+        self._run(steps)
         for measure in due.measures:
             measure()
         self.observed.stamp_ns, self.observed.due = self.stamp_ns, due
@@ -103,24 +96,11 @@ class Simulator:
         for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
-            self.observed.episode.step += at_once
+            self.observed.site.episode.step += at_once
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.observed.scanners.move(self.world_time)
-
-    def _schedule_for(self, subscriptions: Subscriptions) -> None:
-        """Schedule the ticks and what is subscribed to, and what is done whenever the same of them are due."""
-        self._subscriptions = subscriptions
-        rates = {
-            name: rate for name, rate in self.params.due_rates().items() if name in UNASKED or subscriptions.get(name)
-        }
-        self._schedule = Schedule(rates, self.rate)
-        self._dues = {names: self._due(names) for names in self._schedule.occurring}
-
-    def _due(self, names: Tuple[str, ...]) -> Due:
-        sensors = {name: self._subscriptions[name] for name in names if self._subscriptions.get(name)}
-        return Due(CLOCK in names, CONTROL in names, sensors, self.observed.measures_of(names, sensors))
+            self.observed.site.scanners.move(self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -134,11 +114,11 @@ class Simulator:
         """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
         self.engine.update_fleet()
         fan, range_max = self.lidar.fan, self.lidar.spec.range_max
-        return fan.scan(self.observed.scanners.scene, [robot], range_max)[0]
+        return fan.scan(self.observed.site.scanners.scene, [robot], range_max)[0]
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
-        return Pose2D(*self.observed.map_from_odom[robot].tolist())
+        return Pose2D(*self.observed.odometry.map_from_odom[robot].tolist())
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
@@ -166,7 +146,7 @@ class Simulator:
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
-        section = self.observed.scanners.section(0)
+        section = self.observed.site.scanners.section(0)
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -178,8 +158,7 @@ class Simulator:
         self.world = world.with_motion(self.params.world.moving)
         self.moving = bool(self.world.moving())
         self.observed.change_world(self.world)
-        for names, due in self._dues.items():
-            due.measures = self.observed.measures_of(names, due.sensors)
+        self._agenda.prepare()
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
 
@@ -193,7 +172,7 @@ class Simulator:
         self.engine.place(robot, world_from_footprint)
         self._newly_placed.add(robot)
         if not self.observed.odometry.in_world:
-            self.observed.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
+            self.observed.odometry.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
     def require_room(self, pose: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""

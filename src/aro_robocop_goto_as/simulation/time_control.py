@@ -4,7 +4,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-from ..param_loading import parameter
+from ..sim_params import TimeParams
 from .jobs import Clock
 
 PAUSED_PERIOD = 0.1  # [s, wall] between repetitions of /clock while paused, for nodes that start meanwhile
@@ -13,14 +13,6 @@ REPORT_PERIOD = 1.0  # [s, wall]
 MAX_LAG = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
 REST_PERIOD, REST = 0.01, 1e-4  # [s, wall] a simulation that never waits rests this often, for this long
 TOLERANCE = 0.95  # share of the requested factor, below which the simulation counts as behind
-
-
-@dataclass(frozen=True)
-class TimeParams:
-    """How simulated time starts and runs."""
-
-    real_time_factor: float = parameter(1.0, low=0.0, high=1e6)  # 0: as fast as possible
-    start_paused: bool = False
 
 
 @dataclass(frozen=True)

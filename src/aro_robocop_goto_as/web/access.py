@@ -7,7 +7,6 @@ from urllib.parse import urlsplit
 
 LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
 ANY_ADDRESS = ("0.0.0.0", "::")
-SOCKET_VARIABLE = "ROBOCOP_WEB_SOCKET"  # file descriptor of a listening socket; set where the grader opens the port
 HOST_VARIABLE = "ROBOCOP_WEB_HOST"  # the address to listen on where none is given; set in the container image
 # Nothing from other servers, and not inside another site's frame. The page's one file holds its scripts and styles;
 # viser decodes messages in a WebAssembly module, in workers made from blobs, and compiles functions at run time.

@@ -8,22 +8,22 @@ import numpy as np
 from ..geometry import Vector3
 
 FIELD = 0.75  # [rad] of the cameras' view from its lower to its upper edge
-AHEAD = np.array((0.0, 0.69, -0.73)) / math.hypot(0.69, 0.73)  # where the cameras look at first: y, and down
 RIGHT = np.array((1.0, 0.0, 0.0))
-UP = np.cross(RIGHT, AHEAD)
+STEEP, FLAT = 0.9, 0.6  # sine of the angle at which cameras look down, in a tall part of a window and in a wide one
 ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at least
 MAX_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
-DESK = (1300, 800)  # [pixel] of the window that "reset view" is made for
-PHONE = 576  # [pixel] of width, below which viser shows the panel at the bottom
-PANEL, PHONE_PANEL = 345, 0.46  # what the panel covers: [pixel] of a window's width, share of a phone's height
-FILLED = 0.94  # share of what the panel leaves free
-# viser's panel is as wide on a phone as elsewhere, and covers more than half of it. And viser takes no notice of a
-# press on its canvas that the canvas has captured, as browsers do by themselves for a finger: a tap was no click.
+DESK = 1.2  # width by height of the scene that "reset view" is made for
+FILLED = 0.94  # share of the scene's width or height
+# The panel is beside the scene, on a phone below it, so that it covers nothing: viser's covers more than half of a
+# phone, and is as narrow there as elsewhere. And viser takes no notice of a press on its canvas that the canvas has
+# captured, as browsers do by themselves for a finger: a tap was no click.
 STYLE = """<style onload="window.addEventListener(
   'pointerdown', e => e.target.tagName === 'CANVAS' && e.target.releasePointerCapture(e.pointerId), true
 )">
 @media (max-width: 36em) {
-  div[style*="max-height: 60%"] { max-height: 45% !important; }
+  div:has(> div[style*="max-height: 60%"]) { flex-direction: column; }
+  div:has(+ div[style*="max-height: 60%"]) { min-height: 0; }
+  div[style*="max-height: 60%"] { position: static !important; flex: none; max-height: 45% !important; }
   div[style*="max-height: 60%"], div[style*="max-height: 60%"] div[style*="width: 20em"] { width: 100% !important; }
 }
 </style>"""
@@ -48,6 +48,7 @@ def set_up(server: Any) -> None:
     opaque = {"plane_opacity": 1.0, "shadow_opacity": 0.0}
     scene.add_grid("/floor", FLOOR_SIZE, FLOOR_SIZE, cell_size=0.5, section_size=1.0, **opaque, **FLOOR)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+    server.gui.main_panel.dock_right()
     server.gui.add_html(STYLE)
 
 
@@ -68,25 +69,29 @@ class Cameras:
             self._corners = corners
             self._set_first()
             for client in self._server.get_clients().values():
-                self._turn(client)
+                self._turn(client.camera)
 
     def _set_first(self) -> None:
         first = self._server.initial_camera
-        first.position, first.look_at = view_of(self._corners, *DESK)
+        first.position, first.look_at = view_of(self._corners, DESK)
 
     def _add(self, client: Any) -> None:
+        shown = self._turn(client.camera)
+
         def on_update(camera: Any) -> None:
-            if np.allclose(camera.position, self._server.initial_camera.position):
-                self._turn(client)
+            """Turn again where a slow browser shows the first view later, "reset view" does, or the size is another."""
+            nonlocal shown
+            if any(np.allclose(camera.position, known) for known in (shown, self._server.initial_camera.position)):
+                shown = self._turn(camera)
 
-        client.camera.on_update(on_update)  # a slow browser may show the first view later; and "reset view" does
-        self._turn(client)
+        client.camera.on_update(on_update)
 
-    def _turn(self, client: Any) -> None:
-        camera = client.camera
-        position, look_at = view_of(self._corners, camera.image_width, camera.image_height)
+    def _turn(self, camera: Any) -> np.ndarray:
+        """Show the corners; returns the camera's position."""
+        position, look_at = view_of(self._corners, camera.image_width / camera.image_height)
         camera.position = position
         camera.look_at = look_at  # after the position, which moves it as well
+        return position
 
 
 def corners_of(places: Iterable[Vector3]) -> np.ndarray:
@@ -100,27 +105,30 @@ def corners_of(places: Iterable[Vector3]) -> np.ndarray:
     )
 
 
-def view_of(corners: np.ndarray, width: int, height: int) -> Tuple[np.ndarray, np.ndarray]:
-    """The nearest camera that shows corners (n, 3) [m] in the free part of a window [pixel], in its middle.
+def axes_of(aspect: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Where a camera looks, and its upwards: steeper down in a taller scene, which a room then fills."""
+    down = min(max(1.2 / aspect, FLAT), STEEP)
+    ahead = np.array((0.0, math.sqrt(1.0 - down**2), -down))
+    return ahead, np.cross(RIGHT, ahead)
 
-    Returns its position and the point of the floor in the middle of the window [m].
+
+def view_of(corners: np.ndarray, aspect: float) -> Tuple[np.ndarray, np.ndarray]:
+    """The nearest camera that shows corners (n, 3) [m] in the middle of a scene; aspect: its width by its height.
+
+    Returns its position and the point of the floor in the middle of the scene [m].
     """
-    phone = width < PHONE
-    edge = 2.0 * math.tan(FIELD / 2.0)  # the window's height, one metre ahead of the camera
-    free_width, free_height = (width if phone else width - PANEL) / height * edge, (1.0 - PHONE_PANEL * phone) * edge
-    sideways = (free_width - width / height * edge) / 2.0, free_width * FILLED / 2.0  # middle and half of the free part
-    upwards = (edge - free_height) / 2.0, free_height * FILLED / 2.0
-    # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ AHEAD) from a position p. So each edge of the free part
-    # limits p @ (RIGHT - edge * AHEAD), by the corner that is nearest to this edge; the same for UP.
+    look, above = axes_of(aspect)
+    half = FILLED * math.tan(FIELD / 2.0)  # of what is filled, one metre ahead of the camera
+    # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ look) from a position p. So each edge of what is filled
+    # limits p @ (RIGHT - edge * look), by the corner that is nearest to this edge; the same for `above`.
     limits = []
-    for axis, (middle, half) in ((RIGHT, sideways), (UP, upwards)):
-        low = float((corners @ (axis - (middle - half) * AHEAD)).min())
-        high = float((corners @ (axis - (middle + half) * AHEAD)).max())
-        limits.append((low, high, middle, half))
-    ahead = min((low - high) / (2.0 * half) for low, high, _, half in limits)
-    right, up = ((low + high) / 2.0 + middle * ahead for low, high, middle, _ in limits)
-    position = right * RIGHT + up * UP + ahead * AHEAD
-    return position, position - position[2] / AHEAD[2] * AHEAD
+    for axis, edge in ((RIGHT, half * aspect), (above, half)):
+        low, high = float((corners @ (axis + edge * look)).min()), float((corners @ (axis - edge * look)).max())
+        limits.append((low, high, edge))
+    ahead = min((low - high) / (2.0 * edge) for low, high, edge in limits)
+    right, up = ((low + high) / 2.0 for low, high, _ in limits)
+    position = right * RIGHT + up * above + ahead * look
+    return position, position - position[2] / look[2] * look
 
 
 def floor_point(origin: Vector3, direction: Vector3) -> Optional[Tuple[float, float]]:

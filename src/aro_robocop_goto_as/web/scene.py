@@ -94,6 +94,10 @@ class _Drawn:
         self._shape = shape
         self._pose = pose
 
+    @property
+    def placed(self) -> Placed:
+        return self._shape, self._pose
+
     def move(self, pose: Pose3D) -> None:
         new, old = (*pose.position, *pose.orientation), (*self._pose.position, *self._pose.orientation)
         if any(abs(a - b) > MIN_CHANGE for a, b in zip(new, old)):
@@ -138,6 +142,10 @@ class PageScene:
     def draws(self, group: str) -> bool:
         """Return whether anything of the group is shown."""
         return bool(self._groups.get(group))
+
+    def shapes(self, group: str) -> Group:
+        """What a group shows, in the fixed frame; any thread may ask."""
+        return {key: drawn.placed for key, drawn in list(self._groups.get(group, {}).items())}
 
     def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:
         where = {"position": pose.position, "wxyz": _wxyz(pose)}

@@ -19,6 +19,7 @@ class PageState:
     simulated: bool = False  # a simulator has reported
     factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
     answering: bool = False  # there is a server of the selected robot, which publishes its status
+    waiting: str = ""  # the goal that the bridge keeps for a server that comes later, in words
     executing: Optional[bool] = None  # the selected robot's server executes a goal; None until it is known
     resets: int = 0  # how often robots were placed at their start again, or elsewhere
     root: str = ""  # the frame that the scene is drawn in

@@ -10,7 +10,8 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from ..geometry import Pose2D, Pose3D, compose, inverse, rotation_matrix
-from .model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+from ..shapes import Box, Cylinder, Mesh, Plane, Sphere, Walls
+from .model import Obstacle, World
 
 MAX_TOP = 0.2  # [m] above z = 0: the highest top of a slab that is ground
 MIN_SIDE = 3.0  # [m] the shortest side of a slab that is ground

@@ -1,64 +1,14 @@
-"""The model of a world: obstacles, each a geometry at a pose."""
+"""The model of a world: obstacles, each a shape at a pose."""
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Mapping, Optional, Tuple, Union
+from typing import Mapping, Optional, Tuple
 
 import numpy as np
 
-from ..geometry import Pose2D, Pose3D, Vector3, compose, inverse, lifted
+from ..geometry import Pose2D, Pose3D, compose, inverse, lifted
+from ..shapes import PlacedShape
 from .scripted_motion import Motion
-
-
-@dataclass(frozen=True)
-class Box:
-    """A cuboid centred on the obstacle's origin; size: its lengths [m] along the obstacle's x, y, z."""
-
-    size: Vector3
-
-
-@dataclass(frozen=True)
-class Cylinder:
-    """A cylinder centred on the obstacle's origin, its axis along the obstacle's z; radius, length [m]."""
-
-    radius: float
-    length: float
-
-
-@dataclass(frozen=True)
-class Sphere:
-    """A sphere centred on the obstacle's origin; radius [m]."""
-
-    radius: float
-
-
-@dataclass(frozen=True)
-class Plane:
-    """An infinite plane through the obstacle's origin; normal: unit vector in the obstacle's frame."""
-
-    normal: Vector3
-
-
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """Triangles, solid from both sides; corners: (n, 3, 3) [m] in the obstacle's frame; file: where they were read."""
-
-    corners: np.ndarray
-    file: str
-
-
-@dataclass(frozen=True, eq=False)
-class Walls:
-    """Vertical walls without thickness, solid from both sides, such as the outlines of a map's occupied cells.
-
-    segments: (n, [start, end], [x, y]) [m] in the obstacle's frame; the walls reach from its z = 0 to height [m]
-    """
-
-    segments: np.ndarray
-    height: float
-
-
-Geometry = Union[Box, Cylinder, Sphere, Plane, Mesh, Walls]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,17 +49,13 @@ class Occupancy:
 
 
 @dataclass(frozen=True)
-class Obstacle:
-    """Something that robots collide with and scanners see.
+class Obstacle(PlacedShape):
+    """Something that robots collide with and scanners see, at its pose in the world.
 
     name: `model/link/collision`, unique in its world; outer models come first, as in `house/door/link/collision`
-    pose: world_from_obstacle [m], the centre of the geometry (for a Plane: a point on it)
     motion: how it moves as time passes; None: it never moves
     """
 
-    name: str
-    pose: Pose3D
-    geometry: Geometry
     motion: Optional[Motion] = None
 
     def at(self, time: float) -> Pose3D:

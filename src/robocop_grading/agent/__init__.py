@@ -2,11 +2,11 @@
 
     python agent CHANNEL SCRIPT [ARGUMENT...]
 
-    scheduler    which thread runs, and for what the others wait; simulated time
+    scheduler    which thread runs, what the others wait for, and simulated time
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
     ros          rospy's time
-    connections  rospy's topics and services, and the ROS master, without the network
+    ends, grader, connections    rospy's topics and services, and the ROS master, without the network
     noetic       names that the lab's Python 3.8 and NumPy still have
     wire         what the grader and the agent say to each other
     channel      the grader's requests to go on until a simulated time, and the answers

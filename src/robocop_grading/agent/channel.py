@@ -8,18 +8,21 @@ import math
 import os
 import pickle
 import socket
-from typing import List, Tuple
+from typing import Any, Dict, List, Tuple
 
-from . import connections, files, ros, stuck, wire
+from . import connections, files, grader, ros, stuck, wire
 from .scheduler import allocate_lock, scheduler
 
-STARTING_TIME = 20.0  # [s] of processor time for a node until it waits for the first time; ROS and NumPy take 2 to 4
-REQUEST_TIME = 0.5  # [s] likewise for what it does at one time ...
-MAX_EXCEEDED = 3  # ... as often in a row as a node without end gets it; then it is a loop without pauses, which gets
-LOOP_TIME = 0.002  # [s] as long as it goes on, and
-AFTER_LOOP_TIME = 0.2  # [s] once it has come to an end
-TURN = 0.05  # [s] of processor time that other threads leave to one
-MANY = 100  # times that threads are woken between two looks at the processor time
+# Processor time [s] that a node may use before simulated time goes on without it
+STARTING_TIME = 20.0  # until all its threads wait for the first time; ROS and NumPy take 2 to 4
+REQUEST_TIME = 0.5  # at each later request of the grader
+LOOP_TIME = (
+    0.002  # at each request after MAX_EXCEEDED requests in a row were exceeded: the node is a loop without pauses
+)
+AFTER_LOOP_TIME = 0.2  # at each request after such a loop has ended
+TURN = 0.05  # of one thread, before other threads get their turns although it still runs
+MAX_EXCEEDED = 3  # requests in a row
+MANY = 100  # wake-ups of threads between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
@@ -36,14 +39,14 @@ class Allowance:
         self.time, self._exceeded = self._usual, 0
 
     def exceed(self) -> None:
-        """They do not, and the time is over."""
+        """Some thread still runs, and the allowed time is used up."""
         self._exceeded += 1
         if self._exceeded >= MAX_EXCEEDED:
             self.time, self._usual = LOOP_TIME, AFTER_LOOP_TIME
 
 
 class Channel:
-    """Answers the grader, in a thread of its own that nothing else knows of."""
+    """Answers the grader, in a thread of its own that the node does not see."""
 
     def __init__(self, descriptor: int, clock_ns: int) -> None:
         self._descriptor = descriptor
@@ -52,14 +55,14 @@ class Channel:
         os.register_at_fork(after_in_child=self._begin_anew)
         self._allowance = Allowance()
         self._busy = False  # the node still ran at the end of the last request
-        self._programs = 0  # of ROS that the grader knows of
+        self._programs = 0  # of ROS that the grader has been told of
         _, body = self._read()
         parameters, offered = pickle.loads(body)
-        self.grader = connections.Grader(self._publish, self._call, offered)
+        self.grader = grader.Grader(self._publish, self._call, offered)
         self.grader.tell_of_child = lambda: self._write(wire.CHILD, b"")
         for name, value in parameters.items():
             self.grader.master.setParam("/robocop_sim", name, value)
-        self.clock = ros.Clock(clock_ns, lambda data: self.grader.feed(connections.CLOCK, data))
+        self.clock = ros.Clock(clock_ns, lambda data: self.grader.feed(grader.CLOCK, data))
 
     def _begin_anew(self) -> None:
         """In a forked child, which may publish on the topics that it has inherited."""
@@ -123,10 +126,12 @@ class Channel:
                 self._freeze()
 
     def _tell(self) -> None:
-        """Tell of topics, and of programs of ROS that the node has started, if there are others."""
+        """Tell the grader the node's topics, programs of ROS that it has started, and delays, if they have changed."""
+        self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
-            told = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
+            told: Dict[str, Any] = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
+            told["delays"] = sorted(self.grader.delays.items())
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:
@@ -134,7 +139,7 @@ class Channel:
         _recv_with_gil(self._descriptor, ctypes.create_string_buffer(1), 1, socket.MSG_PEEK)
 
     def _go_on(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:
-        """Let simulated time go on to a tick of /clock or another time; False if the node has not come to an end."""
+        """Let simulated time go on to a tick of /clock or another time; return False if some thread still runs."""
         rested, ticks = True, clock_ns != self.clock.now_ns
         if (messages or ticks) and not self._busy:
             rested = self._live(until_ns - 1)
@@ -149,7 +154,7 @@ class Channel:
         return self._live(until_ns, is_at_rest) and rested
 
     def _live(self, until_ns: int, is_at_rest: bool = False) -> bool:
-        """Let everything happen until then; False if the node has not come to an end."""
+        """Let everything happen until that time; return False if some thread still runs."""
         rested = True
         while True:
             rested = (is_at_rest or self._rest()) and rested
@@ -160,7 +165,7 @@ class Channel:
             scheduler.wake_next()
 
     def _rest(self) -> bool:
-        """Wait until all threads wait; False if they need too much time for it."""
+        """Wait until all threads wait; return False if they use more processor time than is allowed."""
         look, started = 0.001, stuck.processor_time() if self._busy else math.inf
         turn, turn_started = -1, 0.0
         for count in itertools.count(1):

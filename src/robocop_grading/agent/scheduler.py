@@ -1,4 +1,4 @@
-"""Whose turn it is of the process's threads, for what the others wait, and simulated time."""
+"""Decides which thread of the process runs, what the others wait for, and when simulated time goes on."""
 
 import _thread
 import contextlib
@@ -11,8 +11,8 @@ from typing import Any, Deque, Dict, Iterator, List, Optional, Set, Tuple
 
 NEVER = 1 << 62  # [ns]
 SECOND = 10**9  # [ns]
-UP = 2**14 * SECOND  # on the monotonic clock at the start; until its double asyncio waits 0.1, 0.05 and 0.01 s as asked
-SLACK = 50_000  # [ns] the shortest wait, as on Linux: a loop that waits for what rounding has left of a time goes on
+MONOTONIC_START = 2**14 * SECOND  # of the node's monotonic clock; asyncio's timeouts are exact below twice this value
+SLACK = 50_000  # [ns] the shortest wait, as on Linux, so that rounding cannot stall a loop
 Files = List[Tuple[int, int]]  # descriptors with the events of poll() that are waited for
 
 # The system's own, which everything else of the process no longer finds.
@@ -28,14 +28,14 @@ class Waiter:
     def __init__(self, thread: int, files: Optional[Files] = None) -> None:
         self.thread = thread  # 0: one that has not begun
         self.awake = False
-        self.granted = False  # it got what it waited for: not the deadline ended the wait
+        self.granted = False  # it got what it waited for, before the deadline
         self.files: Files = files or []
         self.gate: Any = allocate_lock()
         self.gate.acquire()
 
 
 class Scheduler:
-    """One thread runs at a time, until it waits; then the next one that was woken up has its turn.
+    """One thread runs at a time, until it waits; then the next thread that was woken up has its turn.
 
         new_thread ---> queued ---> running ---> waiting      park: until it is woken, or a simulated time
                           ^           |  |          |
@@ -50,22 +50,22 @@ class Scheduler:
     def __init__(self) -> None:
         # Recursive, because a destructor may run while it is held, which is for moments only.
         self.guard: Any = _system.RLock()
-        # At simulated time 0. What is left of a time [s] that was added to a clock's depends on the clock's size and
-        # fraction: on a machine that is up for 3 h, asyncio rounds waits of 0.1 s up to 0.101 s, after 5 h it does not.
-        self.epoch_ns, self.epoch_monotonic_ns = time.time_ns() // SECOND * SECOND, UP
+        # Both clocks begin at fixed values: how a time-out is rounded depends on the size of the clock's value. On a
+        # machine that is up for 3 h, asyncio waits 0.101 s instead of 0.1 s; after 5 h it does not.
+        self.epoch_ns, self.epoch_monotonic_ns = time.time_ns() // SECOND * SECOND, MONOTONIC_START
         self.active = True  # False in a forked child: the grader does not see it, and it lives on the wall clock
         self.now_ns = 0
         self.running: Set[int] = set()  # threads
-        self.unawaited: Set[int] = set()  # those of them that nobody waits for
-        self.calling: Set[int] = set()  # those of them that wait for the grader's answer, in no simulated time
+        self.unawaited: Set[int] = set()  # running threads that the scheduler does not wait for
+        self.calling: Set[int] = set()  # running threads that wait for the grader's answer, in no simulated time
         self.queue: Deque[Waiter] = deque()  # whose turns are next
-        self.starting = 0  # threads that have their first turn, and have not begun
+        self.starting = 0  # threads that got their first turn and have not begun to run
         self.turns = 0  # so far
-        self.requests = 0  # of the grader's that have been answered
-        self._sleepers: List[Tuple[int, int, Waiter]] = []  # a heap: until when, and whose wait began first
+        self.requests = 0  # of the grader that have been answered
+        self._sleepers: List[Tuple[int, int, Waiter]] = []  # a heap: deadline [ns], number in order of begin, wait
         self._numbers = itertools.count()
-        self._spent: Dict[int, Tuple[int, float]] = {}  # by thread: a simulated time, and what it has done at that
-        self._idle = allocate_lock()  # open when the last thread has begun to wait
+        self._spent: Dict[int, Tuple[int, float]] = {}  # by thread: a time [ns], and the share of work done at it
+        self._idle = allocate_lock()  # released when the last thread has begun to wait
         os.register_at_fork(after_in_child=self._leave_alone)
 
     def _leave_alone(self) -> None:
@@ -198,10 +198,10 @@ class Scheduler:
             self._spent.pop(_thread.get_ident(), None)  # the next one may have its number
             self.leave()
 
-    # -- for the thread that answers the grader, which is none of those that have turns --
+    # -- called by the thread that serves the grader, which is not scheduled --
 
     def wait_until_idle(self, timeout: float) -> bool:
-        """Wait until every thread waits, for `timeout` [s, wall] at most; whether it is so."""
+        """Return whether all threads wait within `timeout` [s, wall]."""
         self._idle.acquire(False)
         with self.guard:
             if not self.running and not self.starting:
@@ -211,12 +211,12 @@ class Scheduler:
             return not self.running and not self.starting
 
     def is_unawaited(self) -> bool:
-        """Return whether all threads that run are such that nobody waits for them."""
+        """Return whether the scheduler waits for none of the threads that run."""
         with self.guard:
             return not self.starting and self.running <= self.unawaited
 
     def wait_for_none_of(self, threads: Set[int]) -> bool:
-        """Nobody waits any more for these threads, if it is they that run; whether another one has its turn."""
+        """Stop waiting for these threads if exactly they run; return whether another one got a turn."""
         with self.guard:
             if self.starting or self.running != threads:
                 return True

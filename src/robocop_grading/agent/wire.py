@@ -8,7 +8,7 @@ grader -> agent
 agent -> grader
     MESSAGE   a topic, and bytes of the stream of its messages
     CALL      a service, and the request as on TCPROS; a REPLY follows
-    TOPICS    what it publishes and subscribes to, and programs of ROS that it has started, as JSON
+    TOPICS    what it publishes and subscribes to, programs of ROS that it has started, and delays, as JSON
     CHILD     a forked child has become a node, which nobody connects
     DONE      until when [ns], when it does something by itself [ns]
 """

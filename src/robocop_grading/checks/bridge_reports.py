@@ -103,6 +103,11 @@ def _is_client_state(reports: List[Report]) -> bool:
 def _untrue(record: Record) -> Optional[Failed]:
     """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
     reports = _stated(record)
+    several = [report for report in reports if len(report.states) > 1]
+    if len(several) > 1 and len(several) > MOSTLY * len(reports):
+        first = several[0]
+        seen = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
+        return Failed(STATUS_NAMES[first.true], seen, first.time, text("several_states"), UNTRUE)
     wrong = [] if _is_client_state(reports) else [report for report in reports if not report.is_true]
     true_states = dict.fromkeys(report.true for report in reports)
     for true in true_states:

@@ -58,6 +58,12 @@ def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
     return next(filter(name.search, topics), "")
 
 
+def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
+    """That something is old because the callback of a topic with such a name is too slow; empty if none is."""
+    delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
+    return text("late", what, *max(delays)) if delays else ""
+
+
 def silent(record: Record, goal: Goal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
     told = [*feedback_of(record, goal), *results_of(record, goal)]

@@ -10,10 +10,11 @@ import numpy as np
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
 from ..texts import text
-from .consequences import died, nothing_came, unpublished
+from .consequences import NOT_RESET, died, late, nothing_came, unpublished
 from .feedback_causes import (
     ANGLE,
     OF_POSITION,
+    OTHERWISE,
     POSE_TOPIC,
     POSITION,
     TOLERANCES,
@@ -42,6 +43,7 @@ MIN_GOAL_TIME = 1.0  # [s] shorter goals say nothing about a rate
 # Kinds of failures.
 WRONG_POSITION = "of the position"
 UNTRUE = "untrue"
+OLD_POSE = "old pose"
 
 
 @check("errors", after=(After("stays_alive", died), After("reaches_goal", nothing_came)))
@@ -99,18 +101,25 @@ def _wrong(index: int, pairs: Sequence[Pair], tolerance: float) -> List[Pair]:
 
 def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
     """The failure with the causes that fit in all scenarios."""
+    of_old_pose = late(records, POSE_TOPIC, "The errors are those of an old pose")
     if failure.kind != UNTRUE:
-        return failure
+        return replace(failure, cause=of_old_pose) if of_old_pose and failure.kind == OLD_POSE else failure
     scenarios = [_compared(index, records[name]) for name in names]
     wrong = [pair for pairs in scenarios for pair in _wrong(index, pairs, TOLERANCES[index])]
     cause, found = likely_cause(index, wrong, scenarios)
     silent = unpublished(records, POSE_TOPIC)
     if found & UNCHANGED and silent:
         cause = text("pose_unpublished", silent)
+    elif of_old_pose and (found & UNCHANGED or cause == text(OTHERWISE[index])):
+        cause = of_old_pose
     return replace(failure, cause=cause, kind=WRONG_POSITION if found & OF_POSITION else UNTRUE)
 
 
-@check("errors", needs=("feedback_rate",), explain=partial(_explained, POSITION))
+# Feedback that is wrong from a later goal on, as a server keeps what an earlier one has set.
+KEPT = After("next_goal", lambda record, it, earlier: earlier.kind == NOT_RESET and it.time > record.goals[0].time)
+
+
+@check("errors", after=(KEPT,), needs=("feedback_rate",), explain=partial(_explained, POSITION))
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
     pairs = _compared(POSITION, record)
@@ -121,7 +130,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
 
 @check(
     "errors",
-    after=(After("feedback_position", kind=WRONG_POSITION),),
+    after=(After("feedback_position", kind=WRONG_POSITION), KEPT),
     needs=("feedback_rate",),
     explain=partial(_explained, ANGLE),
 )
@@ -151,7 +160,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     if AGES[best] < OLD or means[best] > 0.5 * means[0] or _is_shifted(record, index):
         return None
     name, seen = ERRORS[index], f"one of {AGES[best]:.2f} s ago"
-    return Failed(f"the present {name}", seen, record.feedback[0].time, text("old_feedback", name))
+    return Failed(f"the present {name}", seen, record.feedback[0].time, text("old_feedback", name), OLD_POSE)
 
 
 def _is_shifted(record: Record, index: int) -> bool:

@@ -5,15 +5,26 @@ import re
 from dataclasses import replace
 from typing import Mapping, Optional, Sequence
 
-from ..handout import STOP_DISTANCE, Limits
-from ..record import ABORTED, STATUS_NAMES, SUCCEEDED, Goal, Record, active_until, results_of, samples_between
+from ..handout import HEADING_TOLERANCE, STOP_DISTANCE, Limits
+from ..record import (
+    ABORTED,
+    STATUS_NAMES,
+    SUCCEEDED,
+    Goal,
+    Record,
+    active_until,
+    errors_at,
+    results_of,
+    samples_between,
+)
 from ..texts import sentences, text
-from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, logged_cause, unpublished
+from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, late, logged_cause, unpublished
 from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
+PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 
 
@@ -21,10 +32,13 @@ STANDS = After("stands_at_end", kind=MOVING)
 
 
 def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to notice an obstacle with its cause if no scan can come."""
+    """The failure to notice an obstacle with its cause if no scan can come, or comes late."""
     silent = unpublished(records, SCAN_TOPIC)
     unnoticed = failure.kind in (STATUS_NAMES[SUCCEEDED], SUCCESS, NO_RESULT, MOVES_FIRST)
-    return replace(failure, cause=text("scan_unpublished", silent)) if silent and unnoticed else failure
+    if silent and unnoticed:
+        return replace(failure, cause=text("scan_unpublished", silent))
+    of_old_scan = late(records, SCAN_TOPIC, "The distance ahead is that of an old scan")
+    return replace(failure, cause=of_old_scan) if of_old_scan and (unnoticed or not failure.kind) else failure
 
 
 @check("distances", after=(*ENDING, AT_FIRST, STANDS), needs=("stays_alive",), explain=_explained)
@@ -57,12 +71,20 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
             cause, kind = text("aborted_later", nearest), ""
         return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause, kind, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
-        cause = narrow_obstacle(record) or text("aborted_near", STOP_DISTANCE)
+        cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     if contact < math.inf:
         cause = keeps_moving(record, results_of(record, goal)[0], contact)
         return Failed("a stop before the obstacle", "contact", contact, cause, MOVING, goal)
     return None
+
+
+def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str:
+    """Why a goal was aborted at a time [s], when the obstacle was nearer [m] than it should have been."""
+    there = samples_between(record, goal.time, end)
+    if there and abs(errors_at(there[-1], goal)[1]) > HEADING_TOLERANCE:
+        return text("aborted_while_turning", STOP_DISTANCE, clearance)
+    return text("aborted_near", STOP_DISTANCE)
 
 
 def _approach(record: Record, goal: Goal) -> Optional[Failed]:
@@ -85,10 +107,13 @@ ABORTS_EARLY = After(
 AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not None and failure.goal.ends == "ABORTED")
 
 
-@check("distances", after=(ABORTS_EARLY, *ENDING))
+@check("distances", after=(ABORTS_EARLY, *ENDING), needs=("reaches_goal",))
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
-    return of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
+    verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
+    if verdict is PASSED and not any(sample.x > PAST * record.goals[0].x for sample in record.samples):
+        return NotReached("the robot did not drive past the obstacles")
+    return verdict
 
 
 @check("distances", after=(*ENDING, AT_WALL, STANDS))

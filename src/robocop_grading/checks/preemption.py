@@ -62,6 +62,9 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
         if times and not results and times[-1] < requested + SILENT:
             return text("nothing_after_request", request)
         return f"The {request} is not noticed: {hint}"
+    own = feedback_of(record, goal)
+    if own and own[-1].time < requested + SILENT and _begins_other(record, goal, requested, results[0].time):
+        return text("result_late", request, results[0].time - requested)
     late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
@@ -69,6 +72,13 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     if turning > MOSTLY * len(waiting):
         return text("noticed_after_turn", late)
     return text("noticed_after_drive" if driving > MOSTLY * len(waiting) else "waits_before_ending", late)
+
+
+def _begins_other(record: Record, goal: Goal, requested: float, end: float) -> bool:
+    """Return whether the robot rests, or the server tells of another goal, from soon after a request on [s]."""
+    others = [it for it in record.feedback if it.id != goal.id and requested < it.time < requested + SILENT]
+    waiting = samples_between(record, requested + SILENT, end - ENDS)
+    return bool(others) or all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)
 
 
 @check(

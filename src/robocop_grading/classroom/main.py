@@ -21,7 +21,8 @@ from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED
 from ..files.scratch import scratch_folder
 from ..judge import points_in_words
-from ..plan import MAX_SEED, MIDDLE, Plan, load
+from ..plan import MIDDLE, Plan
+from ..plan_file import MAX_SEED, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment

@@ -1,4 +1,4 @@
-"""Writes a grade as report.html, summary.md, report.json and junit.xml, and what the hosts of courses read."""
+"""Writes a grade as report.html, summary.md and report.json, and what the hosts of courses read."""
 
 import dataclasses
 import json
@@ -8,7 +8,6 @@ import tempfile
 from pathlib import Path
 from typing import Any, Dict, Iterator, Sequence
 from urllib.parse import quote
-from xml.etree import ElementTree
 
 import jinja2
 
@@ -41,7 +40,6 @@ def make_report_folder(folder: Path) -> Path:
 def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
     """Write all files to an existing folder, which already has the bags; `kept`: they will not be moved elsewhere."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
-    ElementTree.ElementTree(_junit(grade, plan)).write(folder / "junit.xml", encoding="utf-8", xml_declaration=True)
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
@@ -82,23 +80,6 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
 def _check_as_json(check: CheckResult) -> Dict[str, object]:
     values = {"of" if key == "points_available" else key: value for key, value in dataclasses.asdict(check).items()}
     return {**values, "outcome": check.outcome.value, "words": check.words}
-
-
-def _junit(grade: Grade, plan: Plan) -> ElementTree.Element:
-    skipped = sum(check.outcome is Outcome.NOT_REACHED for check in grade.checks)
-    counts = {"tests": len(grade.checks), "failures": len(grade.failed()), "skipped": skipped, "errors": 0}
-    attributes = {key: str(count) for key, count in counts.items()}
-    suite = ElementTree.Element("testsuite", {"name": printable_lines(grade.name), **attributes})
-    properties = ElementTree.SubElement(suite, "properties")
-    ElementTree.SubElement(properties, "property", {"name": "seed", "value": str(plan.seed)})
-    for check in grade.checks:
-        case = ElementTree.SubElement(suite, "testcase", {"classname": f"grade.{check.part}", "name": check.name})
-        if check.failure is not None:
-            message = {"message": printable_lines(check.words)}
-            ElementTree.SubElement(case, "failure", message).text = check.sentence
-        elif check.outcome is Outcome.NOT_REACHED:
-            ElementTree.SubElement(case, "skipped", {"message": printable_lines(check.why)})
-    return suite
 
 
 # -- for the hosts of courses: GitHub Classroom (classroom.json) and Gradescope (results.json) --

@@ -38,7 +38,6 @@ class Sandbox:
     """Builds the command lines that start a session, a node or a build in the sandbox."""
 
     reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
-    cpu_time: int = limits.MAX_CPU_TIME
 
     def session_command(self, command: Sequence[str]) -> List[str]:
         """Command line of a session, in its own network and PID namespace; all else is shared."""
@@ -80,7 +79,7 @@ class Sandbox:
         wrap += [*_mounts("--ro-bind-try", map(Path, SYSTEM)), *_mounts("--ro-bind", [*self.reads, *reads])]
         wrap += [*_hidden(Path("/etc")), *_accounts(environment.get("HOME", str(folder)))]
         wrap += [*place, *SEALED, "--chdir", str(folder), "--"]
-        return [*wrap, *_restrictions(environment, self.cpu_time), *command]
+        return [*wrap, *_restrictions(environment), *command]
 
 
 def expect_private(path: Path) -> None:
@@ -112,8 +111,9 @@ def change_owner(folder: Path, owner: int) -> None:
         subprocess.run(["/bin/chown", "-hRP", "--", f"{owner}:{owner}", str(folder)], check=True, capture_output=True)
 
 
-def _restrictions(environment: Mapping[str, str], cpu_time: int) -> List[str]:
+def _restrictions(environment: Mapping[str, str]) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
+    cpu_time = limits.MAX_CPU_TIME
     environment = {"USER": NAME, "LOGNAME": NAME, **environment}
     drop = ["--clear-groups", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
     return [
@@ -165,7 +165,7 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
     return [word for path in paths for word in (option, str(path), str(path))]
 
 
-def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = limits.MAX_CPU_TIME) -> Optional[Sandbox]:
+def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
     """The sandbox, or None if `unsafe`. GradingError where bubblewrap can't run, NoTimeError if that takes too long."""
     if unsafe:
         return None
@@ -184,4 +184,4 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = (), cpu_time: int = limit
         if any(map(os.path.exists, CONTAINER_MARKS)):
             advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
         raise GradingError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
-    return Sandbox(tuple(reads), cpu_time)
+    return Sandbox(tuple(reads))

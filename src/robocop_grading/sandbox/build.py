@@ -10,7 +10,6 @@ from aro_robocop_goto_as.errors import GradingError
 from aro_robocop_goto_as.process import child
 
 from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
-from . import memory_group
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
 from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE
@@ -41,7 +40,7 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path]) -
         name = Path(command[0]).name
         visible = {**public(environment), "HOME": "/tmp", "ROS_HOME": "/tmp", "ROS_LOG_DIR": "/tmp"}
         change_owner(folder, user())
-        inside = [*memory_group.prefix(), *wrapped(command, visible, reads, folder)]
+        inside = wrapped(command, visible, reads, folder)
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
         guard = Guard(process.pid, folder, processor_time=MAX_BUILD_CPU_TIME)
         try:

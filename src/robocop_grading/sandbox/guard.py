@@ -1,8 +1,7 @@
 """Looks at a process tree: kills it when it exceeds a limit, and notes for how long nothing of it runs.
 
-The kernel's limits are per process. A limit for many of them needs a control group (memory_group.py), which not every
-system lets its users make. What the kernel keeps for sockets, pipes and entries of folders is nobody's here; only a
-control group counts it.
+The kernel's limits are per process; this one is for all of them together. What the kernel keeps for their sockets,
+pipes and entries of folders belongs to no process, so it is not counted.
 """
 
 import contextlib
@@ -24,6 +23,7 @@ from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
+COUNTERS = Path("/proc/vmstat")
 RUNS, BLOCKED = "R", "D"  # states of a thread that has or wants the processor, and that waits for a disk; see proc(5)
 
 
@@ -70,7 +70,7 @@ class Guard:
             self.still += rest if RUNS not in states else 0.0
             self.idle += rest if states.isdisjoint({RUNS, BLOCKED}) else 0.0
             if all(_sum(processes, memory) > self._memory for memory in (_resident, _proportional)):
-                self.reason = exceeded_memory(self._memory)
+                self.reason = f"its processes together took more than {self._memory / 1024**2:g} MB of memory"
             elif len(processes) > self._most:
                 self.reason = f"it started more than {self._most} processes"
             elif self.used > self._processor_time:
@@ -82,9 +82,12 @@ class Guard:
                 return
 
 
-def exceeded_memory(limit: int) -> str:
-    """The reason of a process tree that was killed because it took more than `limit` bytes of memory."""
-    return f"its processes together took more than {limit / 1024**2:g} MB of memory"
+def kernel_kills() -> int:
+    """How many processes the kernel has killed since its start because memory ran out; 0 if it does not tell."""
+    try:
+        return int(dict(line.split() for line in COUNTERS.read_text().splitlines())["oom_kill"])
+    except (OSError, ValueError, KeyError):
+        return 0
 
 
 def _processes(pid: int) -> List["psutil.Process"]:

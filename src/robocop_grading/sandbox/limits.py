@@ -7,14 +7,13 @@ MAX_ADDRESS_SPACE = 4096 * MB  # bytes; numpy alone reserves more than one GB
 MAX_FILES = 256  # open ones: what waits in its pipes and sockets is nobody's memory
 MAX_FILE_SIZE = 64 * MB  # bytes
 MAX_CPU_TIME = 200  # [s], also of all processes together: of a part's nodes, one after the other
-MAX_WATCHED_CPU_TIME = 2000  # [s] likewise, for a node that runs at real time: a correct one may wait in a busy loop
 CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
 
 # -- all processes together --
 MAX_TASKS = 200  # processes and threads of a user; a rospy node has some 30
 MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
 MAX_MEMORY = 2048 * MB  # bytes; a node with numpy and OpenCV takes some 200 MB
-MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB; of a control group, too
+MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --

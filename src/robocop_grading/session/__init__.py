@@ -9,5 +9,5 @@ From a job to its records, each one uses those below it:
     node               the node's process, which lives turn by turn: what it sends (channel), what it prints (output)
     topics, services   what node and grader have in common; goals: the action server that a bridge talks to
 
-watch and display are for those who look at a run; progress is what the process that grades is told.
+progress is what the process that grades is told.
 """

@@ -17,8 +17,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
 from ..handout import ACTION, CLICKS
-from ..runner import Job
 from .goals import Goals
+from .job import Job
 from .run import TICK, Run
 from .stage import Stage
 
@@ -58,7 +58,7 @@ class BridgeRun(Run):
         """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
-            self.announce(name, scenario.__doc__)
+            self.announce(name)
             scenario()
 
     # -- the server that it talks to --
@@ -143,9 +143,9 @@ class BridgeRun(Run):
             self.reports.add(name)
             self.stage.digest()
 
-    def tick(self, real_time: bool = True) -> None:
+    def tick(self) -> None:
         """One control tick, after which the server tells of its goals if that is due."""
-        super().tick(real_time)
+        super().tick()
         self._ticks += 1
         if self.server is not None and self._ticks % STATUS_TICKS == 0:
             self.server.tell()
@@ -211,13 +211,17 @@ class BridgeRun(Run):
         self.finish("replace")
 
     def _frame(self) -> None:
-        """Clicks in other frames, after the robot has moved, where map differs from odom."""
+        """Clicks in other frames, after the robot has moved, where map differs from odom.
+
+        The first one is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
+        """
         self._finish_goals()
         self.begin("frame", 1)
         self.settle(0.5)
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
             self.settle(seconds)
+        self.stage.pass_transform()
         for frame in FRAMES:
             self._send_click(frame, 1.0, 0.2)
             self.settle(0.5)

@@ -1,53 +1,39 @@
 """Runs all scenarios of one part of a submission, and writes a record file for each."""
 
-import os
 import sys
 from pathlib import Path
 
-from aro_robocop_goto_as.errors import GraderLostError, WatchError
+from aro_robocop_goto_as.errors import GraderLostError
 
 from ..record import read
-from ..runner import Job
 from . import progress
 from .bridge import BridgeRun
+from .job import Job
 from .run import Run
 from .server import ServerRun
-from .stage import PARAMS, Stage
-from .watch import Watch, begin_to_publish
+from .stage import Stage
 
 
 def main() -> None:
-    """Usage: main JOB; a run that is watched has a ROS master at the free port in ROS_MASTER_URI."""
+    """Usage: main JOB."""
     progress.start()
-    status = 1
     try:
         _run(read(Job, Path(sys.argv[1])))
-        status = 0
     except GraderLostError as error:
-        print(error, file=sys.stderr)
-    except (OSError, WatchError) as error:  # a full disk, for example: nothing that a node can bring about
+        sys.exit(str(error))
+    except OSError as error:  # a full disk, for example: nothing that a node can bring about
         progress.tell(f"error {error}")
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)  # rospy's threads may still wait
+        sys.exit(1)
 
 
 def _run(job: Job) -> None:
-    if job.viewer is not None:
-        begin_to_publish()
     stage = Stage(job.plan)
     run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
     try:
-        if job.viewer is not None:
-            log = job.out / f"{job.part}-viewer.log"
-            stage.watch = Watch(stage.shown, PARAMS, job.plan, job.viewer, log)
-            stage.watch.open()
         run.scenarios()
     finally:
         run.close()
         stage.bag.close()  # of a scenario that was cut short
-        if stage.watch is not None:
-            stage.watch.close()
 
 
 if __name__ == "__main__":

@@ -13,12 +13,11 @@ from aro_robocop_goto_as.process import child
 
 from .. import record as rec
 from ..agent import wire
-from ..runner import Job
-from ..sandbox import memory_group
 from ..sandbox.guard import Guard
 from ..sandbox.limits import MAX_IDLE, MAX_STILL
 from ..submission import CHANNEL
 from .channel import UNREADABLE, Channel
+from .job import Job
 from .output import Output
 from .services import Services
 from .topics import Topics
@@ -91,8 +90,6 @@ class Node:
         status, reason = self._process.wait(), self._guard.reason or self._given_up
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"
-        elif not reason and status in rec.KILLED:
-            reason = memory_group.reason()
         return rec.Death(now, status, reason)
 
     def spent(self) -> Spent:

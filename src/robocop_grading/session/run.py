@@ -14,8 +14,8 @@ from aro_robocop_goto_as.ros import convert
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
-from ..runner import Job
 from . import progress
+from .job import Job
 from .node import Node, Spent
 from .services import Services
 from .stage import Stage
@@ -46,11 +46,9 @@ class Run:
         """Run those that the plan's checks examine."""
         raise NotImplementedError
 
-    def announce(self, name: str, about: str) -> None:
-        """Tell the grader, and the viewer if the run is watched, which scenario is the next one."""
+    def announce(self, name: str) -> None:
+        """Tell the grader which scenario is the next one."""
         progress.tell(f"begin {name}")
-        if self.stage.watch is not None:
-            self.stage.watch.begin(f"{self.job.part}: {name}", about)
 
     def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at the start of the site of this index."""
@@ -72,6 +70,7 @@ class Run:
             marks=self.marks,
             other_types=others,
             programs=tuple(sorted(self.topics.programs)),
+            delays=tuple(sorted(self.topics.delays.items())),
             **parts,
             **more,
         )
@@ -127,14 +126,11 @@ class Run:
 
     # -- time --
 
-    def tick(self, real_time: bool = True) -> None:
-        """One control tick; a watched run is shown at real time."""
+    def tick(self) -> None:
+        """One control tick."""
         for part, entries in self.parts.items():
             self._before[part] = len(entries)
-        sample = self.stage.tick(real_time)
-        self.add("samples", sample)
-        if self.stage.watch is not None:
-            self.stage.watch.show(sample, self.parts["goals"], self.parts["clicks"])
+        self.add("samples", self.stage.tick())
         self._record_death()
 
     def settle(self, seconds: float) -> None:
@@ -147,7 +143,7 @@ class Run:
         for _ in range(round(timeout / TICK)):
             if condition() or self.is_dead():
                 break
-            self.tick(real_time=False)
+            self.tick()
         return condition()
 
     # -- what arrives, in the main thread --

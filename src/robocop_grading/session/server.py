@@ -12,10 +12,11 @@ from aro_robocop_goto_as.goto import Errors, track_progress
 from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
+from ..attempts import AGAIN
 from ..handout import ACTION
 from ..plan import START, Push, Scenario, Step
 from ..record import Record
-from ..runner import Job
+from .job import Job
 from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage
@@ -43,11 +44,11 @@ class ServerRun(Run):
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
-        self.announce(START, "The node starts")
+        self.announce(START)
         start = self._start()
         for index, scenario in enumerate(self.plan.scenarios, 1):
             if start.up and self.plan.examines(self.job.part, scenario.name):
-                self.announce(scenario.name, scenario.about)
+                self.announce(scenario.name)
                 self._scenario(index, scenario)
 
     def _start(self) -> Record:
@@ -77,17 +78,17 @@ class ServerRun(Run):
         """Run its script to the end, or until it can't continue.
 
         If a goal ends otherwise than it should or does not end, with a node that has served other scenarios, the
-        scenario is repeated with a new node: what earlier scenarios have left behind in a node is judged where one
-        scenario has several goals, and must not fail the others.
+        scenario is repeated with a new node. Which of the two records counts is decided when all are there.
         """
         used = self._used
-        record = self._play(index, scenario)
+        record = self._play(index, scenario, scenario.name)
         unended = bool(record.problem) and not record.deaths
         if used and (unended or self._unexpected(record)):
-            self._play(index, scenario)
+            self._play(index, scenario, scenario.name + AGAIN)
 
-    def _play(self, index: int, scenario: Scenario) -> Record:
-        self.begin(scenario.name, index, scenario.odd_scan)
+    def _play(self, index: int, scenario: Scenario, name: str) -> Record:
+        """Run a scenario with the present node; its record has this name."""
+        self.begin(name, index, scenario.odd_scan)
         problem = ""
         self.ended.clear()
         self._pushes = list(scenario.pushes)
@@ -104,9 +105,8 @@ class ServerRun(Run):
                     break
         if problem:
             self.settle(AFTER)
-        record = self.finish(
-            scenario.name, obstacles=tuple(block.outline for block in scenario.obstacles), problem=problem
-        )
+        outlines = tuple(block.outline for block in scenario.obstacles)
+        record = self.finish(name, obstacles=outlines, problem=problem)
         if problem or self._unclean(record):
             self.close()
         return record

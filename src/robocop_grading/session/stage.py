@@ -10,28 +10,28 @@ from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.geometry import NANOSECONDS, STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.obstacle_ahead import beams_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.sensors.lidar import SCAN
+from aro_robocop_goto_as.sensors.odometry import ODOM, TF
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
-from aro_robocop_goto_as.simulation.rates import ODOM, SCAN, TF
 from aro_robocop_goto_as.simulation.running import Simulation
-from aro_robocop_goto_as.simulation.schedule import NANOSECONDS
 
 from ..handout import AHEAD
-from ..plan import Plan, site, world_of
+from ..plan import Plan
 from ..record import Sample
+from ..sites import site, world_of
 from .node import Node
 from .scenario_bag import ScenarioBag
 from .step_messages import StepMessages
 from .topics import Topics
-from .watch import Watch
 
 # cmd_vel never times out, as in the lab. 30 Hz is the cheapest clock rate that includes every 10 Hz control tick.
 # A submission has to use odom, not the truth.
@@ -48,12 +48,12 @@ class Stage:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(plan), [robot])
         self.simulation = Simulation(self.sim)
-        self.shown = StepTopics(self.sim)  # to those who watch
-        self.robot = self.shown.robots[0]
-        self._messages = StepMessages(self.sim, self.shown)
+        published = StepTopics(self.sim)
+        self.robot = published.robots[0]
+        self._messages = StepMessages(self.sim, published)
         self._sensors: Dict[str, str] = {}  # by topic
         self.topics = Topics()
-        for sensor, topic in {**self.robot.topics, TF: self.shown.tf}.items():
+        for sensor, topic in {**self.robot.topics, TF: published.tf}.items():
             self._sensors[topic.name] = sensor
             self.topics.advertise(topic.name, topic.data_class)
         self.topics.advertise("/tf_static", TFMessage, latch=True)
@@ -65,7 +65,6 @@ class Stage:
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
-        self.watch: Optional[Watch] = None  # shows the run, if somebody watches it
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
 
     @property
@@ -110,20 +109,22 @@ class Stage:
 
     # -- time --
 
-    def tick(self, real_time: bool = True) -> Sample:
-        """Advance by one control tick and publish what is due; returns the true state at its end.
-
-        A watched run is shown at real time, unless `real_time` is False.
-        """
+    def tick(self) -> Sample:
+        """Advance by one control tick and publish what is due; returns the true state at its end."""
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
             until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
             observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
-                self._publish(observed, real_time)
+                self._publish(observed)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
                 self.digest()
         return self.sample()
+
+    def pass_transform(self) -> None:
+        """Advance, by the clock as well, to halfway between two transforms of the robot."""
+        self.sim.advance({}, self.sim.rate // PARAMS.sensors.odometry.odom_rate // 2)
+        self.clock_ns = self.sim.stamp_ns
 
     def _step_at(self, stamp_ns: int) -> int:
         """The first step that is not before a simulated time [ns]."""
@@ -137,22 +138,20 @@ class Stage:
             meanwhile()
 
     def _subscriptions(self) -> Subscriptions:
-        """The node's and the viewer's; odometry and transforms always, for the bag."""
+        """The node's; odometry and transforms always, for the bag."""
         wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
-        return {**self.shown.subscriptions(), **{sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}}
+        return {sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}
 
-    def _publish(self, observed: Observations, real_time: bool) -> None:
-        """One step's observations to the viewer, the submission and the bag."""
+    def _publish(self, observed: Observations) -> None:
+        """One step's observations to the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
-            _make_odd(observed.scans[0])
+            _make_odd(observed.scan.ranges[0])
         messages = self._messages.of(observed)
         for topic, _, data in messages:
             if topic in self._sensors:  # the agent sends /clock when its callbacks may see it
                 self.topics.send(topic, data)
         if observed.due.clock:
             self.clock_ns = self.sim.stamp_ns
-        if self.watch is not None:
-            self.watch.observe(observed, real_time)
         self.digest(partial(self.bag.write_step, observed.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
@@ -160,8 +159,6 @@ class Stage:
         frames = self._static_frames(Pose2D())
         frames.transforms += self._links()
         self.topics.publish("/tf_static", frames)
-        if self.watch is not None:
-            self.shown.publish_static()
         # In a replay, map is odom at the scenario's start; in the submission's map that is many metres away.
         self.bag.write("/tf_static", self._static_frames(self._site))
 
@@ -184,9 +181,7 @@ class Stage:
         ]
 
     def keep(self, topic: str, message: Any) -> None:
-        """Into the scenario's bag, and to the page where the run is shown."""
-        if self.watch is not None:
-            self.watch.forward(topic, message)
+        """Into the scenario's bag."""
         self.bag.write(topic, message)
 
     def odom_from_footprint(self) -> Pose2D:

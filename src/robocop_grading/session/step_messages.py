@@ -8,10 +8,11 @@ from std_msgs.msg import Bool
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
-from aro_robocop_goto_as.ros.sim.sensor_messages import NO_VARIANCES, packed_clock, packed_odometry
+from aro_robocop_goto_as.ros.sim.sensor_topics import NO_VARIANCES, packed_clock, packed_odometry
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.sensors.bumper import BUMPER
+from aro_robocop_goto_as.sensors.odometry import ODOM
 from aro_robocop_goto_as.simulation.observations import Due, Observations
-from aro_robocop_goto_as.simulation.rates import BUMPER, ODOM
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 
@@ -46,5 +47,5 @@ class StepMessages:
         batch.send(seen.stamp_ns)
         messages = [StepMessage(topic, kind, message.data.tobytes()) for topic, kind, message in packed]
         if seen.of(BUMPER):
-            messages.insert(0, StepMessage(self._bumper, Bool, bytes([1, 0, 0, 0, seen.bumpers[0]])))
+            messages.insert(0, StepMessage(self._bumper, Bool, bytes([1, 0, 0, 0, seen.bumper.touching[0]])))
         return messages

@@ -97,6 +97,7 @@ class Topics:
         self.published: Dict[str, NodeTopic] = {}  # by the node
         self.subscribed: Dict[str, NodeTopic] = {}  # likewise
         self.programs: Set[str] = set()  # of ROS that the node has started, which find no master
+        self.delays: Dict[str, float] = {}  # [s] by topic, of messages until the node read them, at most
         self._sent: Dict[str, _Sent] = {}  # by name
         self._heard: Dict[str, _Heard] = {}  # likewise
         self._outgoing: List[wire.Message] = []
@@ -170,6 +171,7 @@ class Topics:
     def begin(self) -> List[Dict[str, str]]:
         """A new node is started: the headers of all topics."""
         self.published, self.subscribed, self.programs, self._new = {}, {}, set(), []
+        self.delays = {}
         for heard in self._heard.values():
             heard.stream.clear()
         self._outgoing = [(name, sent.last) for name, sent in self._sent.items() if sent.last]
@@ -193,6 +195,7 @@ class Topics:
                 for direction in ("published", "subscribed")
             )
             self.programs.update(str(name)[:MAX_NAME] for name in told["programs"][:MAX_TOPICS])
+            self.delays = {str(name)[:MAX_NAME]: float(str(delay)[:9]) for name, delay in told["delays"][:MAX_TOPICS]}
         except (KeyError, RecursionError, TypeError, ValueError) as error:
             raise GraderLostError("the node's topics can't be read") from error
 

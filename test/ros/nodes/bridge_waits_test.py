@@ -8,6 +8,7 @@ import unittest
 import actionlib
 import rospy
 import tf2_ros
+from actionlib_msgs.msg import GoalID
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionActionGoal, GoToPositionResult
 from clicks import Clicks
 from geometry_msgs.msg import Point, Transform, TransformStamped
@@ -41,7 +42,7 @@ class BridgeWaits(unittest.TestCase):
         bridge = Process(script("robocop_rviz_goto_ac.py"), f"__name:={BRIDGE[1:]}", "_status_period:=0.2")
         cls.addClassCleanup(bridge.__exit__)
 
-    def test_missing_server_is_reported_with_a_misspelt_one_and_gets_the_newest_goal_when_it_starts(self):
+    def test_missing_server_is_reported_with_a_misspelt_one_and_gets_the_goal_that_waits_but_no_cancelled_one(self):
         clicks, log = Clicks(), Recorder("/rosout", Log)
         clicks.wait_for_status(f"waiting for {ACTION}")
         self.assertEqual({m.data for m in clicks.status.messages}, {f"waiting for {ACTION}"})
@@ -54,6 +55,11 @@ class BridgeWaits(unittest.TestCase):
         self.assertIn(f"waiting for {ACTION}; there is '/{MISSPELT}' of the same type: a misspelt name?", status)
 
         clicks.click(5.0, 5.0, "odom")
+        clicks.wait_for_status("goal x 5.00 y 5.00 in odom waits for it")
+        cancel = rospy.Publisher(f"{ACTION}/cancel", GoalID, queue_size=1)
+        wait_for_subscriber(cancel, BRIDGE)
+        cancel.publish(GoalID())
+        log.wait_for(lambda m: m.msg.startswith("goal cancelled before its server was up: x 5.00"), "its cancel")
         clicks.click(0.5, 0.25, "odom")
         right = Server(ACTION)
         wait_for(lambda: right.goals, "the goal at the right server")

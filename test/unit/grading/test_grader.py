@@ -8,10 +8,10 @@ from support import ROOT
 
 from aro_robocop_goto_as.errors import UngradableError
 from robocop_grading.grader import grade
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner
-from robocop_grading.sandbox import memory_group
+from robocop_grading.sandbox import guard
 from robocop_grading.submission import Script, Submission
 
 PLAN = load(Path(ROOT, "config", "grading.yaml"))
@@ -51,11 +51,11 @@ def test_part_that_is_killed_twice_though_the_kernel_has_killed_nothing_is_grade
 
 
 def test_the_kernel_tells_how_many_processes_it_has_killed(tmp_path, monkeypatch):
-    assert memory_group.kernel_kills() >= 0
-    monkeypatch.setattr(memory_group, "COUNTERS", tmp_path / "vmstat")
-    assert memory_group.kernel_kills() == 0
+    assert guard.kernel_kills() >= 0
+    monkeypatch.setattr(guard, "COUNTERS", tmp_path / "vmstat")
+    assert guard.kernel_kills() == 0
     (tmp_path / "vmstat").write_text("pgfault 5\noom_kill 3\nswap_ra 7\n")
-    assert memory_group.kernel_kills() == 3
+    assert guard.kernel_kills() == 3
 
 
 @pytest.mark.parametrize(
@@ -72,11 +72,18 @@ def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outsi
     assert death.is_unexplained == outside
 
 
-def test_module_that_is_not_installed_is_named_as_one_that_the_lab_may_have(tmp_path, monkeypatch):
-    lines = ["Traceback (most recent call last):", "ModuleNotFoundError: No module named 'cv2'"]
+@pytest.mark.parametrize(
+    "module, words",
+    [
+        ("cv2", "; if the lab has it, name its package in the plan, under packages"),
+        ("scipy", "; if the lab has it, name its package in the plan, under packages"),
+        ("ropsy", "; did you mean rospy?"),
+    ],
+)
+def test_module_that_is_not_installed_is_named_as_mistyped_or_as_one_that_the_lab_may_have(
+    module, words, tmp_path, monkeypatch
+):
+    lines = ["Traceback (most recent call last):", f"ModuleNotFoundError: No module named '{module}'"]
     record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
     (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).problems
-    assert problem == (
-        "server: Python's module cv2 is not installed here; if the lab has it, name its package in the plan, under "
-        "packages"
-    )
+    assert problem == f"server: Python's module {module} is not installed here{words}"

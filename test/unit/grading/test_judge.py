@@ -9,7 +9,8 @@ from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back
 
 from robocop_grading import record as rec
 from robocop_grading.judge import Outcome, judge
-from robocop_grading.plan import Plan, load
+from robocop_grading.plan import Plan
+from robocop_grading.plan_file import load
 from robocop_grading.record import Record
 from robocop_grading.report.write import as_classroom, as_gradescope
 

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
 from robocop_grading.packages import Packages
-from robocop_grading.plan import MAX_SEED, drawn, load, world_of
+from robocop_grading.plan_file import MAX_SEED, drawn, load
+from robocop_grading.sites import world_of
 
 SEEDS = st.integers(1, MAX_SEED)
 NUMBERS = st.floats(-100.0, 100.0).map(lambda number: round(number, 3))

@@ -10,7 +10,8 @@ from support import ROOT
 from robocop_grading.checks import Failed
 from robocop_grading.cli import Progress, as_text
 from robocop_grading.judge import CheckResult, Grade, Outcome
-from robocop_grading.plan import BRIDGE_SCENARIOS, Plan, load
+from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
+from robocop_grading.plan_file import load
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 
 PLAN = load(Path(ROOT, "config", "grading.yaml"))

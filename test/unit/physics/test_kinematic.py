@@ -15,7 +15,8 @@ from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.raycast import grid_index
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.shapes import Box, Cylinder
+from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
 RADIUS = 0.105

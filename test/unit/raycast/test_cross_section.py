@@ -12,7 +12,8 @@ from support import ORIGIN
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
-from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Obstacle, Plane, Sphere, World
+from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Plane, Sphere
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 HEIGHT = 0.182
 ANGLES = np.linspace(-math.pi, math.pi, 721)

@@ -14,10 +14,11 @@ from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.free_places import free_place, occupant
 from aro_robocop_goto_as.robot.model import RobotModel
+from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
 from aro_robocop_goto_as.world.load import load_world
-from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 
 @pytest.mark.parametrize("world, count", [("stage_4", 10), ("world", 10), ("maze_1", 6), ("empty", 50)])

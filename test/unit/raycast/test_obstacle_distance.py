@@ -8,7 +8,8 @@ from support import analytic_distances, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.obstacle_distance import ObstacleDistance
-from aro_robocop_goto_as.world.model import Box, Cylinder, Geometry, Mesh, Obstacle, Plane, Sphere, Walls, World
+from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere, Walls
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 HEIGHTS = (0.02, 0.1, 0.18)
 SQUARE = np.array([[[-1, -1], [1, -1]], [[1, -1], [1, 1]], [[1, 1], [-1, 1]], [[-1, 1], [-1, -1]]], float)

@@ -10,7 +10,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
-from aro_robocop_goto_as.world.model import Box, Obstacle, World
+from aro_robocop_goto_as.shapes import Box
+from aro_robocop_goto_as.world.model import Obstacle, World
 
 
 def grid_of(cut, start, resolution):

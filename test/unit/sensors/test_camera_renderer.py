@@ -7,9 +7,10 @@ import pytest
 from support import analytic_distances, drive, model_named, world_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, compose3, lifted, rotation_matrix
-from aro_robocop_goto_as.sensors.camera import CameraImage, CameraSpec, points_of
+from aro_robocop_goto_as.sensors.camera_image import CameraImage, CameraSpec, points_of
+from aro_robocop_goto_as.shapes import Box
 from aro_robocop_goto_as.simulation.simulator import Simulator
-from aro_robocop_goto_as.world.model import Box, World
+from aro_robocop_goto_as.world.model import World
 
 Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
@@ -21,7 +22,7 @@ def _image(sim: Simulator, robot: int = 0) -> CameraImage:
     while True:
         seen = sim.step({"camera": [robot]})
         if seen is not None and seen.of("camera"):
-            return seen.images[robot]
+            return seen.camera.images[robot]
 
 
 def _world_from_camera(model: str, pose: Pose2D) -> Pose3D:
@@ -45,7 +46,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
     description = world_named(world)
     walls = World(world, tuple(o for o in description.obstacles if isinstance(o.geometry, Box)), pose, (), "")
     sim = simulator(world, pose, model=model, **KINEMATIC)
-    camera, spec = _world_from_camera(model, pose), sim.observed.cameras[0]
+    camera, spec = _world_from_camera(model, pose), sim.observed.camera.specs[0]
     points = _points(_image(sim), camera, spec)
     x, y, _ = camera.position
     away = np.hypot(points[..., 0] - x, points[..., 1] - y)
@@ -63,7 +64,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
 
 def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
     sim = simulator("empty", model="waffle", **KINEMATIC)
-    image, spec = _image(sim), sim.observed.cameras[0]
+    image, spec = _image(sim), sim.observed.camera.specs[0]
     points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
     assert np.abs(points[70:, :, 2]).max() < 0.001
     assert np.isinf(image.depth[:58]).all()

@@ -1,6 +1,8 @@
 """Wheel odometry and its errors; odometry.c against its definition."""
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,10 +23,16 @@ def _fleet(robots: int = 1) -> Fleet:
     return Fleet([model_named("burger")] * robots, [LIMITS] * robots, [0.1] * robots)
 
 
+def _site(fleet: Fleet) -> Any:
+    """A site where the left wheel slips by two sigmas, and the right one by one; only their sizes count."""
+    noise = SimpleNamespace(standard_normal=lambda out: np.copyto(out, [2.0, -1.0]))
+    return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
+
+
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
 def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: float, updates: int) -> None:
     fleet = _fleet()
-    odometers = Odometers(OdometryParams(), fleet)
+    odometers = Odometers(OdometryParams(), _site(fleet))
     for update in range(1, updates + 1):
         travelled = update / 30.0 * np.array([v - w * SEPARATION / 2, v + w * SEPARATION / 2])
         fleet.wheel_angles[0] = travelled / RADIUS
@@ -46,31 +54,31 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
 )
 def test_each_error_of_odometry_has_its_size(params: OdometryParams, x: float, yaw: float) -> None:
     fleet = _fleet()
-    odometers = Odometers(params, fleet)
+    odometers = Odometers(params, _site(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
-    odometers.noise[0] = 2.0, -1.0  # in sigmas; only their size counts
-    odometers.update()
+    for measure in odometers.measuring([0]):
+        measure()
     chord = x * np.sinc(yaw / (2.0 * math.pi))
     assert odometers.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
 
 
 def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
     fleet = _fleet()
-    odometers = Odometers(OdometryParams(odom_slip=0.1), fleet)
+    odometers = Odometers(OdometryParams(odom_slip=0.1), _site(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0
-    odometers.noise[0] = 2.0, 2.0
     assert odometers.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
     assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
-    odometers.noise[0] = 2.0, 2.0
-    odometers.update()
-    assert odometers.poses[0] == pytest.approx((1.2 * 0.033, 0.0, 0.0))
+    for measure in odometers.measuring([0]):
+        measure()
+    assert odometers.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)
 
 
 def test_odometry_of_the_world_has_no_errors() -> None:
     fleet = _fleet()
     fleet.place(0, Pose2D(1.0, 2.0, 3.0))
-    odometers = Odometers(OdometryParams("world", 0.1, 0.1, 0.1), fleet)
-    assert not odometers.slipping and odometers.poses[0].tolist() == [1.0, 2.0, 3.0]
+    odometers = Odometers(OdometryParams("world", 0.1, 0.1, 0.1), _site(fleet))
+    odometers.reset([Pose2D(1.0, 2.0, 3.0)])
+    assert odometers.poses[0].tolist() == [1.0, 2.0, 3.0]
     fleet.poses[0], fleet.twists[0] = (4.0, 5.0, 6.0), (0.1, 0.2)
     assert odometers.pose_now(0) == (4.0, 5.0, 6.0) and odometers.poses[0, 0] == 1.0
     odometers.update()

@@ -28,12 +28,12 @@ def _scans(sim: Simulator, count: int) -> "list[np.ndarray]":
     found: list[np.ndarray] = []
     while len(found) < count:
         seen = sim.step({"scan": [0]})
-        found += [seen.scans[0].copy()] if seen is not None and seen.of("scan") else []
+        found += [seen.scan.ranges[0].copy()] if seen is not None and seen.of("scan") else []
     return found
 
 
 def test_the_default_is_the_labs_gazebo_sensor() -> None:
-    scan = SimParams().scan
+    scan = SimParams().sensors.scan
     spec = scan.lidar()
     assert (scan.rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
     assert (spec.range_min, spec.range_max, spec.noise) == (0.12, 10.0, 0.01)
@@ -41,7 +41,7 @@ def test_the_default_is_the_labs_gazebo_sensor() -> None:
 
 
 def test_beams_are_spread_as_lab_code_expects() -> None:
-    spec = SimParams().scan.lidar()
+    spec = SimParams().sensors.scan.lidar()
     assert spec.increment == pytest.approx(6.28319 / 359)
     assert len(np.arange(spec.angle_min, spec.angle_max + spec.increment, spec.increment)) == 360
     inc = np.float32(spec.increment)
@@ -49,7 +49,7 @@ def test_beams_are_spread_as_lab_code_expects() -> None:
 
 
 def test_an_lds01_scans_at_5_hz_with_one_beam_per_degree() -> None:
-    scan = SimParams.of(scan_profile="lds01").scan
+    scan = SimParams.of(scan_profile="lds01").sensors.scan
     spec = scan.lidar()
     assert (scan.rate, spec.samples, spec.range_min, spec.range_max) == (5, 360, 0.12, 3.5)
     assert spec.angle_max == pytest.approx(2.0 * math.pi - spec.increment)
@@ -98,9 +98,9 @@ def test_any_number_of_beams_covers_the_same_full_turn(simulator: Make) -> None:
 
 def test_explicit_value_overrides_the_profile_and_is_listed() -> None:
     given = {"scan_rate": 5, "scan_noise": 0.02, "scan_angle_min": 0.0, "scan_angle_max": 3.0}
-    scan = SimParams.of(scan_profile="lds02", **given).scan
+    scan = SimParams.of(scan_profile="lds02", **given).sensors.scan
     assert scan.given() == given
     spec = scan.lidar()
     assert (scan.rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)
     assert (spec.samples, spec.range_max) == (230, 8.0)
-    assert SimParams().scan.given() == {}
+    assert SimParams().sensors.scan.given() == {}

@@ -60,12 +60,14 @@ def _run(sim: Simulator) -> List[Tuple[str, bytes]]:
             rows = {
                 "odom": observed.odometry.poses,
                 "ground_truth": observed.fleet.poses,
-                "joints": observed.joint_angles,
-                "imu": observed.imus,
-                "scan": observed.scans,
+                "joints": observed.joints.angles,
+                "imu": observed.imu.samples,
+                "scan": observed.scan.ranges,
             }
             seen += [(name, array.tobytes()) for name, array in rows.items() if observed.of(name)]
-            seen += [("camera", image.depth.tobytes()) for image in observed.images.values() if observed.of("camera")]
+            seen += [
+                ("camera", image.depth.tobytes()) for image in observed.camera.images.values() if observed.of("camera")
+            ]
     return seen
 
 
@@ -137,8 +139,8 @@ def _bumper(sim: Simulator) -> bool:
     """What the bumper says next."""
     while True:
         observed = sim.step({"bumper": [0]})
-        if observed is not None and observed.bumpers and observed.of("bumper"):
-            return observed.bumpers[0]
+        if observed is not None and observed.bumper.touching and observed.of("bumper"):
+            return observed.bumper.touching[0]
 
 
 def _odom(sim: Simulator) -> "List[float]":

@@ -55,7 +55,9 @@ def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sens
             sim.command(Twist2D(0.1, 0.5) if sim.steps < 120 else STANDSTILL)
             observed = sim.advance({sensor: [0] for sensor in sensors}, most)
             if observed is not None:
-                rows = [rows.tobytes() for rows in (observed.odometry.poses, observed.scans, observed.imus)]
+                rows = [
+                    rows.tobytes() for rows in (observed.odometry.poses, observed.scan.ranges, observed.imu.samples)
+                ]
                 seen.append((observed.stamp_ns, observed.due.clock, rows))
         return [*seen, sim.world_from_footprint()]
 
@@ -69,7 +71,7 @@ def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator: 
             sim.command(Twist2D(0.2, 0.3))
             seen = sim.step(everything(2) if listening else {"scan": [1]} if step == 119 else {})
         assert seen is not None
-        return list(seen.scans[1]), sim.world_from_footprint()
+        return list(seen.scan.ranges[1]), sim.world_from_footprint()
 
     assert run(True) == run(False)
 

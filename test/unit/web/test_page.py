@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.web import page
-from aro_robocop_goto_as.web.page import AHEAD, FIELD, HEIGHT, MAX_CLICK, RIGHT, UP, Cameras, floor_point
+from aro_robocop_goto_as.web.page import FIELD, FILLED, HEIGHT, MAX_CLICK, RIGHT, Cameras, axes_of, floor_point
 
-PHONES, DESKS = [(390, 844), (360, 640), (430, 932)], [(1300, 800), (900, 620), (1920, 1000)]  # [pixel]
+SCENES = [(393, 400), (1081, 1099), (250, 900), (457, 293), (955, 800), (580, 620), (1585, 1000)]  # [pixel]
 
 
 def room(low=(-2.5, -2.5), high=(2.5, 2.5)) -> np.ndarray:
@@ -34,38 +33,38 @@ def server_of(*sizes) -> SimpleNamespace:
 
 def seen(camera: SimpleNamespace, points: np.ndarray) -> np.ndarray:
     """Where points (n, 3) [m] appear: (n, 2) [pixel] from the left and from the top."""
-    scale = camera.image_height / 2.0 / math.tan(FIELD / 2.0)
+    scale, (ahead, up) = (
+        camera.image_height / 2.0 / math.tan(FIELD / 2.0),
+        axes_of(camera.image_width / camera.image_height),
+    )
     away = points - camera.position
-    offset = np.stack([away @ RIGHT, -(away @ UP)], axis=1) / (away @ AHEAD)[:, None]
+    offset = np.stack([away @ RIGHT, -(away @ up)], axis=1) / (away @ ahead)[:, None]
     return np.array((camera.image_width, camera.image_height)) / 2.0 + scale * offset
 
 
-def expect_in_the_middle_of_the_free_part(camera: SimpleNamespace, corners: np.ndarray) -> None:
-    phone = camera.image_width < page.PHONE
-    free = np.array((camera.image_width, camera.image_height * (1.0 - page.PHONE_PANEL)))
-    if not phone:
-        free = np.array((camera.image_width - page.PANEL, camera.image_height))
+def expect_filled_from_the_middle(camera: SimpleNamespace, corners: np.ndarray) -> None:
+    size = np.array((camera.image_width, camera.image_height))
     low, high = seen(camera, corners).min(axis=0), seen(camera, corners).max(axis=0)
-    assert (low + high) / 2.0 == pytest.approx(free / 2.0, abs=0.05 * camera.image_height)
-    assert max((high - low) / free) == pytest.approx(page.FILLED)
+    assert (low + high) / 2.0 == pytest.approx(size / 2.0, abs=0.05 * camera.image_height)
+    assert max((high - low) / size) == pytest.approx(FILLED)
 
 
-@pytest.mark.parametrize("size", PHONES + DESKS)
+@pytest.mark.parametrize("size", SCENES)
 @pytest.mark.parametrize("places", [[], [(1.9, 0.0, 0.2)], [(-2.5, -2.5, 0.0), (2.5, 2.5, 0.0)]])
-def test_the_room_fills_the_part_of_the_window_that_the_panel_leaves_free(size, places) -> None:
+def test_the_room_fills_the_scene(size, places) -> None:
     server = server_of(size)
     server.cameras.show(places)
     middle = np.array((*np.mean([(0.0, 0.0), *(place[:2] for place in places)][:2], axis=0), 0.0)) * (len(places) == 1)
-    expect_in_the_middle_of_the_free_part(server.get_clients()[0].camera, room() + middle)
+    expect_filled_from_the_middle(server.get_clients()[0].camera, room() + middle)
 
 
-@pytest.mark.parametrize("size", PHONES + DESKS)
+@pytest.mark.parametrize("size", SCENES)
 @pytest.mark.parametrize("low, high", [((-0.6, -0.6), (7.0, 5.4)), ((-9.0, 3.0), (-2.0, 9.0))])
 def test_all_cameras_show_a_larger_world_and_the_origin(size, low, high) -> None:
     server = server_of(size)
     server.cameras.show([(*low, 0.0), (*high, 0.0)])
     corners = room((min(low[0], 0.0), min(low[1], 0.0)), (max(high[0], 0.0), max(high[1], 0.0)))
-    expect_in_the_middle_of_the_free_part(server.get_clients()[0].camera, corners)
+    expect_filled_from_the_middle(server.get_clients()[0].camera, corners)
 
 
 def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew() -> None:
@@ -77,16 +76,34 @@ def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew
     assert camera.position == chosen
 
 
+def camera_that_reports(width=390, height=844):
+    server, reported = server_of((1300, 800)), []
+    camera = SimpleNamespace(image_width=width, image_height=height, on_update=reported.append)
+    server.cameras._add(SimpleNamespace(camera=camera))
+    return server, camera, lambda: reported[0](camera)
+
+
 def test_a_browser_that_reports_the_first_view_later_is_turned_again() -> None:
-    server, reported = server_of((390, 844)), []
-    client = SimpleNamespace(camera=SimpleNamespace(image_width=390, image_height=844, on_update=reported.append))
-    server.cameras._add(client)
-    shown, client.camera.position = client.camera.position, server.initial_camera.position
-    reported[0](client.camera)
-    assert client.camera.position == pytest.approx(shown)
-    client.camera.position = chosen = np.array((1.0, 2.0, 3.0))
-    reported[0](client.camera)
-    assert client.camera.position is chosen
+    server, camera, report = camera_that_reports()
+    shown, camera.position = camera.position, server.initial_camera.position
+    report()
+    assert camera.position == pytest.approx(shown)
+
+
+def test_the_room_fills_the_scene_again_when_a_phone_is_turned_and_turned_back() -> None:
+    _, camera, report = camera_that_reports()
+    for _ in range(2):
+        camera.image_width, camera.image_height = camera.image_height, camera.image_width
+        report()
+        expect_filled_from_the_middle(camera, room())
+
+
+def test_a_view_that_somebody_has_chosen_stays_when_a_phone_is_turned() -> None:
+    _, camera, report = camera_that_reports()
+    camera.position = chosen = np.array((1.0, 2.0, 3.0))
+    camera.image_width, camera.image_height = camera.image_height, camera.image_width
+    report()
+    assert camera.position is chosen
 
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0.1, 20), st.floats(-9, 9), st.floats(-9, 9))

@@ -9,9 +9,9 @@ from support import drive
 
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.rates import SCAN
 from aro_robocop_goto_as.world.load import load_world
 
 PLANE = "<include><uri>model://ground_plane</uri></include>"
@@ -65,7 +65,7 @@ def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, burger, driv
         world = load_world(world_file(tmp_path / name, body + shelf))
         p = SimParams.of(drive=drive_by, scan_profile="ideal")
         sim = make_simulator(p, world, [RobotSpec("", burger, world.spawn)])
-        scans = [found.scans[0] for found in drive(sim, Twist2D(0.2, 0.3), 1.0, [SCAN]) if found.of(SCAN)]
+        scans = [found.scan.ranges[0] for found in drive(sim, Twist2D(0.2, 0.3), 1.0, [SCAN]) if found.of(SCAN)]
         assert not sim.touching() and not sim.newly_placed_in_contact()
         seen[name] = (*sim.world_from_footprint(), *scans[-1])
         sim.close()

@@ -11,9 +11,10 @@ from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.robot.model import RobotSpec
+from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.world.model import Box, Cylinder, Obstacle, World
+from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
 PATROL = Motion(Pose2D(1.0, 2.0, math.pi / 2), waypoints=((4.0, 2.0, 0.0), (6.0, 2.0, 1.0), (10.0, 0.0, 0.0)))

@@ -10,7 +10,6 @@ import sys
 from typing import Callable, Dict, List, NoReturn, Sequence
 
 from ...errors import MasterError
-from ...probes import x_display
 from ...suggestions import did_you_mean
 from . import completion, container_image, developer_commands, doctor, program, system_commands
 from .program import ROOT, refuse, say
@@ -28,13 +27,9 @@ PS1="(robocop) $PS1"
 
 
 def grade(arguments: List[str]) -> None:
-    """Grade a submission; --watch shows it in RViz on a display of this machine, and otherwise in the web page."""
+    """Grade a submission."""
     expect_something("grade", arguments)
-    watch = []
-    if "--watch" in arguments:
-        # Another machine's display, as with ssh -X, can't be reached from inside the sandbox.
-        watch = ["rviz" if os.environ.get("DISPLAY", "").startswith(":") and x_display.answers() else "web"]
-    program.need("hosting", "grade", *watch)
+    program.need("hosting", "grade")
     program.start_script("robocop_grade.py", *arguments)
 
 
@@ -125,7 +120,6 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "bench": developer_commands.bench,
     "shell": shell,
     "setup": setup,
-    "docs": developer_commands.docs,
     "image": container_image.build,
     "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
     "version": lambda _: print(program.version()),

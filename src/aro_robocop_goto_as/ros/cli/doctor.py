@@ -72,7 +72,10 @@ def master_row() -> Tuple[str, str]:
     try:
         if not master.master_answers(uri):
             return f"none at {uri}", ""
-        return f"answers at {uri}; {master.running_simulator(uri) or 'no simulator is running'}", ""
+        state = master.running_simulator(uri) or master.no_simulator(uri) or "no simulator is running"
+        commanded = master.publishers(uri, "cmd_vel").items()
+        several = [f"{topic} is published by {' and '.join(nodes)}" for topic, nodes in commanded if len(nodes) > 1]
+        return "; ".join([f"answers at {uri}", state, *several]), ""
     except MasterError as error:
         return "does not answer", str(error)
 

@@ -11,21 +11,30 @@ import actionlib
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
+from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
 
 from ...errors import FrameError
-from ...names import ACTION, absolute_if_named, place, prefixed
+from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
+from ...probes import master
 from ...process import signals
+from ...web.walls import is_outside
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
+from ..marker_shapes import MarkerStore, obstacles
 from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
 PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
 PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
+
+
+def standstill() -> str:
+    """Why simulated time may not advance, and what to do."""
+    return master.no_simulator(master.master_uri()) or PAUSED
 
 
 class _ProgressLine:
@@ -64,7 +73,7 @@ class _PauseNotice:
             self.time, self.since = now, time.monotonic()
         elif time.monotonic() - self.since > PAUSE_TIMEOUT:
             self.since = math.inf
-            complain(PAUSED)
+            complain(standstill())
 
 
 def _frame(robot: str, frame: str) -> str:
@@ -110,11 +119,31 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         if args.frame == DEFAULT_FRAME:
             complain("--frame odom gives X and Y relative to where the robot's odometry started")
         if rospy.get_rostime() == started:
-            complain(PAUSED)
+            complain(standstill())
         return NOT_REACHED
+    _watch_walls(position, transformer, lambda: latest[0])
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
     return _follow(client, position)
+
+
+def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
+    """Tell of a goal outside of the walls when the simulator, if there is one, has published its world."""
+
+    seen = threading.Event()  # the whole world comes first, then what moves
+
+    def on_world(message: MarkerArray) -> None:
+        if seen.is_set():
+            return
+        seen.set()
+        here, markers = odom(), MarkerStore()
+        markers.apply(message)
+        robot = None if here is None else here.pose.pose.position
+        walls = obstacles(markers.placed(transformer.pose_of))
+        if robot is not None and is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
+            complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
+
+    rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
 
 
 def _wait_or_explain(
@@ -129,7 +158,7 @@ def _wait_or_explain(
     if discovery.is_up(client) and not ended():
         return ""
     if not rospy.get_rostime():
-        return PAUSED
+        return standstill()
     unknown = "; the terminal in which the system was started shows why its server ended, if it did"
     return f"no answer from {action} for {time.monotonic() - started:.0f} s{discovery.hint(action) or unknown}"
 

@@ -16,7 +16,7 @@ import rosgraph
 import rospkg
 
 from ...errors import MasterError, RobocopError
-from ...names import COMMAND_VARIABLE, PACKAGE
+from ...names import PACKAGE, robocop
 from ...probes import master
 from ...process import child, orphans, signals
 from ...process.ports import free_port
@@ -74,8 +74,7 @@ def _run(args: argparse.Namespace) -> int:
             status = go_to(args, START_TIMEOUT, ended=lambda: system.poll() is not None)
     errors = [line for line in _lines(log) if "[FATAL]" in line]
     if started and not errors:
-        command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
-        print(f"robocop goto: the simulator has ended; {command} run starts one that stays, with RViz or a web page")
+        print(f"robocop goto: the simulator has ended; {robocop()} run starts one that stays, with RViz or a web page")
     if errors or not started:
         lines = ["the system started for this goal failed:", *errors, f"its complete output is in {log}"]
         complain("\n".join(lines))

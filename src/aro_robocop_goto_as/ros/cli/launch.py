@@ -33,13 +33,14 @@ T = TypeVar("T")
 
 
 class Launcher(ROSLaunchParent, ProcessListener):
-    """roslaunch's parent of all nodes; it notes whether the simulator has failed."""
+    """roslaunch's parent of all nodes; it notes whether the simulator has failed, and tells of a clean end if quiet."""
 
     failed = False  # whether a required node of PACKAGES has; an RViz that crashes when it closes is no failure
 
-    def __init__(self, *args: Any, **options: Any) -> None:
-        """Arguments as those of ROSLaunchParent."""
-        super().__init__(*args, process_listeners=[self], **options)
+    def __init__(self, *args: Any, quiet: bool, **options: Any) -> None:
+        """Arguments as those of ROSLaunchParent; quiet: roslaunch's own messages go to a log."""
+        super().__init__(*args, process_listeners=[self], force_log=quiet, **options)
+        self._quiet = quiet
 
     def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
         """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
@@ -48,6 +49,9 @@ class Launcher(ROSLaunchParent, ProcessListener):
             return
         if exit_code != 0 and process.required and process.package in PACKAGES:
             self.failed = True
+        if exit_code == 0 and self._quiet and not (process.respawn or self.pm.is_shutdown):
+            name = process_name.rpartition("-")[0]
+            print(f"[WARN] {name} has ended, without an error, as after `rosnode kill`", file=sys.stderr)
 
 
 def launch(arguments: List[str]) -> int:
@@ -89,7 +93,7 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         run_id,
         files,
         port=options.port,
-        force_log=options.quiet,
+        quiet=options.quiet,
         show_summary=not options.no_summary,
     )
     roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers

@@ -1,18 +1,20 @@
 """What ./robocop run prints when everything runs: the world, the robots, what to do next."""
 
-import os
 import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ...errors import RobocopError
-from ...names import COMMAND_VARIABLE, SERVER, WEB
+from ...names import SERVER, WEB, robocop
 from ...param_loading import from_dict
 from ...sim_params import SimParams
 from ...web.access import default_host, url
 from ...web_params import WebParams
 
-DEFAULT_WORLD = SimParams().world.world  # in this world the example of a goal is in front of the robot
+DEFAULT_WORLD = SimParams().world.world
+# Goals in this world, after a reset: in front of the robot, and one that no moving pillar comes near to
+IN_FRONT, BESIDE = "0.3 0", "-0.7 -0.6"
+WITH_PILLARS = ("stage_3", "stage_4")  # that moving:=true moves
 REPLAYED = "replay:="  # an argument of the web page
 
 
@@ -27,7 +29,7 @@ def overview(
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
-    command = os.environ.get(COMMAND_VARIABLE) or "./robocop"
+    command = robocop()
     for node in running:
         if is_page(node):
             waits = "; it plays when the page is opened" if REPLAYED in node.args and "rviz" not in nodes else ""
@@ -39,8 +41,9 @@ def overview(
         if WEB in nodes:
             ways.append("in the browser: click on the floor")
         robot = f" --robot {robots[0]}" if robots else ""
-        in_front = given.get("world", DEFAULT_WORLD) == DEFAULT_WORLD
-        goal, note = ("0.3 0", "") if in_front else ("X Y", "   (X and Y in map, in metres)")
+        goal, note = BESIDE if given.get("moving") else IN_FRONT, ""
+        if given.get("world", DEFAULT_WORLD) != DEFAULT_WORLD:
+            goal, note = "X Y", "   (X and Y in map, in metres)"
         ways.append(f"in a second terminal: {command} goto {goal}{robot}{note}")
         rows += zip(("send a goal", "", ""), ways)
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
@@ -69,7 +72,13 @@ def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
         p = from_dict(SimParams, given, "the simulator's parameters")
     except RobocopError:
         return []
-    moving = ", moving:=true" if p.world.moving else ""
+    world = p.world.world
+    if p.world.moving:
+        world += ", moving:=true; obstacles may move into the robot's way, moving:=false stops them"
+    elif world in WITH_PILLARS:
+        world += "; its pillars stand still, moving:=true starts them"
     robots, model = p.robots.robots, p.robots.model
     shown = f"{robots} ({model} unless named)" if robots else model
-    return [("world", p.world.world + moving), ("robots" if robots else "robot", shown)]
+    rows = [("world", world), ("robots" if robots else "robot", shown)]
+    without = "none from odom to the robot: a bridge that transforms goals needs odom_tf:=true"
+    return rows if p.topics.odom_tf else [*rows, ("transforms", without)]

@@ -21,7 +21,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from ...geometry import rotation_matrix
 from ...names import RVIZ_LOG, prefixed
 from ...probes import x_display
-from ..node_main import answer_help
+from ..node_main import answer_help, leave_name_to_another
 from .rviz_config import SHARE, Observed, adapted
 
 ABOUT = "RViz, configured for the running system. Options that it does not have itself are passed on to RViz."
@@ -48,6 +48,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     if not x_display.answers():
         print("robocop: no usable display; RViz is not started", file=sys.stderr, flush=True)
         os.execvp("setpriv", IDLE)
+    leave_name_to_another("rviz")
     seen = observe(options.frame, options.wait, not options.trail)
     config = options.config or _written(adapted(seen))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]

@@ -5,6 +5,7 @@ import rosgraph
 import rospy
 
 from ...names import ACTION_TYPE
+from ...probes import master
 from ...suggestions import did_you_mean
 from .. import graph
 
@@ -31,7 +32,8 @@ def hint(action: str) -> str:
         return "; the ROS master does not answer"
     others = [name for name, type_ in servers.items() if type_ == ACTION_TYPE and name != wanted]
     if not others:
-        return ""
+        missing = master.no_simulator(master.master_uri())
+        return missing and f"; {missing}"
     robot, _, base_name = wanted[1:].rpartition("/")
     named = [name[1:].rpartition("/")[0] for name in others if name.endswith(f"/{base_name}")]
     question = ": which robot is meant?" if named else ": a misspelt name?"

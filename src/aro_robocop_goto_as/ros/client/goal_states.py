@@ -12,5 +12,6 @@ UNFINISHED = ("PENDING", "ACTIVE", "PREEMPTING", "RECALLING")
 
 
 def ending(state: int, result: Optional[GoToPositionResult]) -> str:
-    """How a goal ended: its terminal state, and the result's message if there is one."""
-    return f"{STATES[state]}: {result.message}" if result is not None and result.message else STATES[state]
+    """How a goal ended: its terminal state, and the result's message, unless this begins with the state itself."""
+    message = "" if result is None else result.message
+    return message if message.startswith(f"{STATES[state]}:") else ": ".join(filter(None, (STATES[state], message)))

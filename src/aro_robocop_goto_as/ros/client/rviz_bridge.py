@@ -7,6 +7,7 @@ from typing import Callable, Optional
 
 import actionlib
 import rospy
+from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
@@ -39,6 +40,7 @@ class Bridge:
         self.click = PoseStamped()
         self.clicked = threading.Event()  # there is a click that is not served yet
         self.where = ""  # the place of the current goal as it was clicked
+        self.waiting = ""  # that of a goal which is kept for a server that comes later
         self.feedback: Optional[GoToPositionFeedback] = None  # of the current goal
         self.ending = ""  # of the last goal: state and message
         self.has_ended = threading.Event()  # the goal that was sent last
@@ -50,6 +52,7 @@ class Bridge:
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
         rospy.Subscriber("odom", Odometry, self.on_odom, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self.on_click, queue_size=10)
+        rospy.Subscriber(f"{ACTION}/cancel", GoalID, self.on_cancel, queue_size=10)
         rospy.Timer(rospy.Duration.from_sec(p.status_period), self.report, reset=True)
 
     def on_odom(self, message: Odometry) -> None:
@@ -60,6 +63,11 @@ class Bridge:
         """Store a click; a callback."""
         self.click = message
         self.clicked.set()
+
+    def on_cancel(self, message: GoalID) -> None:
+        """Drop a goal that waits for its server when all goals are cancelled; a callback."""
+        if not message.id:
+            self.waiting = ""
 
     # -- clicks, in the main thread --
 
@@ -94,21 +102,34 @@ class Bridge:
 
         Reports name the place that was clicked, as the view shows it.
         """
-        if not discovery.is_up(self.client):
-            rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
-            self.client.wait_for_server()
+        where = place(click.pose.position.x, click.pose.position.y, self.transformer.frame_of(click))
+        if not discovery.is_up(self.client) and not self.wait_for_server(where):
+            return
         self.cancel_goal()
         if self.clicked.is_set() or rospy.is_shutdown():
             return
-        clicked = click.pose.position
         with self.sending:
-            self.where = place(clicked.x, clicked.y, self.transformer.frame_of(click))
+            self.where = where
             self.feedback = None
             self.client.stop_tracking_goal()  # so that an earlier goal's late end is not taken for this one's
             self.has_ended.clear()
             self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
         rospy.loginfo("goal sent: %s, for the server %s", self.where, place(position.x, position.y, self.p.goal_frame))
         self.report()
+
+    def wait_for_server(self, where: str) -> bool:
+        """Keep a goal until its server is up; False if a newer click or a cancel comes first, or the node ends."""
+        self.waiting = where
+        rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
+        self.report()
+        while self.waiting and not discovery.is_up(self.client):
+            if self.clicked.wait(IDLE_POLL) or rospy.is_shutdown():
+                break
+        kept, self.waiting = bool(self.waiting), ""
+        if not kept:
+            rospy.loginfo("goal cancelled before its server was up: %s", where)
+            self.report()
+        return kept and not self.clicked.is_set()
 
     def cancel_goal(self) -> None:
         """Cancel the current goal, if there is one, and wait for its end."""
@@ -140,6 +161,8 @@ class Bridge:
         log = rospy.loginfo
         if not discovery.is_up(self.client):
             text = discovery.absence(ACTION)
+            if self.waiting:
+                text += f"; goal {self.waiting} waits for it"
             if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
                 text, log = f"{text}; {discovery.advice()}", rospy.logwarn
             return self.publish_status(text, log)

@@ -8,10 +8,9 @@ from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...geometry import Vector3
+from ...geometry import NANOSECONDS, Vector3
 from ...goto import Outcome
 from ...goto_params import GotoParams
-from ...simulation.schedule import NANOSECONDS
 from .. import markers
 from ..trail import Trail
 from .goal_execution import GoalExecution

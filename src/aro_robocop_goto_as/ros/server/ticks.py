@@ -11,8 +11,7 @@ from rosgraph_msgs.msg import Clock
 
 from aro_robocop_goto_as.msg import TickAnswer
 
-from ...geometry import STANDSTILL, Twist2D
-from ...simulation.schedule import NANOSECONDS
+from ...geometry import NANOSECONDS, STANDSTILL, Twist2D
 from .. import convert
 from ..graph import published_topics
 from ..publishing.publisher import publisher

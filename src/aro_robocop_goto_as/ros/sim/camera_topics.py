@@ -9,7 +9,7 @@ import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from std_msgs.msg import Header
 
-from ...sensors.camera import CameraImage, CameraSpec, points_of
+from ...sensors.camera_image import CameraImage, CameraSpec, points_of
 from ..publishing.publisher import publisher
 
 JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default

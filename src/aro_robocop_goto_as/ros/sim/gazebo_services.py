@@ -93,7 +93,7 @@ class GazeboServices:
 
     def _model(self, name: str) -> State:
         """The state of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
-        return state_of("model", name.partition("::")[0], models(self._simulator))
+        return state_of(name.partition("::")[0], models(self._simulator))
 
     def _model_state(self, request: Any) -> Fields:
         reference = request.relative_entity_name
@@ -109,7 +109,7 @@ class GazeboServices:
     def _in_world(self, pose: Pose, reference: str) -> Pose3D:
         """A pose in the simulator's world, of one that is relative to a model or to Gazebo's world."""
         _, origin, _ = self._model(reference)
-        target = compose3(origin, convert.from_pose_msg_3d(pose, unset_is_level=True))
+        target = compose3(origin, convert.from_pose_msg_3d(pose))
         return raised(target, -self._simulator.world.ground)
 
     def _set_model_state(self, requested: ModelState) -> Fields:

@@ -91,13 +91,13 @@ def raised(pose: Pose3D, height: float) -> Pose3D:
     return Pose3D((x, y, z + height), pose.orientation)
 
 
-def state_of(kind: str, name: str, states: Sequence[State]) -> State:
-    """The state of a model or link, whichever the states are, or of the world; FrameError if there is none."""
+def state_of(name: str, states: Sequence[State]) -> State:
+    """The state of a model or of the world; FrameError if there is none."""
     if name in WORLD_FRAMES:
         return name, Pose3D(), convert.to_twist_msg(STANDSTILL)
     known = {state[0]: state for state in states}
     if name not in known:
-        raise FrameError(unknown(f"{kind} [{name}] does not exist", name, known))
+        raise FrameError(unknown(f"model [{name}] does not exist", name, known))
     return known[name]
 
 

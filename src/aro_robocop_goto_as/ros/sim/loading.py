@@ -78,10 +78,11 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
             simulator.require_room(first)
         except PlaceError as error:
             rospy.logwarn("the robot starts where it has no room: %s", error)
-    given = p.scan.given()
+    scan = p.sensors.scan
+    given = scan.given()
     if given:
         values = ", ".join(f"{name} {value:g}" for name, value in given.items())
-        rospy.loginfo("scan_profile %s, with %s", p.scan.scan_profile, values)
+        rospy.loginfo("scan_profile %s, with %s", scan.scan_profile, values)
     if world.approximated:
         rospy.logwarn("different from that file: %s", ", ".join(world.approximated))
     if world.ignored:

@@ -1,15 +1,12 @@
 """robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
-import sys
 from typing import AbstractSet, Any, Callable
 
-import rosgraph
 import rospy
 
-from ...errors import MasterError, ParameterError
+from ...errors import ParameterError
 from ...names import SIMULATOR
-from ...probes import master
 from ...sim_params import SimParams, TopicParams
 from ...simulation.running import Change, Simulation
 from ...simulation.simulator import Simulator
@@ -143,24 +140,9 @@ class SimNode:
             rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
 
-def refuse_second() -> None:
-    """End the program if a simulator of this name runs: the master would end that other one."""
-    given = rosgraph.names.load_mappings(sys.argv)
-    name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), given.get("__name", SIMULATOR))
-    try:
-        running = master.running_simulator(master.master_uri(), name)
-    except MasterError as error:
-        sys.exit(f"{SIMULATOR}: {error}")
-    if running:
-        sys.exit(
-            f"{SIMULATOR}: {running} as {name} on {master.master_uri()}; stop it first, or use another ROS_MASTER_URI"
-        )
-
-
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it cannot start, with the reason logged."""
     answer_help("The simulator: a world and its robots; publishes scan, odom, tf and clock, obeys cmd_vel.")
-    refuse_second()
     # This node makes simulated time, so it must not wait for it: its own rospy runs on the wall clock.
     with node(SIMULATOR, disable_rostime=True):
         with contextlib.closing(load_simulator(load_params(SimParams))) as simulator:

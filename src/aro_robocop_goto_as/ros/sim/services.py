@@ -182,4 +182,4 @@ class Services:
 
 
 def _pose_of(request: Any) -> Pose3D:
-    return convert.from_pose_msg_3d(request.pose, unset_is_level=True)
+    return convert.from_pose_msg_3d(request.pose)

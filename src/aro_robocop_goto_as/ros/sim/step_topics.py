@@ -11,18 +11,15 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
+from ...sensors.camera import CAMERA
+from ...sensors.odometry import TF
 from ...simulation.observations import Due, Observations, Subscriptions
-from ...simulation.rates import BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.batch import Batch, Posted
 from ..publishing.publisher import publisher
 from ..publishing.rospy_internals import set_latched
-from .sensor_messages import packed_clock, packed_transforms
-from .sensor_topics import SensorTopics
-
-# The order of a step's messages. rospy publishes the first two, a batch all others and then /clock.
-ORDER = (BUMPER, CAMERA, GROUND_TRUTH, IMU, JOINTS, ODOM, SCAN, TF)
+from .sensor_topics import TOPICS, SensorTopics, packed_clock, packed_transforms
 
 
 class StepTopics:
@@ -66,7 +63,7 @@ class StepTopics:
         `more`: the next step's messages follow at once.
         """
         due = observed.due
-        key = due, observed.scans.shape[1]
+        key = due, observed.scan.ranges.shape[1]
         if key not in self._batches:
             self._batches[key] = self._prepared(due)
         unpacked, batch = self._batches[key]
@@ -99,23 +96,20 @@ class StepTopics:
     def packed(self, due: Due) -> List[Posted]:
         """The packed messages of what is due, with their topics."""
         messages: List[Posted] = []
-        for sensor in ORDER:
-            robots = [self.robots[index] for index in due.sensors.get(sensor, ())]
-            if sensor == TF:
-                transforms = [transform for robot in robots for transform in robot.transforms()]
-                messages += [(self.tf, packed_transforms(transforms))] if transforms else []
-                continue
-            for robot in robots:
+        for sensor in TOPICS:
+            for robot in self._due(due, sensor):
                 message = robot.packed(sensor)
-                if message is not None:
-                    messages.append((robot.topics[sensor], message))
-        return messages
+                messages += [] if message is None else [(robot.topics[sensor], message)]
+        transforms = [
+            transform for robot in self._due(due, TF) for transform in robot.transforms(self._simulator.params.topics)
+        ]
+        return [*messages, *([(self.tf, packed_transforms(transforms))] if transforms else [])]
+
+    def _due(self, due: Due, sensor: str) -> List[SensorTopics]:
+        return [self.robots[index] for index in due.sensors.get(sensor, ())]
 
     def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
         """What publishes the measurements that are not packed, and the batch of all others."""
-        unpacked = [
-            partial(self.robots[index].publish, sensor)
-            for sensor in (BUMPER, CAMERA)
-            for index in due.sensors.get(sensor, ())
-        ]
+        rospys = [sensor for sensor in (*TOPICS, CAMERA) if sensor not in TOPICS or TOPICS[sensor].packed is None]
+        unpacked = [partial(robot.publish, sensor) for sensor in rospys for robot in self._due(due, sensor)]
         return unpacked, Batch(self.packed(due), [(self.clock, self._clock_message)] if due.clock else [])

@@ -6,8 +6,9 @@ from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
 
+from ...shapes import Box, Cylinder, Mesh, Plane, Sphere, Walls
 from ...world.ground import is_in_ground
-from ...world.model import Box, Cylinder, Mesh, Obstacle, Plane, Sphere, Walls, World
+from ...world.model import Obstacle, World
 from ..convert import to_pose_msg
 from ..markers import marker, text
 

@@ -17,10 +17,11 @@ from ...names import ACTION, absolute
 from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
+from ...web.walls import is_outside
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
-from .marker_shapes import MarkerStore
+from ..marker_shapes import MarkerStore, obstacles
 from .part import Context, Inbox, Part
 from .requests import Requests
 
@@ -102,24 +103,27 @@ class Goals(Part):
 
     def _on_click(self, event: Any) -> None:
         point = floor_point(event.ray_origin, event.ray_direction)
-        if point is None:
-            return
         state, requests = self.context.state.now, self.context.requests
+        if point is None or not state.live:
+            return
         place, pose = self._mode.value == PLACE_ROBOT, PoseStamped()
+        where = f"{'pose' if place else 'goal'} {text.position(*point)}"
+        if state.pose and is_outside(point, state.pose.position[:2], obstacles(self.context.scene.shapes("world"))):
+            self.context.state.change(answer=f"{where}: outside of the walls, nothing was sent")
+            return
         pose.header.frame_id = state.root  # with time zero, which means the newest transforms
         pose.pose.position.x, pose.pose.position.y = point
         pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)
-        where = text.position(*point)
         if not place:  # a 2D Nav Goal, which the bridge makes a goal of
-            requests.publish(f"goal {where}", "move_base_simple/goal", pose, ": is the bridge running?")
+            requests.publish(where, "move_base_simple/goal", pose, ": is the bridge running?")
         elif state.simulated:
-            requests.call(f"pose {where}", "set_pose", SetPose, state.selected, pose)
+            requests.call(where, "set_pose", SetPose, state.selected, pose)
         else:  # for a localization
             estimate = PoseWithCovarianceStamped(header=pose.header)
             estimate.pose.pose = pose.pose
             variances = (POSITION_VARIANCE, POSITION_VARIANCE, 0.0, 0.0, 0.0, YAW_VARIANCE)
             estimate.pose.covariance = convert.diagonal(variances)
-            requests.publish(f"pose {where}", "initialpose", estimate)
+            requests.publish(where, "initialpose", estimate)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._robot, self._feedback, self._executing, self._newest = robot, None, None, None
@@ -170,7 +174,9 @@ class Goals(Part):
             feedback = self._feedback
             errors = f"{feedback.position_error:.2f} m, {feedback.angle_error:.2f} rad"
             rows += [("errors", errors), ("feedback", feedback.message)]
-        self._cancel.disabled = not answering or self._executing is False
+        if state.waiting:
+            rows = [("goal", f"waits for its server: {state.waiting}")]
+        self._cancel.disabled = (not answering or self._executing is False) and not state.waiting
         self._feedback_html.content = text.table(rows) if rows else ""
         if self._history_html is not None:
             several = len(state.robots) > 1

@@ -63,14 +63,16 @@ class Plot(Part):
         super().__init__(context)
         self._plotted = plotted
         title, *labels = plotted.texts
-        figures = ({"label": label, "stroke": color, "width": 1.5} for label, color in zip(labels, COLORS))
+        # Dots, not lines, which would join the end of a goal with the start of the next.
+        dots = ({"show": True, "size": 2.5, "width": 1, "stroke": color, "fill": color} for color in COLORS)
+        figures = ({"label": label, "width": 0, "points": style} for label, style in zip(labels, dots))
         self._handle = context.server.gui.add_uplot(
             columns((), 0.0),
             ({"label": "t [s]"}, *figures),
             title=title,
             scales={"x": {"time": False, "range": (-SPAN, 0.0)}, "y": {"range": AROUND_ZERO}},
             axes=(TIME, {"size": 42, "space": 16}),
-            legend={"live": False},
+            legend={"live": False, "markers": {"width": 2}},
             height=HEIGHT,
             padding=(10, 12, 0, 0),
         )

@@ -14,7 +14,7 @@ from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
 from ..graph import Topic, published_topics
-from .marker_shapes import to_pose
+from ..marker_shapes import to_pose
 from .part import Context, Inbox, Part
 
 DESCRIPTION, ODOM = "robot_description", "/odom"

@@ -13,7 +13,7 @@ from ...names import SERVER, SIMULATOR, absolute
 from ...web.page import Cameras
 from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
-from .marker_shapes import MarkerStore, to_pose
+from ..marker_shapes import MarkerStore, to_pose
 from .part import Context, Inbox, Part
 
 DRAWN_BY_MODEL = ("robots", "noses")  # the simulator's markers for robots; the page draws their models instead

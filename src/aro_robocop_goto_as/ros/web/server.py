@@ -2,10 +2,9 @@
 
 import contextlib
 import io
-import os
 import socket
 from pathlib import Path
-from typing import Any, Iterator, Optional
+from typing import Any, Iterator
 
 from ...errors import WebError
 from ...web import access
@@ -26,12 +25,8 @@ def start_server(p: WebParams) -> Any:
         import viser
     except ImportError as error:
         raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
-    listening = None
-    if access.SOCKET_VARIABLE in os.environ:
-        listening = socket.socket(fileno=int(os.environ[access.SOCKET_VARIABLE]))
-    else:
-        _require_free(p.web_host, p.web_port)
-    with _checked_requests(p, listening), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
+    _require_free(p.web_host, p.web_port)
+    with _checked_requests(p), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
         server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
         server.stop()
@@ -40,11 +35,10 @@ def start_server(p: WebParams) -> Any:
 
 
 @contextlib.contextmanager
-def _checked_requests(p: WebParams, listening: Optional[socket.socket]) -> Iterator[None]:
+def _checked_requests(p: WebParams) -> Iterator[None]:
     """A viser server made in this block answers only requests that are not refused, with HEADERS.
 
-    With a `listening` socket it accepts its connections, and opens no port itself. viser passes no such options on to
-    websockets' serve(), which it calls before its constructor returns.
+    viser passes no such options on to websockets' serve(), which it calls before its constructor returns.
     """
     from websockets.asyncio import server as websockets_server  # not installed where the page has never been used
 
@@ -65,7 +59,7 @@ def _checked_requests(p: WebParams, listening: Optional[socket.socket]) -> Itera
             return response
 
         options = {**options, "process_request": process, "max_size": MAX_REQUEST}
-        return serve(handler, host, port, **options) if listening is None else serve(handler, sock=listening, **options)
+        return serve(handler, host, port, **options)
 
     setattr(websockets_server, "serve", checking_serve)  # noqa: B010  mypy refuses to assign to a module's function
     try:

@@ -1,5 +1,6 @@
 """Problems, the state of simulator and server, the answer to the last request, the choice of the robot."""
 
+import re
 import time
 from typing import Any, List, Optional, Tuple
 
@@ -13,6 +14,7 @@ from ...web.state import PageState
 from .part import Context, Inbox, Part
 
 SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
+WAITS = re.compile(r"; goal (x \S+ y \S+ in \S+) waits for it")  # in the bridge's report; shown as the newest goal
 
 
 class Status(Part):
@@ -37,7 +39,7 @@ class Status(Part):
         inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_sim)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._bridge = ""
+        self._on_bridge(0.0, String(""))
         inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
@@ -45,14 +47,15 @@ class Status(Part):
         self.context.state.change(simulated=True, factor_asked=message.factor_asked)
 
     def _on_bridge(self, _: float, message: String) -> None:
-        self._bridge = message.data
+        self._bridge, found = WAITS.sub("", message.data), WAITS.search(message.data)
+        self.context.state.change(waiting=found[1] if found else "")
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
         self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else "")
-        known = state.live or self._sim is not None or self._bridge  # a grader's run, or its recording, has neither
+        known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)
         if self._robot.options != state.robots:

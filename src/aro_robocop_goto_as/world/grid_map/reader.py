@@ -4,7 +4,8 @@ import math
 import os
 
 from ...geometry import Pose2D, Pose3D, lifted
-from ..model import Obstacle, Occupancy, Plane, Walls, World
+from ...shapes import Plane, Walls
+from ..model import Obstacle, Occupancy, World
 from .cells import read_cells
 from .edges import edges_of_cells
 from .map_file import read_spec

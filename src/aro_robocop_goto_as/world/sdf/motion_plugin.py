@@ -5,7 +5,7 @@ from typing import List, Optional
 
 from ...geometry import Pose3D
 from ...reading import Element
-from ..model import Cylinder, Geometry, Sphere
+from ...shapes import Cylinder, Geometry, Sphere
 from ..scripted_motion import Motion, Waypoint
 from . import xml
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...geometry import MAX_COORDINATE
 from ...reading import Element, file_of
-from ..model import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+from ...shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
 from . import uris, xml
 from .meshes import load_triangles
 

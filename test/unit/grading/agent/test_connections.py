@@ -170,7 +170,7 @@ def test_a_node_without_init_node_has_no_topics(tmp_path):
     text = "import rospy\nfrom std_msgs.msg import Float64\nrospy.Publisher('/out', Float64, queue_size=1)\n"
     with Program(tmp_path, f"{text}rospy.get_param('/speed')\ntime.sleep(60)", PARAMETERS, OFFERED) as node:
         node.go_on(STEP)
-        assert node.told == {"published": [], "subscribed": [], "programs": []}
+        assert node.told == {"published": [], "subscribed": [], "programs": [], "delays": []}
 
 
 @pytest.mark.parametrize("start", ["os.system('rostopic list')", "subprocess.run(['rosparam', 'get', '/a'])"])

@@ -12,7 +12,7 @@ from robocop_grading.builds.workspace import exclusive
 from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
-from robocop_grading.plan import MAX_SEED
+from robocop_grading.plan_file import MAX_SEED
 
 
 @pytest.mark.parametrize("used", [0, 7])

@@ -10,7 +10,7 @@ from grading_records import PLAN, RIGHT
 from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.cli import as_text
 from robocop_grading.judge import judge
-from robocop_grading.plan import load
+from robocop_grading.plan_file import load
 from robocop_grading.report import write as report
 
 

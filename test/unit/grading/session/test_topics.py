@@ -34,7 +34,7 @@ def topics():
 
 def told(topics, published=(), subscribed=()):
     named = [[[name, kind._md5sum, kind._type] for name, kind in those] for those in (published, subscribed)]
-    topics.tell(json.dumps({"published": named[0], "subscribed": named[1], "programs": []}).encode())
+    topics.tell(json.dumps({"published": named[0], "subscribed": named[1], "programs": [], "delays": []}).encode())
 
 
 def test_what_has_arrived_is_handled_in_the_order_of_topics_and_of_each_topics_messages(topics):

@@ -39,8 +39,17 @@ def test_goals_are_offered_only_with_a_server():
     assert "send a goal" not in shown("robocop_sim")
 
 
-def test_the_goal_of_the_default_world_is_not_offered_in_another_one():
+@pytest.mark.parametrize(
+    "simulator, words",
+    [
+        ({}, ["world         stage_4; its pillars stand still, moving:=true starts them\n", "goto 0.3 0\n"]),
+        ({"moving": True}, ["obstacles may move into the robot's way, moving:=false stops them", "goto -0.7 -0.6\n"]),
+        ({"world": "world"}, ["world         world\n", "goto X Y "]),
+        ({"odom_tf": False}, ["a bridge that transforms goals needs odom_tf:=true"]),
+    ],
+)
+def test_the_world_and_a_goal_that_can_be_reached_in_it_are_shown(simulator, words):
     server = SimpleNamespace(name=SERVER, namespace="/", args="")
-    texts = [overview([server], {"world": world}, Path("/logs")) for world in ("stage_4", "world")]
-    assert "goto 0.3 0\n" in texts[0]
-    assert "goto X Y " in texts[1]
+    text = overview([server], simulator, Path("/logs"))
+    assert [it for it in words if it not in text] == []
+    assert ("transforms" in text) is ("odom_tf" in simulator)

@@ -146,8 +146,8 @@ def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator
     sim, sent = simulator(scan_profile="lds02"), []
     lds02 = SensorTopics(0, sim, lambda: None)
     for beams in (230, 231, 230, 229, 230):
-        sim.observed.scans = sim.observed.ranges(beams)
-        message = lds02.scan_message()
+        sim.observed.scan.ranges = sim.observed.scan.ranges_of(beams)
+        message = lds02.packed("scan")
         _send(lds02.topics["scan"], message)
         sent.append(struct.unpack_from("<I", message.data, 4)[0])
     assert sent == [1, 2, 3, 4, 5]

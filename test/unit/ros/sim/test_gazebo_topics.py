@@ -71,7 +71,7 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
     sim.command(Twist2D(-0.1, 0.0), 1)
     drive(sim, Twist2D(0.2, 0.0), 0.1)
     states = gazebo_topics.models(sim)
-    moving, frame = (gazebo_topics.state_of("model", name, states) for name in ("robot_1", reference))
+    moving, frame = (gazebo_topics.state_of(name, states) for name in ("robot_1", reference))
     _, twist = gazebo_topics.relative(moving, frame)
     assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx((*expected, 0.0), abs=1e-6)
 
@@ -87,5 +87,5 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
 def test_an_unknown_name_is_refused_in_a_line_that_rosservice_does_not_wrap(known: List[str], told: str) -> None:
     states = [(name, Pose3D(), Twist()) for name in known]
     with pytest.raises(FrameError) as refused:
-        gazebo_topics.state_of("model", "tables", states)
+        gazebo_topics.state_of("tables", states)
     assert str(refused.value) == told

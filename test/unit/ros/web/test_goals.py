@@ -53,6 +53,16 @@ def test_a_click_is_a_goal_in_the_frame_of_the_scene():
     assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("red/odom", 1.0, 2.0)
 
 
+@pytest.mark.parametrize("mode", [goals.SEND_GOAL, goals.PLACE_ROBOT])
+def test_a_click_outside_of_the_walls_is_answered_and_requests_nothing(mode, monkeypatch):
+    monkeypatch.setattr(goals, "is_outside", lambda goal, robot, obstacles: (goal, robot) == ((1.0, 2.0), (0.0, 0.0)))
+    part, context = made()
+    part._mode.value = mode
+    part._on_click(CLICK)
+    assert "(1.00, 2.00): outside of the walls, nothing was sent" in context.state.now.answer
+    assert not context.requests.method_calls
+
+
 def test_a_click_into_the_sky_requests_nothing():
     part, context = made()
     part._on_click(MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, 1.0)))
@@ -101,6 +111,14 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
     assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+
+
+def test_a_goal_that_waits_for_its_server_is_shown_and_can_be_cancelled():
+    part, context = made(waiting="x 0.30 y 0.00 in map")
+    part._status.impl.connections = []
+    part.show(context.state.now)
+    assert "waits for its server: x 0.30 y 0.00 in map" in part._feedback_html.content
+    assert part._cancel.disabled is False
 
 
 def drawn(part, context):

@@ -16,6 +16,10 @@ from aro_robocop_goto_as.web.state import PageState, SharedState
         ("", "answers, no report from the bridge"),
         ("robocop_goto_as is ready, no goal yet", "ready"),
         ("goal x 0.30 y 0.00 in map is ACTIVE: driving, 0.10 m to go", "ready"),  # the bridge's next report follows
+        (
+            "waiting for robocop_goto_as; goal x 0.30 y 0.00 in map waits for it; advice",
+            "waiting for robocop_goto_as; advice",
+        ),
         ("goal refused: no transform from map to odom", "goal refused: no transform from map to odom"),
     ],
 )

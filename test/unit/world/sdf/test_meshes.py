@@ -8,8 +8,8 @@ from sdf_files import mesh_world, only_obstacle, raised_by, world_file
 
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
+from aro_robocop_goto_as.shapes import Mesh
 from aro_robocop_goto_as.world.load import load_world
-from aro_robocop_goto_as.world.model import Mesh
 
 # An upright triangle on the x axis; the unit is centimetres, and x is declared to be up, which Gazebo ignores.
 TRIANGLE_DAE = """<?xml version="1.0"?>

@@ -2,8 +2,8 @@
 
 from sdf_files import SPHERE, collision, mesh_world, model, raised_by, world_file
 
+from aro_robocop_goto_as.shapes import Box, Cylinder, Plane, Sphere
 from aro_robocop_goto_as.world.load import load_world
-from aro_robocop_goto_as.world.model import Box, Cylinder, Plane, Sphere
 
 
 def test_each_geometry_is_read_with_its_dimensions(tmp_path):

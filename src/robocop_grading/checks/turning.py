@@ -1,36 +1,13 @@
-"""Checks of the robot's motion: turn towards the goal, drive straight, arrive."""
+"""Checks of the commands: turn towards the goal, then drive straight."""
 
 import math
 from dataclasses import replace
-from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Sequence
 
-from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, Limits
-from ..record import (
-    SUCCEEDED,
-    Command,
-    Goal,
-    Record,
-    Sample,
-    active_until,
-    errors_at,
-    feedback_of,
-    samples_between,
-    wrapped,
-)
+from ..handout import HEADING_TOLERANCE, Limits
+from ..record import Command, Goal, Record, active_until, errors_at, samples_between
 from ..texts import text
-from .consequences import (
-    AT_FIRST,
-    ENDING,
-    EXCEPTION,
-    ITERATION,
-    MISLED,
-    MOVES_FIRST,
-    SUCCESS_LATE,
-    alike,
-    died_before,
-    nothing_came,
-)
-from .endings import of_goals, success_too_far, wrong_ending
+from .consequences import AT_FIRST, EXCEPTION, MISLED, MOVES_FIRST, died_before, nothing_came
 from .topic_types import wrong_type
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
@@ -39,12 +16,7 @@ NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
 MAX_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
-LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
-LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
-LARGE_TURN = 0.5  # [rad] of a robot at the goal
 MIN_SPEED = 1e-3  # [m/s], [rad/s] slower commands are none
-AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
-LONG_TURN = "a long turn"
 TURN = f"{HEADING_TOLERANCE:g} rad"
 NOT_DRIVING = f"linear.x 0 while angle_error is beyond {TURN}"
 
@@ -137,11 +109,13 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
         if len(still) < len(situations):
             cause = text("stands_before_turn", angle)
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
-    away = [it for it in situations if it.command.w * it.angle < 0.0 and abs(it.angle) < math.pi - 0.2]
-    if len(away) > 0.15 * len(situations):
-        command, angle = away[0]
+    wrong = [it for it in situations if it.command.w * it.angle < 0.0]
+    away = [it for it in wrong if abs(it.angle) < math.pi - 0.2]  # beyond, a right command may be of the other side
+    if len(away) > 0.15 * len(situations) or len(wrong) > 0.5 * len(situations):
+        command, angle = (away or wrong)[0]
         wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
-        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, text("turns_away", angle))
+        cause = text("turns_away_behind" if abs(angle) > math.pi / 2.0 else "turns_away", angle)
+        return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
     return None
 
 
@@ -206,98 +180,3 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
     command, angle = curves[0]
     seen = f"angular.z {command.w:.2f} at {angle:.2f} rad"
     return Failed("angular.z near 0", seen, command.time, text("curves"))
-
-
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
-def reaches_goal(record: Record, limits: Limits) -> Verdict:
-    """The goal succeeds when the robot is closer than 0.1 m, and not before."""
-    return of_goals(
-        record, lambda goal: _wrong_success(record, goal, limits) or _success_too_late(record, goal, limits)
-    )
-
-
-def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """What went wrong with a goal that did not succeed, or not at its position."""
-    return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
-
-
-def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """A robot that drives on although it has come close enough for success."""
-    end = active_until(record, goal)
-    way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
-    for (before, far), (after, near) in zip(way, way[1:]):
-        if near < GOAL_RADIUS <= far:
-            reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            name, *values = _lateness(record, goal, samples_between(record, reached + LATE, end), limits)
-            least = min(distance for _, distance in way)
-            exact = name in ("waits_at_goal", "turns_at_goal") or least < 2.0 * GOAL_RADIUS - limits.reached
-            if end - reached <= (LATE_AT_REST if name == "waits_at_goal" else LATE) or not exact:
-                return None
-            seen = f"success {end - reached:.2f} s later, {least:.2f} m from the goal"
-            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, text(name, *values), SUCCESS_LATE, goal)
-    return None
-
-
-def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> Tuple[Any, ...]:
-    """What the robot does meanwhile, and what the server has reported: a text's name and its values."""
-    begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
-    drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
-    if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
-        turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
-        return "turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS
-    own = [it.position_error for it in feedback_of(record, goal) if it.time < end - ITERATION]
-    if own and min(own) >= GOAL_RADIUS:
-        return "unaware_of_goal", GOAL_RADIUS, own[-1]
-    return "goes_on", GOAL_RADIUS
-
-
-SWERVES = After("drives_straight", kind=LONG_TURN)
-OTHER_TURN = After("turns_to_goal", kind=LONG_TURN)
-
-
-@check("track", after=(*ENDING, SWERVES, OTHER_TURN, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
-def goal_behind(record: Record, limits: Limits) -> Verdict:
-    """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
-    verdict = of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _long_turn(record, goal))
-    alone = len(record.goals) < 2 and not isinstance(verdict, Failed)
-    return NotReached("the first goal did not end") if alone else verdict
-
-
-def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
-    """A robot that turned by much more than it needed to, until it came to the goal."""
-    samples = samples_between(record, goal.time, active_until(record, goal))
-    there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
-    samples = samples[:there]
-    total = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
-    needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
-    if total <= needed + 2.0:
-        return None
-    wanted, seen = f"a turn of about {needed:.1f} rad", f"{total:.1f} rad"
-    return Failed(wanted, seen, goal.time, text("long_turn"), LONG_TURN, goal)
-
-
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
-def far_goal(record: Record, limits: Limits) -> Verdict:
-    """A goal several metres away is reached."""
-    return reaches_goal(record, limits)
-
-
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
-def already_there(record: Record, limits: Limits) -> Verdict:
-    """A goal closer than 0.1 m succeeds at once, and the robot stays where it is."""
-    return of_goals(
-        record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits) or _not_at_once(record, goal, limits)
-    )
-
-
-def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """A robot that takes long or moves although it is at the goal."""
-    end = active_until(record, goal)
-    samples = samples_between(record, goal.time, end + limits.stop_within)
-    moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
-    if end - goal.time <= AT_ONCE and moved <= 0.05:
-        return None
-    seen = f"a result after {end - goal.time:.1f} s and {moved:.2f} m of motion"
-    if moved <= 0.05:
-        return Failed("success at once", seen, goal.time, text("waits_at_goal", GOAL_RADIUS), SUCCESS_LATE, goal)
-    return Failed("success at once", seen, goal.time, text("check_before_moving", GOAL_RADIUS))

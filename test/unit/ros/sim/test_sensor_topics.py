@@ -20,7 +20,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
-from aro_robocop_goto_as.ros.sim import sensor_messages as packed
+from aro_robocop_goto_as.ros.sim import sensor_topics as packed
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 

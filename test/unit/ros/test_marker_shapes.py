@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point
 from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, lifted
-from aro_robocop_goto_as.ros.web.marker_shapes import MarkerStore, to_shape
+from aro_robocop_goto_as.ros.marker_shapes import MarkerStore, to_shape
 from aro_robocop_goto_as.web.scene import BOX
 
 

@@ -1,0 +1,45 @@
+"""Whether a goal is outside of the walls that the robot is in."""
+
+from typing import Iterable, Tuple
+
+import numpy as np
+
+from ..geometry import Pose2D
+from ..raycast.cross_section import CrossSection
+from ..raycast.occupancy import FREE, occupancy_of
+from ..shapes import Box, Cylinder, Geometry, Mesh, Sphere
+from ..world.model import Obstacle, World
+from .scene import BOX, CYLINDER, MESH, SPHERE, Placed, Shape
+
+HEIGHT = 0.1  # [m] above the floor, at which obstacles are in a robot's way
+CELL = 0.05  # [m] narrower openings let nothing pass
+MAX_CELLS = 1000  # per side; larger ones beyond it
+
+
+def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles: Iterable[Placed]) -> bool:
+    """Return whether obstacles enclose the robot, and not the goal; both x, y [m]. Never where the world has no walls.
+
+    A door that stands open is no wall: through it a way leads from the robot to the goal, how long it may be.
+    """
+    world = World("", tuple(Obstacle("", pose, _geometry(shape)) for shape, pose in obstacles), Pose2D(), (), "")
+    section = CrossSection(world, HEIGHT)
+    return _is_open(section, *goal) and not _is_open(section, *robot)
+
+
+def _geometry(shape: Shape) -> Geometry:
+    x, y, z = shape.size
+    if shape.kind == BOX:
+        return Box((x, y, z))
+    if shape.kind == CYLINDER:
+        return Cylinder(x / 2.0, z)
+    if shape.kind == SPHERE:
+        return Sphere(x / 2.0)
+    if shape.kind == MESH:
+        return Mesh(np.array(shape.points).reshape(-1, 3, 3), "")
+    raise ValueError(f"no obstacle of the kind {shape.kind!r}")
+
+
+def _is_open(section: CrossSection, x: float, y: float) -> bool:
+    """Return whether a way leads from a point to beyond all obstacles, where the grid's first cell is."""
+    grid = occupancy_of(section.segments, section.circles, [Pose2D(x, y)], CELL, MAX_CELLS)
+    return bool(grid.cells[0, 0] == FREE)

@@ -1,0 +1,38 @@
+"""Which attempt counts of a scenario that the session has repeated with a new node."""
+
+from typing import Dict, List, Mapping, Tuple
+
+from .checks import CHECKS, Failed
+from .plan import Plan
+from .record import Record
+from .texts import text
+
+AGAIN = "_again"  # after a scenario's name: its repetition with a new node
+
+
+def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Record], List[str], List[str]]:
+    """The record that counts of each scenario, the names of those of which the repetition counts, and what to say.
+
+    A repetition counts where an earlier mistake may have left something behind in the first node: a check has failed
+    in a scenario before it, or in one with several goals, in which each node starts anew. Otherwise the first node went
+    wrong of itself.
+    """
+    chosen = {name: record for name, record in records.items() if not name.endswith(AGAIN)}
+    repeated = [name for name in chosen if name + AGAIN in records]
+    best = {name: records.get(name + AGAIN, record) for name, record in chosen.items()}
+    order, counted, told = plan.scenarios_of("server"), [], []
+    for name in repeated:
+        mistakes = [it for it in best if it != name and _fails(plan, best[it])]
+        is_left_behind = any(order.index(it) < order.index(name) or len(best[it].goals) > 1 for it in mistakes)
+        if is_left_behind or _fails(plan, best[name]):
+            chosen[name] = best[name]
+            counted.append(name)
+        if not _fails(plan, best[name]):
+            told.append(text("left_behind" if is_left_behind else "went_wrong", name))
+    return chosen, counted, told
+
+
+def _fails(plan: Plan, record: Record) -> bool:
+    """Return whether a check of the plan fails in this record."""
+    names = [it.name for it in plan.checks if record.name.replace(AGAIN, "") in it.scenarios]
+    return any(isinstance(CHECKS[name](record, plan.limits), Failed) for name in names)
