@@ -136,8 +136,8 @@ def test_what_can_be_simulated_is_read_and_the_rest_is_listed_with_its_line(tmp_
 
 def test_spawn_is_the_pose_of_the_frame_robot_spawn(tmp_path):
     frames = '<frame name="other"/><frame name="robot_spawn"><pose>1 -2 0 0 0 4</pose></frame>'
-    spawn = load_world(world_file(tmp_path, frames)).spawn
-    assert (spawn.x, spawn.y, spawn.yaw) == (1.0, -2.0, pytest.approx(4.0 - 2.0 * math.pi))
+    world = load_world(world_file(tmp_path, frames))
+    assert world.has_spawn and world.spawn == pytest.approx((1.0, -2.0, 4.0 - 2.0 * math.pi))
 
 
 def test_plugins_are_listed_once_with_those_of_the_world_first(tmp_path):
