@@ -8,6 +8,7 @@ from support import ORIGIN, drive, everything
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
+from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
@@ -122,6 +123,16 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
 
 
 # Several robots
+
+
+def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_reach(simulator: Make) -> None:
+    occupancy = simulator("stage_1", ORIGIN, Pose2D(9.0, 0.0)).occupancy()
+
+    row = occupancy.cells[int(-occupancy.origin.y / occupancy.resolution)]
+    at_start, before_wall, wall, outside = (
+        int(row[int((x - occupancy.origin.x) / occupancy.resolution)]) for x in (0.0, 1.8, 1.849, 2.2)
+    )
+    assert (at_start, before_wall, wall, outside) == (FREE, FREE, OCCUPIED, FREE)
 
 
 @pytest.mark.parametrize("params", DRIVES)

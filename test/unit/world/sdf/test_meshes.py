@@ -94,7 +94,7 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
     "far.obj": (b"v 0 0 0\nv 1 0 0\nv 1e300 0 1\nf 1 2 3\n", "has corners beyond +-1e+06 m"),
     "binary.obj": (b"f " + bytes(range(128, 256)) * 9, "expected a mesh in .obj format"),
     "cut.dae": (TRIANGLE_DAE[:700].encode(), "XML"),
-    "below.dae": (TRIANGLE_DAE.replace("0 1 2<", "0 1 -1<").encode(), "a triangle has a vertex below 0"),
+    "below.dae": (TRIANGLE_DAE.replace("<p>", "<p>0 1 -1</p><p>").encode(), "a triangle has a vertex below 0"),
     "web.dae": (b"<html>404</html>", "web.dae:1: <html>, expected <COLLADA xmlns='...'>"),
     "git-lfs.stl": (b"version https://git-lfs.github.com/spec/v1\n", "no triangles found; expected a complete mesh"),
     "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), "meter='0'"),
