@@ -56,18 +56,10 @@ def test_launch_fails_and_shows_why_when_the_simulator_refuses_its_world(launch,
     assert "Ctrl-C" not in launched.output  # nothing about how to use what does not run
 
 
-@pytest.mark.parametrize(
-    "argument, words",
-    [
-        ("model:=../../etc/passwd", "there is no model '../../etc/passwd'; known are: burger, "),
-        pytest.param("config:=/no/such.yaml", "file does not exist [/no/such.yaml]", marks=pytest.mark.slow),
-        pytest.param("state_publisher:=no", "ValueError: state_publisher:=no: no is not", marks=pytest.mark.slow),
-    ],
-)
-def test_launch_explains_an_impossible_argument_without_a_traceback(launch, argument, words):
-    launched = launch(*argument.split())
+def test_launch_explains_an_impossible_argument_without_a_traceback(launch):
+    launched = launch("model:=../../etc/passwd")
     assert launched.wait_for_exit() == 1
-    assert words in launched.output
+    assert "there is no model '../../etc/passwd'; known are: burger, " in launched.output
     assert "Traceback" not in launched.output and " xml is " not in launched.output
 
 
