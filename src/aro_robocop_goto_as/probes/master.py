@@ -110,12 +110,16 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
 
 
 def no_simulator(uri: str) -> str:
-    """That no simulator runs and what to do; empty if a node publishes time or odometry, or the master has no answer."""
+    """That no simulator runs, and what to do; empty if a node publishes time or odometry, or the master is silent."""
     try:
         if publishers(uri, "clock", "odom"):
             return ""
         stands = ask_master(uri, "getParam", "/use_sim_time") is True
     except (OSError, MasterError):
         return ""
-    without = "; without one, time stands still until: rosparam set /use_sim_time false" if stands else ""
+    without = (
+        "; /use_sim_time is set, so time stands still without one (rosparam set /use_sim_time false ends that)"
+        if stands
+        else ""
+    )
     return f"no simulator is running: {robocop()} run starts one{without}"

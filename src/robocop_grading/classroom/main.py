@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from aro_robocop_goto_as.process.start import typed
 
 from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED
@@ -113,7 +114,7 @@ class Class:
 
 def main() -> None:
     """Exit status 0: everybody is judged; 1: somebody was not gradable; 130: interrupted."""
-    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
+    parser = argparse.ArgumentParser(prog=typed("grade-class"), description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
     )

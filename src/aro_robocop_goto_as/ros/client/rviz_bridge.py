@@ -67,6 +67,8 @@ class Bridge:
         """Forward clicks until shutdown."""
         while not rospy.is_shutdown():
             if not self.clicked.wait(IDLE_POLL):
+                if not self.last_status and time.monotonic() - self.last_seen > SERVER_TIMEOUT:
+                    self.report()  # simulated time does not pass, and so no timer fires
                 continue
             self.clicked.clear()
             click = self.click
@@ -141,7 +143,7 @@ class Bridge:
         if not discovery.is_up(self.client):
             text = discovery.absence(ACTION)
             if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
-                text, log = f"{text}; {discovery.advice()}", rospy.logwarn
+                text, log = f"{text}; {discovery.advice(ACTION)}", rospy.logwarn
             return self.publish_status(text, log)
         self.last_seen = time.monotonic()
         with self.sending:
