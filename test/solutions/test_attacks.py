@@ -9,7 +9,8 @@ from pathlib import Path
 
 import attacks
 import pytest
-from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
+from graded import PLAN, SHARE, STATE, recorded, sandbox
+from right_solutions import RIGHT
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from robocop_grading import new
@@ -23,7 +24,7 @@ BUDGET = 900.0  # [s, wall] for an attack's two scenarios, on however busy a mac
 
 def attacked(code, folder):
     """Run the base solution with an attack through one scenario; the recorded run and the lines of its output."""
-    text = RIGHT["base_server"].read_text()
+    text = RIGHT["base_server"]
     names = f"PLAN, FOLDER, PID = {str(PLAN)!r}, {str(folder)!r}, {os.getpid()}\n"
     text = text.replace("if __name__", f"{names}{code}\nif __name__")
     run = recorded(text, folder, only=("already_there",), budget=BUDGET)
@@ -100,7 +101,7 @@ def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):
         out.rename(tmp_path / "gone")
 
     with pytest.raises(UngradableError, match="No such file or directory: .*/out/server-start"):
-        recorded(RIGHT["base_server"].read_text(), tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
+        recorded(RIGHT["base_server"], tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
 
 
 def test_flood_of_log_messages_is_truncated(tmp_path):
@@ -266,7 +267,7 @@ def test_own_roslaunch_of_a_package_is_not_used(package, tmp_path):
 
 
 def test_node_that_kills_itself_is_graded(tmp_path):
-    text = RIGHT["base_server"].read_text().replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
+    text = RIGHT["base_server"].replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
     (tmp_path / "solution.py").write_text(text)
     submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
     grade = grade_submission(Runner(load(PLAN), STATE, sandbox()), submission, tmp_path / "report")

@@ -13,8 +13,8 @@ import sys
 
 import pytest
 from documentation import ROOT
-from graded import RIGHT
 from processes import busy_processes, processes_mentioning
+from right_solutions import RIGHT
 from waiting import wait_for
 
 from robocop_grading.classroom.cluster import connected
@@ -52,7 +52,7 @@ def count(request):
 @pytest.fixture
 def group(tmp_path, count):
     """The folder of a class; the server of every third hand-in never starts."""
-    text = RIGHT["base_server"].read_text()
+    text = RIGHT["base_server"]
     folder = tmp_path / "class"
     folder.mkdir()
     (tmp_path / "plan.yaml").write_text(PLAN)
