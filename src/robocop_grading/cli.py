@@ -10,10 +10,11 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from robocop_hosting import tree
+from robocop_hosting.scratch import scratch_folder
+from robocop_hosting.workspace import exclusive, places
 
-from .builds.workspace import exclusive, places
-from .files import tree, unpacking
-from .files.scratch import scratch_folder
+from .files import unpacking
 from .grader import grade as grade_submission
 from .judge import CheckResult, Grade, Outcome, total
 from .plan import MIDDLE, Plan

@@ -16,10 +16,10 @@ from xml.etree import ElementTree
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from robocop_hosting.scratch import scratch_folder
+from robocop_hosting.workspace import exclusive, places
 
-from ..builds.workspace import exclusive, places
 from ..cli import INTERRUPTED
-from ..files.scratch import scratch_folder
 from ..judge import points_in_words
 from ..plan import MIDDLE, Plan
 from ..plan_file import MAX_SEED, load

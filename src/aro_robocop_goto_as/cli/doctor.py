@@ -9,8 +9,8 @@ import subprocess
 from pathlib import Path
 from typing import Dict, List, Tuple
 
-from ...errors import MasterError
-from ...probes import master, x_display
+from ..errors import MasterError
+from ..probes import master, x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
