@@ -67,7 +67,7 @@ def test_node_that_connects_while_goals_run_leaves_the_same_records_each_time(tm
 
     first = records(0)
     assert {len(results) for _, _, _, results in first.values()} == {0, 1}
-    assert all(records(number) == first for number in range(1, 10))
+    assert all(records(number) == first for number in range(1, 3))
 
 
 @pytest.mark.slow
@@ -105,16 +105,6 @@ def test_time_of_rospy_is_that_of_the_clock_message_whose_callback_runs(tmp_path
     assert text.count("compare_clocks") == 2
     grade = graded("compares_clocks", text, tmp_path)
     assert grade.points == 5.0, grade.failed()
-
-
-@pytest.mark.slow
-def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
-    text = RIGHT["base_server"].replace("'/odom'", "'/ground_truth_odom'")
-    (problem,) = graded("truth", text, tmp_path).problems
-    assert problem == (
-        "server: it subscribes to /ground_truth_odom, which nobody publishes; the position comes from /odom, as on a "
-        "real robot"
-    )
 
 
 @pytest.mark.slow
