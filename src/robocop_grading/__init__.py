@@ -4,7 +4,7 @@ From a hand-in to its grade:
 
     archive, folder, file
       | files/        unpacked; what was handed in
-      | submission    the scripts to grade (builds/), built in a sandbox (sandbox/)
+      | submission    the scripts to grade, built in a sandbox (sandbox/)
       v
     runner            starts a session for each part, in the sandbox's network
       |
@@ -22,6 +22,6 @@ From a hand-in to its grade:
       v
     grader            all of this for one submission: cli (robocop grade), classroom/ (robocop grade-class)
 
-handout holds the handout's names and figures, and the tolerances around them. sim_with is robocop sim --with: the same
-builds, started beside the simulator. Only session/ and agent/ use ROS.
+handout holds the handout's names and figures, and the tolerances around them. How a package is found, built and its
+launch file read is in `robocop_hosting`, which `robocop sim --with` uses, too. Only session/ and agent/ use ROS.
 """

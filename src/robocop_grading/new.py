@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Optional
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
-
-from .builds.workspace import places
+from robocop_hosting.workspace import places
 
 SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package

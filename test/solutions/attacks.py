@@ -302,6 +302,16 @@ LIES = {  # code after LIE, and what the report says
     "unknown_kind": ("replace(wire.DONE, lambda self, body: write(self, 77, body))", UNREADABLE),
     "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.TIMES.pack(0, 0)))", STILL),
     "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
+    "far_ahead": (
+        "replace(wire.DONE, lambda self, b: write(self, wire.DONE, wire.TIMES.pack(1 << 60, 1 << 62)))",
+        STILL,
+    ),
+    "done_before_it_is": (
+        "read = channel.Channel._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
+        "        write(self, wire.DONE, wire.TIMES.pack(wire.TIMES.unpack_from(body)[0], 1 << 62))\n"
+        "    return kind, body\nchannel.Channel._read = hasty\nreplace(wire.DONE, lambda self, body: None)",
+        "it stopped answering",
+    ),
     "closed": (
         "def lie(self, body):\n    os.close(self._descriptor)\n    while True: scheduler.sleep(0.01)\n"
         "replace(wire.DONE, lie)",

@@ -16,6 +16,7 @@ from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan_file import load
 from robocop_grading.runner import Runner
+from robocop_grading.sandbox import build
 from robocop_grading.submission import prepare_submission
 
 BUDGET = 900.0  # [s, wall] for an attack's two scenarios, on however busy a machine
@@ -194,11 +195,26 @@ def test_link_created_by_the_build_is_not_followed(name, package, tmp_path):
         prepared(package, tmp_path / "workshop")
 
 
+@pytest.mark.parametrize("place", ["elsewhere.py", "lab/elsewhere.py"])
+def test_script_that_is_a_link_out_of_the_package_or_with_an_absolute_path_is_named(place, package, tmp_path):
+    script = package / "scripts" / "robocop_goto_as.py"
+    script.rename(tmp_path / place)
+    script.symlink_to(tmp_path / place)
+    (package / "scripts" / "same.py").symlink_to("robocop_rviz_goto_ac.py")
+    with pytest.raises(RobocopError, match=f"^scripts/robocop_goto_as.py -> .*/{place}: links .* are not followed"):
+        prepared(package, tmp_path / "workshop")
+
+
 def build_attack(package, code, then=""):
     """Have the package's build run some code."""
     (package / "attack.py").write_text(code)
     with open(package / "CMakeLists.txt", "a") as text:
         text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/attack.py {then})\n")
+
+
+def test_build_is_over_when_its_command_has_ended_whatever_it_leaves_running(package, tmp_path):
+    build_attack(package, "import subprocess\nsubprocess.Popen(['setsid', 'sleep', '600'])  # has CMake's pipe, too")
+    assert [script.part for script in prepared(package, tmp_path / "workshop").scripts] == ["server", "bridge"]
 
 
 @pytest.mark.parametrize(
@@ -221,6 +237,20 @@ def test_what_a_build_made_of_its_log_and_its_sources_does_not_stop_the_next_one
     (folder / "src").rename(folder / "elsewhere")
     (folder / "src").symlink_to(folder / "elsewhere")
     assert {script.part for script in prepared(package, workshop).scripts} == {"server", "bridge"}
+
+
+def test_what_an_interrupted_build_has_left_is_removed_by_the_next_one(package, tmp_path, monkeypatch):
+    def interrupted(folder, *_):
+        (folder / "half").write_text("a message's class that is cut short")
+        raise KeyboardInterrupt
+
+    workshop = tmp_path / "workshop"
+    with monkeypatch.context() as during, pytest.raises(KeyboardInterrupt):
+        during.setattr(build, "make", interrupted)
+        prepared(package, workshop)
+    assert len(list(workshop.glob("*/half"))) == 1
+    prepared(package, workshop)
+    assert list(workshop.glob("*/half")) == [] and len(list(workshop.iterdir())) == 1
 
 
 def test_endless_line_of_a_build_is_cut(package, tmp_path):

@@ -62,7 +62,7 @@ def test_catkin_lint_reports_nothing():
 
 
 def test_shellcheck_reports_nothing():
-    run_checker("shellcheck", "robocop", ".ci/run", f"src/{PACKAGE}/ros/cli/completion.bash")
+    run_checker("shellcheck", "robocop", ".ci/run", f"src/{PACKAGE}/cli/completion.bash")
 
 
 def test_modules_import_only_what_the_contracts_in_pyproject_allow():

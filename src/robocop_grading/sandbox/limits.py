@@ -17,7 +17,7 @@ MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which ta
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
-MAX_IDLE = 45.0  # [s, wall] in which a node does nothing, until one answer is not waited for any more
+MAX_IDLE = 20.0  # [s, wall] in which a node does nothing, until one answer is not waited for any more
 MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, also if it waits for a disk; usual are a few seconds
 
 # -- a build --

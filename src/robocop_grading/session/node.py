@@ -38,6 +38,7 @@ class Spent(NamedTuple):
 
     processor_time: float = 0.0  # [s]
     still: float = 0.0  # [s, wall] in which none of their threads ran or wanted to, while the grader waited for them
+    has_stopped_answering: bool = False  # one of them
 
 
 class Node:
@@ -75,7 +76,7 @@ class Node:
         self._is_over = False
         self._given_up = ""  # why the grader has ended it, if it has
         self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
-        self._still = spent.still
+        self._still, self._is_last = spent.still, spent.has_stopped_answering
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -94,7 +95,7 @@ class Node:
 
     def spent(self) -> Spent:
         """What this node and those before it have taken."""
-        return Spent(self._guard.used, self._still)
+        return Spent(self._guard.used, self._still, self._is_last or bool(self._given_up))
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -108,7 +109,8 @@ class Node:
         """Let the node live until a simulated time [ns]; when this returns, all that it did until then is handled.
 
         `clock_ns`: the time on /clock, which its loops see when they have handled all messages. `meanwhile` is called
-        once, while the node works. GraderLostError if it answers what no agent says.
+        once, while the node works. GraderLostError if it answers what no agent says, or is the
+        second one that stops answering.
         """
         new, messages = self._topics.take()
         if self._is_over:
@@ -136,6 +138,8 @@ class Node:
             silent = min(looks * POLL, self._guard.still - still)
             if self._guard.idle - idle > MAX_IDLE or self._still + silent > MAX_STILL:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
+                if self._is_last:
+                    raise GraderLostError(f"the node {did} the grader again")
                 self._given_up = f"it {did} the grader, which has ended it"
                 self.end()
                 self._finish()

@@ -113,7 +113,7 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
 @pytest.mark.parametrize(
     "files, problem",
     [
-        ({}, "no file in it"),
+        ({}, "the folder is empty"),
         ({"build/x.py": b"", "__MACOSX/a.py": b""}, "no file in it, but for build products"),
         ({"report.pdf": b""}, "no package and no Python file in it, only report.pdf"),
         (

@@ -9,10 +9,10 @@ import rosbag
 from command import ROOT, dry_run, robocop, x_server
 from rosgraph_msgs.msg import Clock
 
+from aro_robocop_goto_as.cli import program
+from aro_robocop_goto_as.cli.commands import COMMANDS
+from aro_robocop_goto_as.cli.system_commands import web_arguments
 from aro_robocop_goto_as.process.ports import free_port
-from aro_robocop_goto_as.ros.cli import program
-from aro_robocop_goto_as.ros.cli.commands import COMMANDS
-from aro_robocop_goto_as.ros.cli.system_commands import web_arguments
 
 LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
 
@@ -120,6 +120,7 @@ def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_p
         assert (done.returncode, done.stdout) == (1, "")
         assert done.stderr.startswith(f"robocop: {command}: expected a file or folder with something to grade, got: ")
         assert done.stderr.count("\n") == 1, "no other messages"
+        assert ("hand_ins (the folder is empty)" in done.stderr) is ("--unsafe" in words)
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from processes import busy_processes, processes_mentioning
 
 SCRATCH_PROGRAM = """
 import subprocess, sys, time
-from robocop_grading.files.scratch import scratch_folder
+from robocop_hosting.scratch import scratch_folder
 from aro_robocop_goto_as.process.signals import interrupt_on_signal
 
 interrupt_on_signal()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import List, Sequence, Tuple
 from xml.etree import ElementTree
 
-from ...suggestions import did_you_mean
+from ..suggestions import did_you_mean
 from .program import ROOT, refuse
 
 # The files whose arguments a command takes.

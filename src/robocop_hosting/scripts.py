@@ -13,9 +13,9 @@ from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tu
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import BRIDGE, SERVER
 
-from ..files import tree
-from ..files.tree import read_bytes
+from . import tree
 from .launch_file import LaunchNode
+from .tree import read_bytes
 
 PARTS = {"robocop_goto_as.py": "server", "robocop_rviz_goto_ac.py": "bridge"}  # the handout's scripts
 NODE_NAMES = {"server": SERVER, "bridge": BRIDGE}

@@ -8,8 +8,8 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.builds.package import find_package, names_gazebo, started
-from robocop_grading.builds.workspace import run_plain
+from robocop_hosting.package import find_package, names_gazebo, started
+from robocop_hosting.workspace import run_plain
 
 
 def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> None:

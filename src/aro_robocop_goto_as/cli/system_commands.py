@@ -6,8 +6,8 @@ import os
 import time
 from typing import List, NoReturn, Sequence, Tuple
 
-from ...names import ACTION, ACTION_TYPE, PACKAGE, absolute
-from ...probes import master, x_display
+from ..names import ACTION, ACTION_TYPE, PACKAGE, absolute
+from ..probes import master, x_display
 from . import program
 from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments, with_absolute_path
 from .program import refuse, say

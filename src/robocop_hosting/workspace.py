@@ -14,7 +14,7 @@ from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 from aro_robocop_goto_as.errors import HostingError, InstallationError
 from aro_robocop_goto_as.process import child
 
-from ..files import tree
+from . import tree
 
 Environment = Dict[str, str]
 Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status

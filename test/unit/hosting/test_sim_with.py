@@ -8,10 +8,10 @@ from hosted_packages import LAB, MANIFEST, tree
 
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import PACKAGE
-from robocop_grading.builds.launch_file import LaunchNode
-from robocop_grading.builds.package import Started, find_package
-from robocop_grading.builds.scripts import Choice
-from robocop_grading.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
+from robocop_hosting.launch_file import LaunchNode
+from robocop_hosting.package import Started, find_package
+from robocop_hosting.scripts import Choice
+from robocop_hosting.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
 
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from aro_robocop_goto_as.ros.cli.launch_arguments import LaunchArguments, names
+from aro_robocop_goto_as.cli.launch_arguments import LaunchArguments, names
 
 FILE = """<launch>
   <!-- <arg name="commented" default=""/> -->

@@ -2,7 +2,7 @@
 
 import sys
 
-from aro_robocop_goto_as.ros.cli import doctor
+from aro_robocop_goto_as.cli import doctor
 
 
 def test_the_fork_of_pybullet_without_numpy_is_named_and_nothing_is_missing(tmp_path, monkeypatch):

@@ -7,8 +7,8 @@ import pytest
 from hosted_packages import tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.builds.launch_file import LaunchNode
-from robocop_grading.builds.scripts import choose, interpreter, obstacles
+from robocop_hosting.launch_file import LaunchNode
+from robocop_hosting.scripts import choose, interpreter, obstacles
 
 SERVER = "actionlib.SimpleActionServer('robocop_goto_as')"
 RAW = "Subscriber('/robocop_goto_as/goal', GoToPositionActionGoal); Publisher('x', GoToPositionActionResult)"

@@ -10,7 +10,7 @@ import time
 import pytest
 from command import ROOT
 
-from aro_robocop_goto_as.ros.cli.completion import options
+from aro_robocop_goto_as.cli.completion import options
 
 DEADLINE = 60.0  # [s, wall]
 READY = "ready to type"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robocop_grading.builds.workspace import error_of
+from robocop_hosting.workspace import error_of
 
 WARNING = """-- catkin 0.8.10
 CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):

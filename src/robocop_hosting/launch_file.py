@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 
 from aro_robocop_goto_as.errors import HostingError
 
-from ..files.tree import read_bytes
+from .tree import read_bytes
 from .workspace import Environment, Run, output_of
 
 READER = Path(__file__).resolve().with_name("roslaunch_reader.py")

@@ -7,8 +7,8 @@ import pytest
 from hosted_packages import tree
 
 from aro_robocop_goto_as.errors import HostingError
-from robocop_grading.builds.launch_file import LaunchFile, read
-from robocop_grading.builds.workspace import run_plain
+from robocop_hosting.launch_file import LaunchFile, read
+from robocop_hosting.workspace import run_plain
 
 pytest.importorskip("roslaunch")
 NODE = '<node pkg="lab" type="a.py" name="a"'

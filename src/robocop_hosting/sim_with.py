@@ -12,10 +12,10 @@ from xml.sax.saxutils import quoteattr
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 
-from .builds.package import Package, Started, arguments_of, find_package, names_gazebo, started
-from .builds.scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
-from .builds.workspace import Environment, build, compat_environment, places, run_plain, workspace_name
-from .files.scratch import scratch_folder
+from .package import Package, Started, arguments_of, find_package, names_gazebo, started
+from .scratch import scratch_folder
+from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
+from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 

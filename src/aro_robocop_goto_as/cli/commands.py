@@ -9,8 +9,8 @@ import subprocess
 import sys
 from typing import Callable, Dict, List, NoReturn, Sequence
 
-from ...errors import MasterError
-from ...suggestions import did_you_mean
+from ..errors import MasterError
+from ..suggestions import did_you_mean
 from . import completion, container_image, developer_commands, doctor, program, system_commands
 from .program import ROOT, refuse, say
 
@@ -44,7 +44,8 @@ def expect_something(command: str, arguments: List[str]) -> None:
     """End with an error, before anything is installed, if no argument is a file, or a folder with something in it."""
     found = any(os.path.isfile(word) or glob.glob(f"{glob.escape(word)}/*") for word in arguments)
     if not (found or program.is_dry_run() or {"-h", "--help"} & set(arguments)):
-        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(arguments) or 'nothing'}")
+        given = (f"{word} (the folder is empty)" if os.path.isdir(word) else word for word in arguments)
+        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(given) or 'nothing'}")
 
 
 def shell(arguments: List[str]) -> None:

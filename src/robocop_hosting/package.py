@@ -9,10 +9,10 @@ from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Seq
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import PACKAGE
 
-from ..files import tree
-from ..files.tree import read_bytes, read_xml
+from . import tree
 from .launch_file import LaunchNode, read
 from .scripts import ASIDE, PARTS, Choice, best_place, choose, files_below
+from .tree import read_bytes, read_xml
 from .workspace import Environment, Run
 
 LAUNCH_FILE = "robocop_goto_as.launch"

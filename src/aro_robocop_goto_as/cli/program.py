@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, NoReturn, Optional
 from xml.etree import ElementTree
 
-from ...names import PACKAGE
-from ...process import signals
+from ..names import PACKAGE
+from ..process import signals
 from . import doctor
 
-ROOT = Path(__file__).resolve().parents[4]
+ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = str(ROOT / "robocop")
 NOT_EXECUTABLE, NOT_FOUND = 126, 127  # exit statuses, as of a shell
 
