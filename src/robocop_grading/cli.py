@@ -10,6 +10,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from aro_robocop_goto_as.process.start import typed
 from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
@@ -108,7 +109,7 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__, allow_abbrev=False)
+    parser = argparse.ArgumentParser(prog=typed("grade"), description=__doc__, allow_abbrev=False)
     parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")

@@ -15,7 +15,7 @@ from .scheduler import scheduler
 
 
 def _to_itself() -> End:
-    """The node's end of a connection to one of its own topics or services."""
+    """Connect the node to one of its own topics or services; return the node's end."""
     mine: End = End(lambda data: theirs.feed(data))
     theirs = End(mine.feed)
     mine.on_close, theirs.on_close = theirs.end, mine.end
@@ -24,7 +24,7 @@ def _to_itself() -> End:
 
 
 def _answer(api: Any, body: Any) -> Any:
-    """What xmlrpc.client would get from a server."""
+    """The answer that xmlrpc.client would get from a server."""
     arguments, method = xmlrpc.client.loads(body)
     function = None if str(method).startswith("_") else getattr(api, str(method), None)
     if function is None:  # as xmlrpc.server; such as system.multicall, by which rospy takes leave of the master

@@ -23,7 +23,7 @@ def _end() -> None:
 
 
 def register_main() -> None:
-    """The thread that calls this is the hand-in's main thread."""
+    """Register the calling thread as the hand-in's main thread."""
     scheduler.running.add(_thread.get_ident())
     native_ids[_thread.get_ident()] = threading.get_native_id()
 
@@ -39,7 +39,7 @@ def _join_others() -> None:
 
 
 def install() -> None:
-    """For all threads that are started from now on."""
+    """Count all threads that are started from now on."""
     system: Any = threading
     # The first to be registered is called last. Python 3.8 waits by itself, which stuck.py sees.
     getattr(system, "_register_atexit", lambda _: None)(_join_others)

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
@@ -114,7 +115,7 @@ class Class:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
+    parser = argparse.ArgumentParser(prog=typed("grade-class"), description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
     )

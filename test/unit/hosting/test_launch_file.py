@@ -10,7 +10,6 @@ from aro_robocop_goto_as.errors import HostingError
 from robocop_hosting.launch_file import LaunchFile, read
 from robocop_hosting.workspace import run_plain
 
-pytest.importorskip("roslaunch")
 NODE = '<node pkg="lab" type="a.py" name="a"'
 
 

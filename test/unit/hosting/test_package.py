@@ -90,7 +90,6 @@ def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path
 
 
 def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
-    pytest.importorskip("roslaunch")
     node = '<node pkg="{}" type="{}" name="n{}"/>\n'
     nodes = [
         (LAB, "robocop_goto_as.py"),
@@ -123,7 +122,6 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
 def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unless_a_condition_leaves_them_out(
     tmp_path: Path,
 ) -> None:
-    pytest.importorskip("roslaunch")
     nodes = '<node pkg="gazebo_ros" type="a" name="a" if="$(arg all)"/><node pkg="aro_sim" type="b" name="b"/>'
     files = {
         "package.xml": MANIFEST.format(LAB),
@@ -155,7 +153,6 @@ def test_launch_file_that_needs_gazebo_is_known_when_another_package_is_missing(
 
 
 def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
-    pytest.importorskip("roslaunch")
     node = f'<launch><node pkg="{LAB}" type="{{0}}" name="n"><param name="of" value="{{0}}"/></node></launch>'
     files = {
         "package.xml": MANIFEST.format(LAB),

@@ -78,6 +78,25 @@ def test_simulator_runs_if_the_master_knows_one_that_answers_as_a_node():
         assert master.running_simulator(uri) is None
 
 
+@pytest.mark.parametrize("topic", ["/clock", "/red/odom"])
+def test_no_simulator_runs_where_nobody_publishes_time_or_odometry_any_more(topic):
+    def no_simulator(publisher, use_sim_time=False):
+        state = [[[topic, ["/a"]], ["/rosout", ["/b"]]], [], []]
+        with served(
+            lookupNode=lambda *_: [1, "", publisher],
+            getSystemState=lambda _: [1, "", state],
+            getParam=lambda *_: [1, "", True] if use_sim_time else [-1, "not set", 0],
+        ) as uri:
+            return master.no_simulator(uri)
+
+    with nobody() as ended:
+        assert no_simulator(ended) == "no simulator is running: ./robocop run starts one"
+        assert "/use_sim_time is set, so time stands still" in no_simulator(ended, use_sim_time=True)
+        assert master.no_simulator(ended) == ""
+    with node() as publisher:
+        assert no_simulator(publisher) == ""
+
+
 def test_simulator_that_hangs_is_reported_with_its_address(monkeypatch):
     def shorten():  # for the next request, which is that to the simulator
         monkeypatch.setattr(master, "TIMEOUT", SHORT)
