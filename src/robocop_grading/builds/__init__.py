@@ -1,1 +1,1 @@
-"""Packages written by others: found, built in a workspace of their own, and what roslaunch would start of them."""
+"""Packages written by others: finds them, builds them in their own workspaces, and says what roslaunch would start."""

@@ -57,7 +57,7 @@ def place_of(error: Optional[BaseException]) -> Tuple[str, int]:
 
 
 def not_done(node: Node) -> Iterator[str]:
-    """What roslaunch does for a node and the grader does not."""
+    """What roslaunch would do for a node, but the grader does not."""
     if node.launch_prefix:
         yield f"launch-prefix={node.launch_prefix!r}"
     if node.machine_name:

@@ -1,4 +1,4 @@
-"""Which mistake explains wrong values of the feedback: hypotheses that predict what a server would report with it."""
+"""Which mistake explains wrong feedback: each hypothesis predicts what a server with one mistake would report."""
 
 import math
 import re
@@ -27,7 +27,7 @@ MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less th
 
 
 class Pair(NamedTuple):
-    """A feedback message, the samples that it may be based on, its goal, and where the robot was when that was sent."""
+    """A feedback message, the samples that it may be based on, its goal, and the sample when the goal was sent."""
 
     feedback: Feedback
     samples: List[Sample]
@@ -145,9 +145,10 @@ OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
 def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[str]]:
-    """All causes that fit in every scenario, the wrong values as well as the right ones, in words and by their names.
+    """All causes that fit the wrong and the right values of every scenario, in words and by their names.
 
-    If none does, what is wrong. `scenarios` are the pairs of each scenario, with the wrong ones among them.
+    If no cause fits, the text says what is wrong. `scenarios`: the pairs of each scenario, and the wrong pairs among
+    them.
     """
     values = [pair.feedback.errors[index] for pairs in scenarios for pair in pairs]
     if not all(map(math.isfinite, values)):
@@ -205,7 +206,7 @@ def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:
 
 
 def longest(misses: Sequence[float], pairs: Sequence[Pair], tolerance: float) -> float:
-    """How long [s] the longest row of values is that do not fit."""
+    """The duration [s] of the longest uninterrupted row of values that do not fit."""
     longest_row, began = 0.0, math.inf
     for miss, pair in zip(misses, pairs):
         began = min(began, pair.feedback.time) if miss > tolerance else math.inf
@@ -214,7 +215,7 @@ def longest(misses: Sequence[float], pairs: Sequence[Pair], tolerance: float) ->
 
 
 def misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], scale: float = 1.0) -> List[float]:
-    """How far each value is from what is predicted for any of the samples that it may be based on; infinity for NaN."""
+    """The distance of each value from the predictions for the samples that it may be based on; infinity for NaN."""
     found = []
     for pair in pairs:
         value = pair.feedback.errors[index]
