@@ -129,7 +129,7 @@ class Grade:
 
     @property
     def failures_first(self) -> List[CheckResult]:
-        """The checks in this order: mistakes, failures that follow from them, checks that were not reached, passed checks."""
+        """All results in this order: mistakes, failures that follow from them, checks not reached, passed checks."""
         order = [mistake.check for mistake in self.mistakes]
         order += [check for check in self.checks if check.outcome is Outcome.FAILED and check.follows]
         for outcome in (Outcome.NOT_REACHED, Outcome.PASSED):
@@ -147,7 +147,7 @@ def total(points: Iterable[float]) -> float:
 
 
 def points_in_words(points: float, available: float, extra: float, extra_available: float) -> str:
-    """The points and the points available, in words, with extra points apart; nothing for a kind that is not available."""
+    """The points out of those available, in words, with extra points apart; no words for a kind without points."""
     words = [f"{points:g} of {available:g} points"] if available else []
     words += [f"{extra:g} of {extra_available:g} extra"] if extra_available else []
     return ", ".join(words) or "nothing was judged"
@@ -178,7 +178,10 @@ def _programs(records: Mapping[str, Record]) -> List[str]:
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
-    """Notes about topics that the node waits for in vain, except those of its own action server, which has no client yet."""
+    """Notes about topics that the node waits for in vain.
+
+    Topics of its own action server don't count: the server has no client when the record ends.
+    """
     return [
         text("truth_unpublished" if "ground_truth" in topic else "unpublished", topic)
         for record in records.values()

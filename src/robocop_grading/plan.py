@@ -152,7 +152,7 @@ class Plan:
         return list(BRIDGE_SCENARIOS[: max(examined, default=0)])
 
     def restricted(self, names: Sequence[str]) -> "Plan":
-        """The plan with only these checks, or unchanged without names; PlanError for a check that the plan does not have."""
+        """The plan with only these checks, or the whole plan without names; PlanError for an unknown check."""
         for name in names:
             if name not in {check.name for check in self.checks}:
                 known = ", ".join(check.name for check in self.checks)

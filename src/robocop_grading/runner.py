@@ -57,7 +57,7 @@ class Runner:
     budget: float = BUDGET  # [s, wall]
 
     def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
-        """Run the scenarios of a script's part; records and bags go to `out`. The run ends whatever the submission does.
+        """Run the scenarios of a script's part, which ends whatever the submission does; records and bags go to `out`.
 
         NoTimeError if the machine has no time for the run; UngradableError if the session can't be started, or the
         plan's packages can't be provided.

@@ -75,7 +75,7 @@ def _tell(words: str) -> None:
 
 
 def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: Started) -> Path:
-    """A launch file that starts the package and, unless that does it, the simulator, written into `folder`."""
+    """Write a launch file into `folder` that starts the package and, unless the package does so, the simulator."""
     parts = []
     if not found.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
@@ -95,7 +95,7 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found
 
 
 def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
-    """NAME:=VALUE words for the package's launch file, and those for the simulator's, which knows `simulator`."""
+    """The NAME:=VALUE words for the package's launch file, and the words for the simulator's, which knows `simulator`."""
     known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
     for_simulator: List[str] = []
@@ -130,7 +130,7 @@ def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
 
 
 def main() -> None:
-    """Build what the arguments name, and launch it in this process, whose end is everything's. Exit status 1 or 130."""
+    """Build and launch the package that the arguments name; everything ends with this process. Exit status 1 or 130."""
     args = parsed()
     handlers = {number: signal.getsignal(number) for number in ending_signals()}
     interrupt_on_signal()

@@ -38,7 +38,7 @@ def make_report_folder(folder: Path) -> Path:
 
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
-    """Write all files to an existing folder that already has the bags; `kept`: the files will not be moved elsewhere."""
+    """Write all files to an existing folder that already has the bags; `kept`: the folder will not be moved."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))

@@ -168,7 +168,7 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
 
 
 def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
-    """The sandbox, or None if `unsafe`. GradingError if bubblewrap can't run, NoTimeError if its test takes too long."""
+    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, NoTimeError if a trial takes too long."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"

@@ -39,7 +39,9 @@ class Guard:
         processes: float = MAX_PROCESSES,
         used: float = 0.0,
     ) -> None:
-        """`memory` [bytes], `processor_time` [s], `processes`: limits of all processes together; a build's `folder` has its own limit. `used`: processor time [s] of earlier processes, which counts, too.
+        """Limits of all processes together: `memory` [bytes], `processor_time` [s], `processes`.
+
+        A build's `folder` has its own limit. `used`: processor time [s] of earlier processes, which counts, too.
         """
         self.reason = ""  # why they were killed, if they were
         # [s, wall] in which no thread was runnable; load of the machine does not make this time longer
