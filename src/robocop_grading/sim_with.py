@@ -95,7 +95,7 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found
 
 
 def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
-    """The NAME:=VALUE words for the package's launch file, and the words for the simulator's, which knows `simulator`."""
+    """The NAME:=VALUE words for the package's launch file, and those for the simulator, which knows `simulator`."""
     known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
     for_simulator: List[str] = []

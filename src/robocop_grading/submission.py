@@ -51,7 +51,7 @@ class Script:
     shown: str = ""  # its path within the submission, and what starts it
 
     def command(self) -> List[str]:
-        """The script's command line, with this interpreter whatever the script's first line says: students' Pythons differ."""
+        """The command line, with this interpreter whatever the script's first line says: students' Pythons differ."""
         return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments, f"__name:={self.node}"]
 
 

@@ -55,7 +55,7 @@ class BridgeRun(Run):
         self._ticks = 0
 
     def scenarios(self) -> None:
-        """Run the scenarios up to the last one that a check examines: each scenario begins where the previous one ended."""
+        """Run the scenarios up to the last one that a check examines: each begins where the previous one ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
             self.announce(name)
@@ -85,7 +85,7 @@ class BridgeRun(Run):
                 self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
 
     def _note_if_cancelled(self, goal_id: GoalID) -> None:
-        """Note a goal as cancelled at once: of all that has arrived, cancel requests are handled first."""
+        """Record a goal as PREEMPTED if a cancel request has come for it: requests are handled before the goals of a tick."""
         stamp = goal_id.stamp.to_sec()
         if any(cancel.id == goal_id.id or 0.0 < stamp <= cancel.stamp for cancel in self.parts["cancels"]):
             self.add("statuses", rec.Status(self.stage.now, goal_id.id, rec.PREEMPTED))

@@ -28,7 +28,7 @@ class Channel:
         return self._socket.fileno()
 
     def send(self, kind: int, body: bytes) -> None:
-        """Send a frame; bytes for which the socket has no room are sent later. GraderLostError if the node reads nothing."""
+        """Send a frame, or later what the socket has no room for; GraderLostError if the node reads nothing."""
         self.unsent += wire.frame(kind, body)
         self.write()
         if len(self.unsent) > MAX_UNSENT:

@@ -1,4 +1,4 @@
-"""The hand-in's node as a child process, which lives in simulated time: at each GO until the time that the grader says."""
+"""The hand-in's node as a child process: at each GO it lives until the simulated time that the grader names."""
 
 import itertools
 import pickle
@@ -106,7 +106,7 @@ class Node:
         self._channel.close()
 
     def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object]) -> None:
-        """Let the node live until a simulated time [ns]; when this returns, everything that it did until then is handled.
+        """Let the node live until a simulated time [ns], and handle everything that it does until then.
 
         `clock_ns`: the time on /clock, which the node's loops see when all messages are handled. `meanwhile` is
         called once, while the node works. GraderLostError if the node's answer is one that no agent gives.

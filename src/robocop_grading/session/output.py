@@ -1,4 +1,4 @@
-"""A node's output, line by line, up to a limit; there is no thread for it: the caller that waits for the node reads it."""
+"""A node's output, line by line, up to a limit. It is read without a thread, by the loop that waits for the node."""
 
 import contextlib
 import fcntl

@@ -27,7 +27,7 @@ MAX_LINES = 20_000  # in one record, as a traceback comes at once
 
 
 class Run:
-    """A job in progress: the current scenario's record so far, the goals that are known, and the goals that have ended."""
+    """A job in progress: the current scenario's record so far, the known goals, and the goals that have ended."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics

@@ -172,7 +172,7 @@ class Stage:
         )
 
     def _links(self) -> List[TransformStamped]:
-        """The transforms of the robot's links that robot_state_publisher sends in the lab, except those of the wheels."""
+        """The transforms that robot_state_publisher sends in the lab for the robot's links, except the wheels."""
         frames, model = PARAMS.frames, self.sim.robots[0].model
         return [
             convert.to_transform_3d(self.robot.footprint_frame, BASE_LINK, model.footprint_from_base, self.stamp),

@@ -92,7 +92,7 @@ def header(kind: Any, **more: str) -> Dict[str, str]:
 
 
 class Topics:
-    """All topics. Messages that have arrived are handled in the order of the topics' names, not in the order of sending."""
+    """All topics. Messages that have arrived are handled in the order of their topics' names, not of sending."""
 
     def __init__(self) -> None:
         self.published: Dict[str, NodeTopic] = {}  # by the node
