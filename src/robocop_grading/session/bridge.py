@@ -85,7 +85,7 @@ class BridgeRun(Run):
                 self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
 
     def _note_if_cancelled(self, goal_id: GoalID) -> None:
-        """Record a goal as PREEMPTED if a cancel request has come for it: requests are handled before the goals of a tick."""
+        """Record a goal as PREEMPTED if a cancel request has come for it: at a tick, requests are handled first."""
         stamp = goal_id.stamp.to_sec()
         if any(cancel.id == goal_id.id or 0.0 < stamp <= cancel.stamp for cancel in self.parts["cancels"]):
             self.add("statuses", rec.Status(self.stage.now, goal_id.id, rec.PREEMPTED))

@@ -88,7 +88,7 @@ class ScenarioBag:
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))
 
     def write_step(self, stamp_ns: int, messages: Sequence[StepMessage]) -> None:
-        """Write the measurements that the submission gets, and the truth; without messages that a replay does not show."""
+        """Write the submission's measurements, and the truth; without messages that a replay does not show."""
         for topic, kind, data in messages:
             if topic not in ("/imu", "/bumper", "/joint_states"):
                 raw = kind._type, data[wire.LENGTH.size :], kind._md5sum, kind  # as rosbag.Bag.write() takes it
