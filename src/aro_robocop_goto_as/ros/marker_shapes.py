@@ -25,7 +25,7 @@ Marked = Tuple[str, Shape, Pose3D]  # frame, shape, pose in that frame
 
 
 def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
-    """A pose in space with a unit quaternion, None if the numbers are no pose; a quaternion of zeros means level, as in RViz."""
+    """A pose in space with a unit quaternion; None if the numbers are no pose. All zeros mean level, as in RViz."""
     try:
         orientation = from_quaternion(q, unset_is_level=True)
     except FrameError:

@@ -108,7 +108,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
 
 
 def end_with_master() -> None:
-    """Watch the ROS master from a thread, and end the node when the master's port is closed: nobody could find it then."""
+    """End the node when the ROS master's port is closed, because nobody could find the node; watches from a thread."""
 
     def watch() -> None:
         uri = master.master_uri()

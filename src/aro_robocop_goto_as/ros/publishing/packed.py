@@ -48,7 +48,7 @@ class Field(NamedTuple):
 
 
 class PackedMessage:
-    """The bytes of a message as they are sent: its length, then its fields. A latched one holds the message sent last."""
+    """The bytes of a message as they are sent: its length, then its fields. If latched, the last message."""
 
     def __init__(self, template: genpy.Message, fields: Sequence[Field] = ()) -> None:
         serialized = BytesIO()

@@ -1,4 +1,4 @@
-"""A subscriber's connection for its publisher, which waits while the subscriber reads and skips it while it stands still.
+"""A subscriber's connection: its publisher waits for the subscriber while it reads, and skips it while it stands still.
 
 A node may stand still for any time, in a debugger or after Ctrl-Z. It gets the rest of a message when it reads again.
 """

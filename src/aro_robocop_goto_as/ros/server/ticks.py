@@ -77,7 +77,7 @@ class Ticks:
         return self._tick(convert.to_ns(rospy.get_rostime()))
 
     def _tick(self, time_ns: int, later: int = 0) -> int:
-        """The time of the newest tick at a time [ns], or of a tick that is `later`; rounded down as the simulator does."""
+        """The time of the newest tick at a time [ns], or of a `later` tick; rounded down as the simulator does."""
         number = ((time_ns + 1) * self._ticks - 1) // self._span_ns + later
         return number * self._span_ns // self._ticks
 
