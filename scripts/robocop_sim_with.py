@@ -4,7 +4,7 @@
 from aro_robocop_goto_as.process.start import imports
 
 with imports():
-    from robocop_grading.sim_with import main
+    from robocop_hosting.sim_with import main
 
 if __name__ == "__main__":
     main()

@@ -47,8 +47,8 @@ From the system to a browser and back, by viser:
 From ./robocop COMMAND to the program that does the work:
 
     robocop                       the shell script: a state folder, a clean environment
-    ros.cli.commands              names the function of each command, which checks the arguments and chooses the program
-        ros.cli.program           has the script install and build what that program needs, then becomes it
+    cli.commands                  names the function of each command, which checks the arguments and chooses the program
+        cli.program               has the script install and build what that program needs, then becomes it
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 
@@ -57,8 +57,8 @@ composes the groups. Limits and timeouts are parameters first, so look for them 
 code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
 name, C computes, and Python holds the figures and calls C. `compiled` loads the libraries that CMake builds from these.
 All readers of user-written files use `reading`. `process` is about operating system processes, and `probes` looks at
-the machine, also before anything is installed. The package `robocop_grading` beside this one builds, runs and judges
-other people's packages.
+the machine, also before anything is installed. Beside this package, `robocop_hosting` builds and runs other people's
+packages, and `robocop_grading` judges them.
 """
 
 from pkgutil import extend_path

@@ -4,7 +4,7 @@ From a hand-in to its grade:
 
     archive, folder, file
       | files/        unpacked; what was handed in
-      | submission    the scripts to grade (builds/), built in a sandbox (sandbox/)
+      | submission    the scripts to grade, built in a sandbox (sandbox/)
       v
     runner            starts a session for each part, in the sandbox's network
       |
@@ -22,6 +22,6 @@ From a hand-in to its grade:
       v
     grader            runs all of this for one submission; called by cli (grade) and classroom/ (grade-class)
 
-handout holds the handout's names and figures, and the tolerances around them. sim_with is robocop sim --with: it
-makes the same builds and starts them beside the simulator. Only session/ and agent/ use ROS.
+handout holds the handout's names and figures, and the tolerances around them. `robocop_hosting` finds a package, builds
+it and reads its launch file; `robocop sim --with` uses it, too. Only session/ and agent/ use ROS.
 """

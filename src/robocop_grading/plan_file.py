@@ -10,9 +10,9 @@ import yaml
 
 from aro_robocop_goto_as.errors import HostingError, PlanError
 from aro_robocop_goto_as.param_loading import declared, from_dict, parameter
+from robocop_hosting.tree import read_bytes
 
 from .checks import CHECKS
-from .files.tree import read_bytes
 from .handout import Limits
 from .packages import Packages
 from .plan import BRIDGE_SCENARIOS, MIDDLE, START, Block, CheckPlan, Plan, Push, Scenario, Step

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError
-
-from .advice import advice, next_todo
-from .builds import workspace
-from .builds.launch_file import READER
-from .builds.package import MAX_NAMED, Package, Started, find_package, started
-from .builds.scripts import (
+from robocop_hosting import workspace
+from robocop_hosting.launch_file import READER
+from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
+from robocop_hosting.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
     NODE_NAMES,
@@ -27,8 +25,10 @@ from .builds.scripts import (
     obstacles,
     part_of,
 )
-from .builds.workspace import Environment, compat_environment, places, workspace_name
-from .files.tree import read_text
+from robocop_hosting.tree import read_text
+from robocop_hosting.workspace import Environment, compat_environment, places, workspace_name
+
+from .advice import advice, next_todo
 from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in

@@ -5,7 +5,7 @@ from typing import Mapping
 
 import yaml
 
-from .builds.workspace import places
+from robocop_hosting.workspace import places
 
 FILE = "config/grading_texts.yaml"  # of this package
 

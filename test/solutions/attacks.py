@@ -72,13 +72,6 @@ for _ in range(4):
 while True:
     pass
 """
-GIGABYTE_OF_LOG = """
-import sys, threading
-def shout():
-    for _ in range(1024):
-        sys.stdout.write('x' * 2 ** 20 + chr(10))
-threading.Thread(target=shout, daemon=True).start()
-"""
 KILL_MASTER = """
 import os, threading, time, xmlrpc.client
 def strike():
@@ -92,15 +85,6 @@ def strike():
         except Exception as error:
             print(error, flush=True)
 threading.Thread(target=strike, daemon=True).start()
-"""
-MEMORY = """
-import os, time
-for _ in range(12):
-    if os.fork() == 0:
-        memory = bytearray(400 * 2 ** 20)
-        time.sleep(60.0)
-        os._exit(0)
-os.wait()  # otherwise the node would finish its goals before all memory is allocated
 """
 BUILD = """
 import os, socket
@@ -124,68 +108,6 @@ if 'SECRET_OF_THE_TEACHER' in os.environ:
     print('SUCCESS environment')
 """
 """Code run by a package's CMakeLists.txt or its launch file."""
-BUILD_FULL = """
-for number in range(40):
-    with open(f'big{number}', 'wb') as f:
-        for _ in range(60):
-            f.write(bytes(2 ** 20))
-import time
-time.sleep(30.0)
-"""
-MEMFD = """
-import array, os, socket
-near, far = socket.socketpair()
-try:
-    for _ in range(60):
-        file = os.memfd_create('hidden')
-        for _ in range(60):
-            os.write(file, bytes(2 ** 20))
-        near.sendmsg([b'x'], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array('i', [file]))])
-        os.close(file)
-    print('SUCCESS memfds in a socket')
-except OSError as error:
-    print('refused', error)
-"""
-SYSTEM_V = """
-import ctypes, os
-libc = ctypes.CDLL(None, use_errno=True)
-for name, make in (('shared memory', lambda: libc.shmget(0, 2 ** 20, 0o1600)),
-                   ('semaphores', lambda: libc.semget(0, 30_000, 0o1600)),
-                   ('messages', lambda: libc.msgget(0, 0o1600))):
-    for _ in range(10):
-        if make() < 0:
-            print('refused', name, os.strerror(ctypes.get_errno()))
-            break
-    else:
-        print('SUCCESS System V', name)
-"""
-OTHER_CALLS = """
-import ctypes, os, platform, socket
-libc = ctypes.CDLL(None, use_errno=True)
-ARM = platform.machine() == 'aarch64'
-for name, call in (('io_uring', lambda: libc.syscall(425, 8, ctypes.byref((ctypes.c_char * 120)()))),
-                   ('add_key', lambda: libc.syscall(217 if ARM else 248, b'user', b'name', bytes(20000), 20000, -2)),
-                   ('AF_VSOCK', lambda: libc.socket(40, 1, 0)),
-                   ('AF_ALG', lambda: libc.socket(38, 5, 0)),
-                   ('vmsplice', lambda: libc.vmsplice(os.pipe()[1], None, 0, 0))):
-    if call() < 0:
-        print('refused', name, os.strerror(ctypes.get_errno()))
-    else:
-        print('SUCCESS', name)
-"""
-SHARED_WITHOUT_FILE = """
-import ctypes, mmap, os
-libc = ctypes.CDLL(None, use_errno=True)
-DONTNEED = 4
-for make in (lambda size: mmap.mmap(-1, size), lambda size: mmap.mmap(os.open('/dev/zero', os.O_RDWR), size)):
-    try:
-        memory = make(400 * 2 ** 20)
-        ctypes.memset(ctypes.addressof(ctypes.c_char.from_buffer(memory)), 1, len(memory))
-        libc.madvise(ctypes.c_void_p(ctypes.addressof(ctypes.c_char.from_buffer(memory))), len(memory), DONTNEED)
-        print('SUCCESS kept', memory[:3])
-    except OSError as error:
-        print('refused', error)
-"""
 NAMESPACE = """
 import ctypes, os, subprocess
 libc = ctypes.CDLL(None, use_errno=True)
@@ -272,10 +194,6 @@ def replace(replaced, lie):
 UNREADABLE = "answer to the grader can't be read"
 STILL = "the node's time did not go on"
 LIES = {  # code after LIE, and what the report says
-    "silence": (
-        "def lie(self, body):\n    while True: scheduler.sleep(0.01)\nreplace(wire.DONE, lie)",
-        "it stopped answering",
-    ),
     "two_threads_silence": (
         "def lie(self, body):\n"
         "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
@@ -286,26 +204,17 @@ LIES = {  # code after LIE, and what the report says
         "replace(wire.DONE, lambda self, body: os.write(self._descriptor, wire.frame(wire.DONE, body)[:-1]))",
         "it stopped answering",
     ),
-    "nested": (
-        "replace(wire.TOPICS, lambda self, _: write(self, wire.TOPICS, b'[' * 400_000))",
-        "topics can't be read",
-    ),
-    "malformed": (
-        'replace(wire.TOPICS, lambda self, _: write(self, wire.TOPICS, b\'{"published": [[[]]], "subscribed": 7}\'))',
-        "topics can't be read",
-    ),
-    "too_long": (
-        "replace(wire.DONE, lambda self, _: os.write(self._descriptor, wire.HEAD.pack(2**31, wire.DONE)))",
-        UNREADABLE,
-    ),
     "no_numbers": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, b'done'))", UNREADABLE),
-    "unknown_kind": ("replace(wire.DONE, lambda self, body: write(self, 77, body))", UNREADABLE),
-    "no_time": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, wire.TIMES.pack(0, 0)))", STILL),
     "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
-    "closed": (
-        "def lie(self, body):\n    os.close(self._descriptor)\n    while True: scheduler.sleep(0.01)\n"
-        "replace(wire.DONE, lie)",
-        "closed its connection to the grader",
+    "far_ahead": (
+        "replace(wire.DONE, lambda self, b: write(self, wire.DONE, wire.TIMES.pack(1 << 60, 1 << 62)))",
+        STILL,
+    ),
+    "done_before_it_is": (
+        "read = channel.Channel._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
+        "        write(self, wire.DONE, wire.TIMES.pack(wire.TIMES.unpack_from(body)[0], 1 << 62))\n"
+        "    return kind, body\nchannel.Channel._read = hasty\nreplace(wire.DONE, lambda self, body: None)",
+        "it stopped answering",
     ),
     # These are graded: nothing of it counts, or only as a topic that nobody hears.
     "early": (

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Callable, Dict, Sequence
+from typing import Callable, Sequence
 
 from robocop_grading import judge
 from robocop_grading.judge import Grade
@@ -11,13 +11,8 @@ from robocop_grading.runner import BUDGET, Recorded, Runner
 from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox
 from robocop_grading.submission import prepare_submission
 
-HERE = Path(__file__).resolve().parent
 STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
 PLAN = SHARE / "config" / "grading.yaml"
-RIGHT: Dict[str, Path] = {
-    path.name[: -len(".py.in")]: path
-    for path in sorted([*HERE.glob("base_*.py.in"), *(HERE / "right").glob("*.py.in")])
-}
 
 
 def sandbox() -> Sandbox:

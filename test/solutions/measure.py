@@ -32,8 +32,9 @@ from typing import Any, Callable, Dict, Iterator, List, Set, Tuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
-from graded import RIGHT, graded
+from graded import graded
 from processes import busy_processes
+from right_solutions import RIGHT
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
@@ -127,7 +128,7 @@ class _Nodes(ast.NodeVisitor):
 
 def mutants(base: str) -> List[str]:
     """The programs that differ in one place from a solution."""
-    tree, nodes = ast.parse(RIGHT[base].read_text()), _Nodes()
+    tree, nodes = ast.parse(RIGHT[base]), _Nodes()
     nodes.visit(tree)
     found: Set[str] = set()
     for number, node in enumerate(nodes.found):
@@ -142,7 +143,7 @@ def mutants(base: str) -> List[str]:
 
 def difference(base: str, text: str) -> str:
     """The first line in which a mutant differs."""
-    for before, after in zip(ast.unparse(ast.parse(RIGHT[base].read_text())).splitlines(), text.splitlines()):
+    for before, after in zip(ast.unparse(ast.parse(RIGHT[base])).splitlines(), text.splitlines()):
         if before != after:
             return f"{before.strip()}  ->  {after.strip()}"
     return "a line at the end"
@@ -186,7 +187,7 @@ def repeats(args: argparse.Namespace) -> int:
     """Print what is not as expected, and what differs; the number of these lines."""
     condition = f"{args.at_once} at once, {args.load} busy loops"
     names = args.names or list(BY_NAME)
-    text = {name: BY_NAME[name].text() if name in BY_NAME else RIGHT[name].read_text() for name in names}
+    text = {name: BY_NAME[name].text() if name in BY_NAME else RIGHT[name] for name in names}
     numbers = range(args.times)
     jobs = [(it, condition, text[it], number, number + 1 if args.drawn else 0) for number in numbers for it in names]
     entries = [it for it in run(jobs, args.log, args.at_once, args.load) if it["name"] in names]

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import attacks
 import pytest
-from graded import PLAN, RIGHT, SHARE, STATE, recorded, sandbox
+from graded import PLAN, SHARE, STATE, recorded, sandbox
+from right_solutions import RIGHT
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from robocop_grading import new
 from robocop_grading.grader import grade as grade_submission
 from robocop_grading.plan_file import load
 from robocop_grading.runner import Runner
+from robocop_grading.sandbox import build
 from robocop_grading.submission import prepare_submission
 
 BUDGET = 900.0  # [s, wall] for an attack's two scenarios, on however busy a machine
@@ -23,7 +25,7 @@ BUDGET = 900.0  # [s, wall] for an attack's two scenarios, on however busy a mac
 
 def attacked(code, folder):
     """Run the base solution with an attack through one scenario; the recorded run and the lines of its output."""
-    text = RIGHT["base_server"].read_text()
+    text = RIGHT["base_server"]
     names = f"PLAN, FOLDER, PID = {str(PLAN)!r}, {str(folder)!r}, {os.getpid()}\n"
     text = text.replace("if __name__", f"{names}{code}\nif __name__")
     run = recorded(text, folder, only=("already_there",), budget=BUDGET)
@@ -32,7 +34,7 @@ def attacked(code, folder):
     return run, lines
 
 
-@pytest.mark.parametrize("name", ["FORK_BOMB", "FULL_DISK", "READ", "KILL_ALL", "FORGE", "GIGABYTE_OF_LOG"])
+@pytest.mark.parametrize("name", ["FORK_BOMB", "FULL_DISK", "READ", "KILL_ALL", "FORGE"])
 def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path):
     neighbour = tmp_path / "neighbour"
     neighbour.mkdir()
@@ -70,27 +72,11 @@ def test_node_that_deceives_the_grader_is_ended_with_a_reason(name, tmp_path):
     assert reason in f"{run.problem} {reasons}"
 
 
-@pytest.mark.parametrize(
-    "name, times",
-    [
-        ("SYSTEM_V", 3),
-        ("NAMESPACE", 3),
-        ("MEMFD", 1),
-        ("PARKED", 1),
-        ("OTHER_CALLS", 5),
-        ("SHARED_WITHOUT_FILE", 2),
-    ],
-)
+@pytest.mark.parametrize("name, times", [("NAMESPACE", 3), ("PARKED", 1)])
 def test_memory_that_no_process_has_cannot_be_taken(name, times, tmp_path):
     run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
     assert sum("refused" in line for line in lines) >= times, lines
     assert run.problem == ""
-
-
-def test_processes_that_together_exceed_the_memory_limit_are_killed_with_a_reason(tmp_path):
-    run, _ = attacked(attacks.MEMORY, tmp_path / "mine")
-    reasons = {death.reason for record in run.records.values() for death in record.deaths}
-    assert reasons == {"its processes together took more than 2048 MB of memory"}, run.problem
 
 
 def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):
@@ -100,7 +86,7 @@ def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):
         out.rename(tmp_path / "gone")
 
     with pytest.raises(UngradableError, match="No such file or directory: .*/out/server-start"):
-        recorded(RIGHT["base_server"].read_text(), tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
+        recorded(RIGHT["base_server"], tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
 
 
 def test_flood_of_log_messages_is_truncated(tmp_path):
@@ -168,14 +154,6 @@ def test_build_and_launch_file_cannot_reach_anything_outside_the_sandbox(package
         assert "SUCCESS" not in words, words
 
 
-@pytest.mark.parametrize("name", ["package.xml", "launch/robocop_goto_as.launch"])
-def test_link_to_a_device_is_refused_without_blocking(name, package, tmp_path):
-    (package / name).unlink()
-    (package / name).symlink_to("/dev/ptmx")
-    with pytest.raises(RobocopError, match="expected an ordinary file"):
-        prepared(package, tmp_path / "workshop")
-
-
 def test_named_pipe_created_by_the_build_is_refused_without_blocking(package, tmp_path):
     launch = "${CMAKE_CURRENT_SOURCE_DIR}/launch/robocop_goto_as.launch"
     with open(package / "CMakeLists.txt", "a") as text:
@@ -194,6 +172,16 @@ def test_link_created_by_the_build_is_not_followed(name, package, tmp_path):
         prepared(package, tmp_path / "workshop")
 
 
+@pytest.mark.parametrize("place", ["elsewhere.py", "lab/elsewhere.py"])
+def test_script_that_is_a_link_out_of_the_package_or_with_an_absolute_path_is_named(place, package, tmp_path):
+    script = package / "scripts" / "robocop_goto_as.py"
+    script.rename(tmp_path / place)
+    script.symlink_to(tmp_path / place)
+    (package / "scripts" / "same.py").symlink_to("robocop_rviz_goto_ac.py")
+    with pytest.raises(RobocopError, match=f"^scripts/robocop_goto_as.py -> .*/{place}: links .* are not followed"):
+        prepared(package, tmp_path / "workshop")
+
+
 def build_attack(package, code, then=""):
     """Have the package's build run some code."""
     (package / "attack.py").write_text(code)
@@ -201,13 +189,14 @@ def build_attack(package, code, then=""):
         text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/attack.py {then})\n")
 
 
-@pytest.mark.parametrize(
-    "name, reason",
-    [("BUILD_FULL", "it wrote more than 512 MB"), ("BUILD_NESTED", "it made more than 100 nested folders")],
-)
-def test_build_that_fills_or_nests_its_folder_is_killed_with_a_reason(name, reason, package, tmp_path):
-    build_attack(package, getattr(attacks, name))
-    with pytest.raises(GradingError, match=f"catkin_make was ended: {reason}"):
+def test_build_is_over_when_its_command_has_ended_whatever_it_leaves_running(package, tmp_path):
+    build_attack(package, "import subprocess\nsubprocess.Popen(['setsid', 'sleep', '600'])  # has CMake's pipe, too")
+    assert [script.part for script in prepared(package, tmp_path / "workshop").scripts] == ["server", "bridge"]
+
+
+def test_build_that_nests_its_folder_is_killed_with_a_reason(package, tmp_path):
+    build_attack(package, attacks.BUILD_NESTED)
+    with pytest.raises(GradingError, match="catkin_make was ended: it made more than 100 nested folders"):
         prepared(package, tmp_path / "workshop")
     subprocess.run(["rm", "-rf", tmp_path / "workshop"], check=True)
 
@@ -223,6 +212,20 @@ def test_what_a_build_made_of_its_log_and_its_sources_does_not_stop_the_next_one
     assert {script.part for script in prepared(package, workshop).scripts} == {"server", "bridge"}
 
 
+def test_what_an_interrupted_build_has_left_is_removed_by_the_next_one(package, tmp_path, monkeypatch):
+    def interrupted(folder, *_):
+        (folder / "half").write_text("a message's class that is cut short")
+        raise KeyboardInterrupt
+
+    workshop = tmp_path / "workshop"
+    with monkeypatch.context() as during, pytest.raises(KeyboardInterrupt):
+        during.setattr(build, "make", interrupted)
+        prepared(package, workshop)
+    assert len(list(workshop.glob("*/half"))) == 1
+    prepared(package, workshop)
+    assert list(workshop.glob("*/half")) == [] and len(list(workshop.iterdir())) == 1
+
+
 def test_endless_line_of_a_build_is_cut(package, tmp_path):
     build_attack(package, attacks.BUILD_LONG_LINE, "COMMAND_ERROR_IS_FATAL ANY")
     with pytest.raises(RobocopError) as caught:
@@ -230,7 +233,7 @@ def test_endless_line_of_a_build_is_cut(package, tmp_path):
     assert "can't be built" in str(caught.value) and len(str(caught.value)) < 6_000
 
 
-@pytest.mark.parametrize("name", ["lab (1)", "O'Neil", "a & b", "lab#3", 'say "$HOME"', "$(touch x)", b"\xf8\xe9zen"])
+@pytest.mark.parametrize("name", ["O'Neil & b (1) #3", 'say "$HOME" $(touch x)', b"\xf8\xe9zen"])
 def test_package_in_a_folder_of_any_name_is_built(name, package, tmp_path):
     odd = package.rename(tmp_path / os.fsdecode(name))
     assert [script.part for script in prepared(odd, tmp_path / "workshop").scripts] == ["server", "bridge"]
@@ -266,7 +269,7 @@ def test_own_roslaunch_of_a_package_is_not_used(package, tmp_path):
 
 
 def test_node_that_kills_itself_is_graded(tmp_path):
-    text = RIGHT["base_server"].read_text().replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
+    text = RIGHT["base_server"].replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
     (tmp_path / "solution.py").write_text(text)
     submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
     grade = grade_submission(Runner(load(PLAN), STATE, sandbox()), submission, tmp_path / "report")

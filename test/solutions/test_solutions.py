@@ -9,8 +9,9 @@ import subprocess
 import time
 
 import pytest
-from graded import HERE, PLAN, RIGHT, SHARE, STATE, graded, recorded
+from graded import PLAN, SHARE, STATE, graded, recorded
 from processes import busy_processes, processes_mentioning
+from right_solutions import HERE, RIGHT
 from wrong_solutions import ADVISED, WRONG
 
 from aro_robocop_goto_as.errors import GradingError
@@ -37,7 +38,7 @@ def pytest_generate_tests(metafunc):
 
 
 def test_correct_solution_gets_full_marks(right, tmp_path):
-    grade = graded(right, RIGHT[right].read_text(), tmp_path)
+    grade = graded(right, RIGHT[right], tmp_path)
     assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
 
 
@@ -61,18 +62,18 @@ def test_what_works_with_the_handouts_server_gets_full_marks_and_advice(advised,
 @pytest.mark.slow
 def test_node_that_connects_while_goals_run_leaves_the_same_records_each_time(tmp_path):
     def records(number):
-        run = recorded(RIGHT["connects_while_driving"].read_text(), tmp_path / str(number), only=("reaches_goal",))
+        run = recorded(RIGHT["connects_while_driving"], tmp_path / str(number), only=("reaches_goal",))
         return {it.name: (it.samples, it.feedback, it.commands, it.results) for it in run.records.values()}
 
     first = records(0)
     assert {len(results) for _, _, _, results in first.values()} == {0, 1}
-    assert all(records(number) == first for number in range(1, 10))
+    assert all(records(number) == first for number in range(1, 3))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp_path):
-    grade = graded("base_server", RIGHT["base_server"].read_text(), tmp_path, seed)
+    grade = graded("base_server", RIGHT["base_server"], tmp_path, seed)
     assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
 
 
@@ -80,7 +81,7 @@ def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp
 @pytest.mark.parametrize("clock", ["rospy.get_time()", "time.time()", "rospy.sleep(0) or rospy.Time.now().to_sec()"])
 def test_loop_that_waits_by_looking_at_a_clock_gets_full_marks(clock, tmp_path):
     pace, wait = "            rate.sleep()\n", f"            end = {clock} + 0.1\n            while {clock} < end:\n"
-    text = RIGHT["base_server"].read_text().replace("import math\n", "import math\nimport time\n")
+    text = RIGHT["base_server"].replace("import math\n", "import math\nimport time\n")
     assert text.count(pace) == 1
     grade = graded("looks", text.replace(pace, f"{wait}                pass\n"), tmp_path)
     assert grade.failed() == []
@@ -98,7 +99,7 @@ def compare_clocks(message):
 
 @pytest.mark.slow
 def test_time_of_rospy_is_that_of_the_clock_message_whose_callback_runs(tmp_path):
-    text = RIGHT["base_server"].read_text().replace("\ndef wrap", f"{COMPARES_CLOCKS}\ndef wrap", 1)
+    text = RIGHT["base_server"].replace("\ndef wrap", f"{COMPARES_CLOCKS}\ndef wrap", 1)
     begin = "        self.count = 0\n"
     text = text.replace(begin, f"{begin}        rospy.Subscriber('/clock', Clock, compare_clocks)\n", 1)
     assert text.count("compare_clocks") == 2
@@ -107,19 +108,9 @@ def test_time_of_rospy_is_that_of_the_clock_message_whose_callback_runs(tmp_path
 
 
 @pytest.mark.slow
-def test_report_names_a_topic_that_the_server_waits_for_in_vain(tmp_path):
-    text = RIGHT["base_server"].read_text().replace("'/odom'", "'/ground_truth_odom'")
-    (problem,) = graded("truth", text, tmp_path).problems
-    assert problem == (
-        "server: it subscribes to /ground_truth_odom, which nobody publishes; the position comes from /odom, as on a "
-        "real robot"
-    )
-
-
-@pytest.mark.slow
 def test_server_that_knows_where_the_walls_are_passes_only_where_it_knows_them(tmp_path):
     looks, knows = "self.min_dist_ahead < 0.3", "x > {2.2: 0.9, 2.0: 0.7, 1.6: -9.0}.get(goal.position.x, 9.0)"
-    text = RIGHT["base_server"].read_text()
+    text = RIGHT["base_server"]
     assert looks in text
     text = text.replace(looks, knows)
     assert graded("middle", text, tmp_path / "middle").failed() == []
@@ -161,7 +152,7 @@ def test_skeleton_or_its_server_is_graded_and_the_one_file_report_names_what_is_
 )
 def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_path):
     solution, scratch = tmp_path / "robocop_goto_as.py", tmp_path / "scratch"
-    solution.write_text(RIGHT["base_server"].read_text())
+    solution.write_text(RIGHT["base_server"])
     scratch.mkdir()
     with open(tmp_path / "output", "w") as output:
         grading = subprocess.Popen(
@@ -197,7 +188,7 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
     "program", ["robocop_grade.py", pytest.param("robocop_grade_class.py", marks=pytest.mark.slow)]
 )
 def test_what_can_not_work_is_refused_before_anything_starts(program, arguments, words, tmp_path):
-    (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"].read_text())
+    (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"])
     of_class = program == "robocop_grade_class.py"
     path = {"SOLUTION": str(tmp_path if of_class else tmp_path / "robocop_goto_as.py")}
     path.update({"/usr/bin/env": "/usr/bin"} if of_class else {})

@@ -12,7 +12,7 @@ from robocop_grading.plan_file import load
 PLAN = load(Path(ROOT, "config", "grading.yaml"))
 
 
-def keep(results, name, points, cause=""):
+def keep(results, name, points, cause="", follows=""):
     """Store the report of a hand-in with one check, as a worker does."""
     failure = {"cause": cause} if cause else None
     check = {
@@ -21,6 +21,7 @@ def keep(results, name, points, cause=""):
         "outcome": "failed" if cause else "passed",
         "points": points,
         "failure": failure,
+        "follows": follows,
         "extra": False,
     }
     keep_report(results, name, {"name": name, "checks": [check], "problems": []})

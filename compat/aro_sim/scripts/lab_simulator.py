@@ -18,8 +18,8 @@ SHADOWING = ("PYTHONPATH", "CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH")  # would res
 SERVICES = "gazebo_services:=true"
 LAB = ["cmd_vel_timeout:=0.0", "odom_tf:=false"]  # unless a profile says what is simulated
 LACKING = """aro_sim: as in the original lab, nobody publishes the transform odom -> base_footprint. In base_footprint,
-aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map, and a bridge that transforms goals gets
-aro_sim: tf2's ConnectivityException. odom_tf:=true adds the transform."""
+aro_sim: RViz can show the robot and its scan, but not the room, the odometry and the map. A bridge that transforms
+aro_sim: goals to odom gets tf2's ConnectivityException. odom_tf:=true adds the transform."""
 
 
 def spawn_from(words):

@@ -8,7 +8,7 @@ import math
 import os
 import pickle
 import socket
-from typing import Any, Dict, List, Tuple
+from typing import List, Tuple
 
 from . import connections, files, grader, ros, stuck, wire
 from .scheduler import allocate_lock, scheduler
@@ -16,9 +16,7 @@ from .scheduler import allocate_lock, scheduler
 # Processor time [s] that a node may use before simulated time goes on without it
 STARTING_TIME = 20.0  # until all its threads wait for the first time; ROS and NumPy take 2 to 4
 REQUEST_TIME = 0.5  # at each later request of the grader
-LOOP_TIME = (
-    0.002  # at each request after MAX_EXCEEDED requests in a row were exceeded: the node is a loop without pauses
-)
+LOOP_TIME = 0.002  # at each request after MAX_EXCEEDED in a row have used up theirs: the node is a loop without pauses
 AFTER_LOOP_TIME = 0.2  # at each request after such a loop has ended
 TURN = 0.05  # of one running thread, before other threads get their turns beside it
 MAX_EXCEEDED = 3  # requests in a row
@@ -130,8 +128,8 @@ class Channel:
         self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
-            told: Dict[str, Any] = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
-            told["delays"] = sorted(self.grader.delays.items())
+            told = connections.topics(self.grader)
+            told.update(programs=sorted(stuck.others.of_ros), delays=sorted(self.grader.delays.items()))
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:

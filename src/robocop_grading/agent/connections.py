@@ -35,9 +35,13 @@ def _answer(api: Any, body: Any) -> Any:
 
 def install(grader: Grader) -> None:
     """Have rospy use these connections."""
-    import rospy
-    from rosgraph.network import write_ros_handshake_header
-    from rospy.impl import masterslave, tcpros_base
+    _install_requests(grader)
+    _install_transport(grader)
+
+
+def _install_requests(grader: Grader) -> None:
+    """Have requests to the master, to the grader and to the node itself answered here."""
+    from rospy.impl import masterslave
 
     cls: Any = xmlrpc.client.Transport
     request = cls.request
@@ -61,6 +65,13 @@ def install(grader: Grader) -> None:
             grader.tell_of_child()
 
     handler.__init__ = noted
+
+
+def _install_transport(grader: Grader) -> None:
+    """Have connections to the grader and to the node itself end in an End."""
+    import rospy
+    from rosgraph.network import write_ros_handshake_header
+    from rospy.impl import tcpros_base
 
     transport: Any = tcpros_base.TCPROSTransport
     connect, write_header = transport.connect, transport.write_header

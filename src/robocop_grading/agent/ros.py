@@ -51,7 +51,7 @@ class Clock:
             condition.release()
 
     def sleep(self, length_ns: int) -> None:
-        """Have the calling thread sleep until the first tick at or after its sleep's end, without waking up before."""
+        """Have the calling thread sleep until the first tick at or after the end of its sleep."""
         import rospy
 
         until_ns, waiter = self.now_ns + length_ns, scheduler.this_thread()

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from ..files import tree
+from robocop_hosting import tree
+
 from ..judge import total, without_figures
 from ..plan import PARTS, Plan
 from ..report.write import render
@@ -122,7 +123,7 @@ class Results:
 
 
 def _check(raw: Mapping[str, Any]) -> Check:
-    cause = raw["failure"]["cause"] if raw["failure"] else ""
+    cause = raw["failure"]["cause"] if raw["failure"] and not raw.get("follows") else ""
     return Check(raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"])
 
 
@@ -167,7 +168,7 @@ def page(
 
 
 def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
-    """For each check the number of each outcome and the most frequent causes of failures."""
+    """For each check the number of each outcome and the most frequent causes, without those of failures that follow."""
     counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
     causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
     for result in results:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import List
 
 from aro_robocop_goto_as.errors import RobocopError, UngradableError
+from robocop_hosting.tree import temporary_folder
+from robocop_hosting.workspace import places
 
-from ..builds.workspace import places
-from ..files.tree import temporary_folder
 from ..grader import grade
 from ..judge import Grade
 from ..plan import Plan

@@ -9,8 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Dict, List, NamedTuple
 
 from aro_robocop_goto_as.errors import SubmissionError
+from robocop_hosting import tree
 
-from . import tree
 from .archives import FOLDER, LEFT_OUT, Contents, Entry, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
@@ -61,6 +61,8 @@ def unpack(path: Path) -> Unpacked:
                 unpack_archive(file, contents)
         else:
             _add_from_disk(path, contents)
+        if path.is_dir() and not os.listdir(path):
+            raise SubmissionError("the folder is empty")
     except OSError as error:
         raise SubmissionError(f"can't be read: {error}") from error
     _unpack_nested(contents)

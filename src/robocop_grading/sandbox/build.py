@@ -4,12 +4,15 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
-from typing import IO, Mapping, Optional, Sequence
+from typing import IO, Iterable, Iterator, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError
+from aro_robocop_goto_as.errors import GradingError, HostingError
 from aro_robocop_goto_as.process import child
+from robocop_hosting import tree
+from robocop_hosting.package import MAX_NAMED
+from robocop_hosting.scripts import files_below
+from robocop_hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 
-from ..builds.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
 from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE
@@ -65,8 +68,13 @@ def build(
     """Build copies of packages (name -> folder) in a workspace at `folder`; the environment with it on top.
 
     In the sandbox links are copied as links: they must not lead to files that the author may not read. GradingError
-    says why the build failed.
+    says why the build failed, and names links that lead elsewhere. What an unfinished build has left is removed.
     """
+    unfinished = folder.with_name(f"{folder.name}.unfinished")  # beside it: what is in it, a build may change
+    if unfinished.exists():
+        tree.remove(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    unfinished.touch()
     copied, names = 0, " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
@@ -80,4 +88,22 @@ def build(
         copy_sources(sources, folder, sandbox is None, copy)
     except (OSError, shutil.Error) as error:
         raise GradingError(f"{names}: can't be copied: {error}") from error
-    return make(folder, names, underlay, runner_in(sandbox, folder, reads))
+    links = [] if sandbox is None else list(_links_elsewhere(folder / "src", sources))
+    try:
+        environment = make(folder, names, underlay, runner_in(sandbox, folder, reads))
+    except HostingError as error:
+        if not links:
+            raise
+        told = "links that lead out of the package are not followed: put the files themselves in their places"
+        raise HostingError(f"{', '.join(links[:MAX_NAMED])}: {told}\n{error}") from error
+    unfinished.unlink()
+    return environment
+
+
+def _links_elsewhere(copies: Path, names: Iterable[str]) -> Iterator[str]:
+    """The links in copies of packages that lead out of them, each with where it leads."""
+    for name in names:
+        top = copies / name
+        for path in files_below(top):
+            if path.is_symlink() and os.path.realpath(top) not in map(str, Path(os.path.realpath(path)).parents):
+                yield f"{path.relative_to(top)} -> {os.readlink(path)}"

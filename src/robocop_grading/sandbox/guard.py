@@ -17,13 +17,14 @@ import psutil
 
 from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
+from robocop_hosting import tree
 
-from ..files import tree
 from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
 COUNTERS = Path("/proc/vmstat")
+BUBBLEWRAP = "bwrap"  # the name of its processes: the one that is started, and init inside
 RUNS, BLOCKED = "R", "D"  # states of a thread that is runnable, and of one that waits for a disk; see proc(5)
 
 
@@ -41,7 +42,8 @@ class Guard:
     ) -> None:
         """Limits of all processes together: `memory` [bytes], `processor_time` [s], `processes`.
 
-        A build's `folder` has its own limit. `used`: processor time [s] of earlier processes, which counts, too.
+        With the `folder` of a build, processes that a command leaves running are ended: the caller waits for the end
+        of the command's output. `used`: processor time [s] of earlier processes, which counts, too.
         """
         self.reason = ""  # why they were killed, if they were
         # [s, wall] in which no thread was runnable; load of the machine does not make this time longer
@@ -77,6 +79,7 @@ class Guard:
                 self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
             elif self._folder is not None:
                 self.reason = _too_large(self._folder)
+                _end_left_behind(processes)
             if self.reason:
                 kill_tree(self._pid)
                 return
@@ -97,6 +100,14 @@ def _processes(pid: int) -> List["psutil.Process"]:
         return [top, *top.children(recursive=True)]
     except psutil.NoSuchProcess:
         return []
+
+
+def _end_left_behind(processes: Sequence["psutil.Process"]) -> None:
+    """End what has lost its parents: bubblewrap's init has adopted it, whose first child is the command."""
+    with contextlib.suppress(psutil.Error):  # one of them has ended
+        for init in [it for it in processes[1:2] if it.name() == processes[0].name() == BUBBLEWRAP]:
+            for orphan in sorted(init.children(), key=lambda it: (it.create_time(), it.pid))[1:]:
+                kill_tree(orphan.pid)
 
 
 def _sum(processes: Sequence["psutil.Process"], of: Callable[["psutil.Process"], float]) -> float:

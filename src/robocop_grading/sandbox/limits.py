@@ -17,7 +17,7 @@ MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which ta
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
-MAX_IDLE = 45.0  # [s, wall] in which a node may do nothing during one answer
+MAX_IDLE = 20.0  # [s, wall] in which a node may do nothing during one answer
 MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, with waits for a disk; a few seconds are usual
 
 # -- a build --

@@ -38,6 +38,7 @@ class Spent(NamedTuple):
 
     processor_time: float = 0.0  # [s]
     still: float = 0.0  # [s, wall] in which no thread was runnable, while the grader waited for an answer
+    has_stopped_answering: bool = False  # one of these nodes
 
 
 class Node:
@@ -76,7 +77,7 @@ class Node:
         self._is_over = False
         self._given_up = ""  # why the grader has ended it, if it has
         self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
-        self._still = spent.still
+        self._still, self._is_last = spent.still, spent.has_stopped_answering
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -95,7 +96,7 @@ class Node:
 
     def spent(self) -> Spent:
         """What this node and the part's earlier nodes have used."""
-        return Spent(self._guard.used, self._still)
+        return Spent(self._guard.used, self._still, self._is_last or bool(self._given_up))
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -109,7 +110,8 @@ class Node:
         """Let the node live until a simulated time [ns], and handle everything that it does until then.
 
         `clock_ns`: the time on /clock, which the node's loops see when all messages are handled. `meanwhile` is
-        called once, while the node works. GraderLostError if the node's answer is one that no agent gives.
+        called once, while the node works. GraderLostError if the node's answer is one that no agent gives, or if
+        this is the part's second node that stops answering.
         """
         new, messages = self._topics.take()
         if self._is_over:
@@ -137,6 +139,8 @@ class Node:
             silent = min(looks * POLL, self._guard.still - still)
             if self._guard.idle - idle > MAX_IDLE or self._still + silent > MAX_STILL:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
+                if self._is_last:
+                    raise GraderLostError(f"the node {did} the grader again")
                 self._given_up = f"it {did} the grader, which has ended it"
                 self.end()
                 self._finish()

@@ -63,6 +63,9 @@ def test_robot_that_acts_on_its_wrong_angle_turns_wrongly_because_of_that() -> N
     wrong = replace(fed_back(angle=lambda a: -a), commands=commanded(lambda c: replace(c, w=-c.w)).commands)
     assert _failures(wrong) == {"feedback_angle": "", "turns_to_goal": "feedback_angle"}
     assert _failures(commanded(lambda c: replace(c, w=-c.w))) == {"turns_to_goal": ""}
+    partly = commanded(lambda c: replace(c, w=-c.w, v=c.v if c.time < 6.0 else 0.0)).commands
+    own = {"feedback_angle": "", "turns_to_goal": "", "drives_straight": ""}
+    assert _failures(replace(wrong, commands=partly)) == own, "of its commands 40 % do not fit its angle"
 
 
 def test_cause_of_wrong_feedback_fits_in_all_scenarios() -> None:

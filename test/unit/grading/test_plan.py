@@ -1,6 +1,7 @@
 """The grading plan: points, limits, numbers drawn from ranges, and mistakes in the file."""
 
 import dataclasses
+import math
 import random
 import re
 from pathlib import Path
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
 from robocop_grading.packages import Packages
+from robocop_grading.plan import Block
 from robocop_grading.plan_file import MAX_SEED, drawn, load
 from robocop_grading.sites import world_of
 
@@ -94,6 +96,12 @@ def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, er
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
     with pytest.raises((PlanError, ParameterError), match=error):
         load(tmp_path / "plan.yaml")
+
+
+def test_outline_of_a_block_is_that_of_its_shape_where_it_stands() -> None:
+    box, circle = Block(box=(1.0, 2.0, math.pi / 2.0, 0.4, 0.2)).outline, Block(cylinder=(1.0, 2.0, 0.3)).outline
+    assert box == (0.9, 2.2, 0.9, 1.8, 1.1, 1.8, 1.1, 2.2)
+    assert {round(math.hypot(x - 1.0, y - 2.0), 3) for x, y in zip(circle[::2], circle[1::2])} == {0.3}
 
 
 def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:

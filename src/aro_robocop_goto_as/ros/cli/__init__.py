@@ -1,1 +1,1 @@
-"""The commands of ./robocop. `commands`, and what it imports, runs before anything is installed."""
+"""Programs that the commands of ./robocop start, beside the nodes."""

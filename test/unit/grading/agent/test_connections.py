@@ -185,6 +185,16 @@ def test_grader_is_told_of_topics_and_of_programs_of_ros(start, tmp_path):
         assert [[name, kind] for name, _, kind in node.told["subscribed"]] == [["/first", "std_msgs/String"]]
 
 
+def test_grader_is_told_how_long_messages_wait_for_a_slow_callback(tmp_path):
+    program = "rospy.Subscriber('/first', Float64, lambda m: time.sleep(0.6))\nrospy.spin()"
+    with Program(tmp_path, BEGIN + program, PARAMETERS, OFFERED) as node:
+        told = []
+        for turn in range(1, 70):
+            node.go_on(turn * STEP, 0, [("/first", number(1.0))] if turn > 1 else [])
+            told.append(node.told.get("delays", []))
+    assert told[0] == [] and told[-1] == [["/first", 0.5]], told
+
+
 def test_grader_is_told_of_a_forked_child_that_becomes_a_node(tmp_path):
     text = (
         "import multiprocessing, rospy\n"

@@ -8,11 +8,11 @@ import pytest
 from class_records import PLAN, keep, keep_report
 
 from aro_robocop_goto_as.errors import GradingSetupError
-from robocop_grading.builds.workspace import exclusive
 from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.plan_file import MAX_SEED
+from robocop_hosting.workspace import exclusive
 
 
 @pytest.mark.parametrize("used", [0, 7])

@@ -69,6 +69,14 @@ def test_hand_in_that_could_not_be_graded_has_a_row_without_points():
     assert row["of"] == "8.0" and not row["cancel"]
 
 
+def test_the_overview_counts_no_cause_of_a_failure_that_follows_from_another_one(tmp_path):
+    results = Results(tmp_path, {})
+    keep(results, "anna", 0.0, "a mistake")
+    keep(results, "ben", 0.0, "another mistake", follows="reaches_goal")
+    html = page("class", [results.read("anna"), results.read("ben")], PLAN, {}, running=False)
+    assert "1 × a mistake" in html and "another mistake" not in html
+
+
 def test_the_overview_counts_checks_and_causes_and_escapes_them():
     html = page("class <1>", RESULTS, PLAN, {"dora": "waiting"}, running=True, pace="2 a minute")
     assert (

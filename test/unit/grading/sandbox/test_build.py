@@ -3,8 +3,8 @@
 import pytest
 
 from aro_robocop_goto_as.errors import GradingError
-from robocop_grading.builds.workspace import output_of
 from robocop_grading.sandbox import build
+from robocop_hosting.workspace import output_of
 
 
 def test_command_that_waits_for_something_that_does_not_come_is_ended(sandbox, tmp_path, monkeypatch):

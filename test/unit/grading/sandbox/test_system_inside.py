@@ -1,8 +1,5 @@
 """What of the system a program in the sandbox finds."""
 
-import json
-import os
-import re
 import subprocess
 from pathlib import Path
 
@@ -10,31 +7,7 @@ import pytest
 
 from robocop_grading.sandbox.bubblewrap import NAME
 
-SHARE = Path(os.environ["ROBOCOP_SHARE"])
 TIMEOUT = 600.0  # [s, wall]
-MODULE = re.compile(r"/usr/lib/python3/dist-packages/(\w+)(?:/__init__\.py|\.py|\.[\w-]+\.so)$", re.MULTILINE)
-# Imports each module in a process of its own, and prints as JSON which could not be imported, and why.
-IMPORTS = """
-import importlib, json, os, sys
-failures = {}
-for name in sys.argv[1:]:
-    reader, writer = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.dup2(2, 1)
-        try:
-            importlib.import_module(name)
-        except BaseException as error:
-            os.write(writer, repr(error).encode()[:4000])
-        os._exit(0)
-    os.close(writer)
-    status = os.waitpid(child, 0)[1]
-    failure = os.read(reader, 4000).decode() or ("" if status == 0 else f"status {status}")
-    os.close(reader)
-    if failure:
-        failures[name] = failure
-print(json.dumps(failures))
-"""
 
 
 @pytest.fixture
@@ -48,22 +21,6 @@ def output(command):
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, timeout=TIMEOUT)
     assert done.returncode == 0
     return done.stdout
-
-
-def debian_modules():
-    """The Python modules of the lists of Debian's packages, as far as they are installed."""
-    lists = [path.read_text() for path in (SHARE / "install" / "deb-packages").glob("*.txt")]
-    packages = sorted(set(re.findall(r"^python3-[\w.+-]+", "\n".join(lists), re.MULTILINE)))
-    files = subprocess.run(["dpkg", "-L", *packages], capture_output=True, text=True).stdout
-    return sorted(set(MODULE.findall(files)) - {"__pycache__"})
-
-
-@pytest.mark.timeout(2 * TIMEOUT)
-def test_debian_modules_can_be_imported_inside_as_outside(inside):
-    modules = debian_modules()
-    assert {"matplotlib", "rospy", "numpy", "PIL"} <= set(modules)
-    imports = ["/usr/bin/python3", "-c", IMPORTS, *modules]
-    assert json.loads(output(inside(imports))) == json.loads(output(["env", "-i", "HOME=/tmp", *imports]))
 
 
 def test_current_user_has_a_name_a_home_and_fonts(inside):

@@ -94,6 +94,14 @@ def test_a_node_that_does_nothing_is_ended_with_the_reason(do, did, started, mon
     assert started(do).turn() == f"it {did} the grader, which has ended it"
 
 
+def test_the_second_node_that_stops_answering_ends_the_run(started, monkeypatch):
+    monkeypatch.setattr(module, "MAX_IDLE", 0.5)
+    first = started("time.sleep(600)")
+    first.turn()
+    with pytest.raises(GraderLostError, match="the node stopped answering the grader again"):
+        started("time.sleep(600)", spent=first.spent()).turn()
+
+
 def test_an_answer_that_has_come_counts_although_the_time_for_it_is_over(started, monkeypatch):
     monkeypatch.setattr(module, "POLL", 60.0)
     monkeypatch.setattr(module, "MAX_IDLE", -1.0)
@@ -107,7 +115,6 @@ def test_nodes_that_are_silent_for_a_while_each_time_are_ended_after_all_of_it(s
         if node.turn() is not None:
             break
     assert node.death(0.0).reason == "it stopped answering the grader, which has ended it"
-    assert started("time.sleep(600)", spent=node.spent()).turn() == node.death(0.0).reason
 
 
 def test_processor_time_of_earlier_nodes_counts(started):

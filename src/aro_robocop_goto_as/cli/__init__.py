@@ -1,0 +1,1 @@
+"""./robocop: its commands, set-up and look at the system, with nothing but the standard library."""

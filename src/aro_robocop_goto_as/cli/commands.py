@@ -1,0 +1,146 @@
+"""./robocop COMMAND: checks the arguments, installs what is missing, and becomes the program that does the work.
+
+The shell script `robocop` starts it when nothing may be installed yet, so it uses Python's standard library only.
+"""
+
+import glob
+import os
+import subprocess
+import sys
+from typing import Callable, Dict, List, NoReturn, Sequence
+
+from ..errors import MasterError
+from ..suggestions import did_you_mean
+from . import completion, container_image, developer_commands, doctor, program, system_commands
+from .program import ROOT, refuse, say
+
+UNKNOWN_COMMAND = 2  # exit status
+SHELL_SETTINGS = """\
+[ ! -r ~/.bashrc ] || . ~/.bashrc
+PATH={venv}/bin:/usr/bin:/bin:$PATH  # ~/.bashrc may have put another Python first
+. {workspace}/setup.bash
+[ -n "${{BASH_COMPLETION_VERSINFO:-}}" ] || [ ! -r /usr/share/bash-completion/bash_completion ] \\
+  || . /usr/share/bash-completion/bash_completion
+. {completion}
+PS1="(robocop) $PS1"
+"""
+
+
+def grade(arguments: List[str]) -> None:
+    """Grade a submission."""
+    expect_something("grade", arguments)
+    program.need("hosting", "grade")
+    program.start_script("robocop_grade.py", *arguments)
+
+
+def grade_class(arguments: List[str]) -> None:
+    """Grade a folder of hand-ins."""
+    expect_something("grade-class", arguments)
+    program.need("hosting", "grade", "class")
+    program.start_script("robocop_grade_class.py", *arguments)
+
+
+def expect_something(command: str, arguments: List[str]) -> None:
+    """End with an error, before anything is installed, if no argument is a file, or a folder with something in it."""
+    found = any(os.path.isfile(word) or glob.glob(f"{glob.escape(word)}/*") for word in arguments)
+    if not (found or program.is_dry_run() or {"-h", "--help"} & set(arguments)):
+        given = (f"{word} (the folder is empty)" if os.path.isdir(word) else word for word in arguments)
+        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(given) or 'nothing'}")
+
+
+def shell(arguments: List[str]) -> None:
+    """Run a command in the workspace, or open a shell in it."""
+    program.need()
+    if arguments:
+        program.start(*arguments)
+    settings, words = program.state() / "bashrc", program.state() / "completion.bash"
+    if not program.is_dry_run():
+        words.write_text(completion.completion(), encoding="utf-8")
+        workspace, venv = os.environ["ROBOCOP_WS"], program.state() / "venv"
+        settings.write_text(SHELL_SETTINGS.format(venv=venv, workspace=workspace, completion=words), encoding="utf-8")
+    program.start("bash", "--rcfile", str(settings))
+
+
+def setup(parts: List[str]) -> None:
+    """Only install and build."""
+    known = sorted(path.stem for path in (ROOT / "install" / "deb-packages").glob("*.txt"))
+    for part in parts:
+        if part not in known:
+            refuse(f"setup: there is no part '{part}'; there are: {' '.join(known)}{did_you_mean(part, known)}")
+    program.need(*parts)
+    if program.is_dry_run():
+        return
+    if "grade" in parts:  # what the first grading would build: a container would repeat it at each start
+        prebuild = program.module("robocop_grading.submission")
+        subprocess.run(prebuild, env=program.workspace_environment(), check=True)
+    say(f"ready in {program.state()}; ./robocop run starts the lab")
+
+
+def show_help(commands: List[str]) -> None:
+    """What the help text says about commands."""
+    for command in commands:
+        print(completion.described().get(command) or refuse_unknown(command), end="")
+
+
+def refuse_unknown(command: str) -> NoReturn:
+    """End with an error for a command that does not exist."""
+    hint = did_you_mean(command, completion.described())
+    say(f"unknown command '{command}' (./robocop help lists them){hint}")
+    sys.exit(UNKNOWN_COMMAND)
+
+
+def clean(arguments: List[str]) -> None:
+    """End with an error about arguments; without arguments, the shell script itself removes what was built."""
+    refuse(f"clean: expected no arguments, got {' '.join(arguments)}")
+
+
+def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
+    """A command that passes its arguments on to a script of the package; the script needs these parts."""
+
+    def start_script(arguments: List[str]) -> None:
+        program.need(*parts)
+        program.start_script(name, *arguments)
+
+    return start_script
+
+
+# What the words of help.txt do; without arguments, the shell script does the last two itself.
+COMMANDS: Dict[str, Callable[[List[str]], None]] = {
+    "run": system_commands.run,
+    "sim": system_commands.sim,
+    "goto": to_script("robocop_goto.py"),
+    "record": system_commands.record,
+    "replay": system_commands.replay,
+    "teleop": to_script("robocop_teleop.py"),
+    "axclient": system_commands.axclient,
+    "web": to_script("robocop_web.py", "web"),
+    "new": to_script("robocop_new.py"),
+    "grade": grade,
+    "grade-class": grade_class,
+    "test": developer_commands.test,
+    "bench": developer_commands.bench,
+    "shell": shell,
+    "setup": setup,
+    "image": container_image.build,
+    "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
+    "version": lambda _: print(program.version()),
+    "--version": lambda _: print(program.version()),
+    "completion": lambda _: print(completion.completion(), end=""),
+    "clean": clean,
+    "help": show_help,
+}
+OWN_HELP = ("goto", "teleop", "new", "grade", "grade-class", "bench", "test", "shell")  # they read --help themselves
+
+
+def main(words: Sequence[str]) -> None:
+    """Do what a command and its arguments say."""
+    command, *arguments = words
+    if command not in COMMANDS:
+        refuse_unknown(command)
+    if command not in OWN_HELP and {"-h", "--help"} & set(arguments):
+        print(completion.described().get(command, ""), end="")
+        return
+    try:
+        COMMANDS[command](arguments)
+    except MasterError as error:
+        refuse(str(error))

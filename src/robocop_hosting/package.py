@@ -1,0 +1,220 @@
+"""A path on disk -> the catkin package there, with its launch file and nodes."""
+
+import contextlib
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.names import PACKAGE
+
+from . import tree
+from .launch_file import LaunchNode, read
+from .scripts import ASIDE, PARTS, Choice, best_place, choose, files_below
+from .tree import read_bytes, read_xml
+from .workspace import Environment, Run
+
+LAUNCH_FILE = "robocop_goto_as.launch"
+NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
+MAX_NAMED = 10  # scripts in a message
+SIMULATOR = "aro_sim"  # the lab's package that starts its simulator ...
+OWN_SIMULATOR = PACKAGE, "robocop_sim.py"  # ... and the node of this package that is started then
+SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
+GAZEBO = re.compile(r"gazebo(?!_msgs)")
+
+
+@dataclass(frozen=True)
+class Package:
+    """A catkin package to be hosted."""
+
+    name: str
+    path: Path
+    launch_file: Optional[Path]  # None: its nodes are started directly
+    launch_files: Sequence[Path] = ()  # all of them, this one first
+    needed: Mapping[str, Path] = field(default_factory=dict)  # packages beside it on which it depends, by name
+
+    @property
+    def sources(self) -> Dict[str, Path]:
+        """The packages to be built, by name."""
+        return {self.name: self.path, **self.needed}
+
+
+def arguments_of(launch_file: Optional[Path]) -> List[str]:
+    """Names of a launch file's arguments, except arguments with a fixed value; none if there is no file."""
+    if launch_file is None:
+        return []
+    return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
+
+
+def find_package(path: str, launch: str = "") -> Package:
+    """The package at `path`, or the only one below it; if there are several, the one with the lab's name.
+
+    `launch` is the name of the launch file to start. HostingError says what was found instead.
+    """
+    top = Path(path).expanduser()
+    if not top.is_dir():
+        raise HostingError(f"{path}: expected the folder of a catkin package, but there is no folder")
+    manifests = list(_manifests(top.resolve()))
+    if not manifests:
+        raise HostingError(f"{path}: no package.xml in it or below it; expected the folder of a catkin package")
+    named = [(_name(manifest), manifest.parent) for manifest in manifests]
+    chosen = named if len(named) == 1 else [entry for entry in named if entry[0] == PACKAGE]
+    if len(chosen) > 1:
+        chosen = [entry for entry in chosen if not ASIDE.search(str(entry[1].relative_to(top.resolve())))] or chosen
+    if len(chosen) != 1:
+        raise HostingError(
+            f"{path}: {len(named)} packages found, give the path of one: "
+            + ", ".join(str(folder) for _, folder in named)
+        )
+    name, folder = chosen[0]
+    if not NAME.fullmatch(name):
+        raise HostingError(f"{folder}/package.xml: expected a <name> of letters, digits, _ and -, got {name!r}")
+    launch_file, launch_files = _launch_file(folder, launch)
+    if launch_file is None and not choose(folder):
+        scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
+        others = ", ".join(path.name for path in launch_files[:MAX_NAMED])
+        raise HostingError(
+            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
+            f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
+            + (f", and launch files, of which sim --with starts one by --launch NAME: {others}" if others else "")
+        )
+    return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
+
+
+def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mapping[str, Path]:
+    """The packages beside the one in `folder` on which it depends, directly or not, by name."""
+    others: Dict[str, Path] = {}
+    for other, path in named:
+        if other != name and NAME.fullmatch(other):
+            others.setdefault(other, path)
+    needed: Dict[str, Path] = {}
+    waiting = [folder]
+    while waiting:
+        root = read_xml(waiting.pop() / "package.xml")
+        depends = {(element.text or "").strip() for element in root if element.tag.endswith("depend")}
+        found = {other: path for other, path in others.items() if other in depends and other not in needed}
+        needed.update(found)
+        waiting += found.values()
+    return needed
+
+
+def _manifests(top: Path) -> Iterator[Path]:
+    """Every package.xml in a folder or below it, except inside another package."""
+    for folder, folders, files in tree.walk(top, tree.GENERATED):
+        if "package.xml" in files:
+            yield folder / "package.xml"
+            folders.clear()
+        folders[:] = [name for name in folders if not name.startswith(".")]
+
+
+def _name(manifest: Path) -> str:
+    name = read_xml(manifest).findtext("name")
+    if not name or not name.strip():
+        raise HostingError(f"{manifest}: expected a <name>")
+    return name.strip()
+
+
+def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]:
+    """The launch file to start, and all launch files; HostingError if several different files have its name."""
+    files = [path for path in files_below(folder) if path.suffix == ".launch"]
+    files.sort(key=lambda path: (best_place(path, folder, "launch"), path))
+    matching = [path for path in files if path.name == (wanted or LAUNCH_FILE)]
+    if wanted and not matching:
+        known = ", ".join(sorted(path.name for path in files)) or "none"
+        raise HostingError(f"{folder}: no launch file {wanted!r}; available: {known}")
+    for path in matching[1:]:
+        equal = best_place(path, folder, "launch") == best_place(matching[0], folder, "launch")
+        if equal and read_bytes(path) != read_bytes(matching[0]):
+            names = " and ".join(str(it.relative_to(folder)) for it in (matching[0], path))
+            raise HostingError(f"{names}: nothing says which of them is to be started: remove one")
+    if matching or len(files) == 1:
+        chosen = (matching or files)[0]
+        return chosen, [chosen, *(path for path in files if path != chosen)]
+    return None, files
+
+
+@dataclass(frozen=True)
+class Started:
+    """What roslaunch would start of a package, by part; the parameters it would set; what the grader does not do."""
+
+    choices: Mapping[str, Choice]
+    parameters: Mapping[str, Any]
+    notes: Sequence[str]
+    others: Sequence[LaunchNode] = ()  # of other packages, which the package's own launch file starts
+
+    @property
+    def starts_simulator(self) -> bool:
+        """Return whether the package's own launch file starts the lab's simulator."""
+        return any(node.package == SIMULATOR or (node.package, node.type) == OWN_SIMULATOR for node in self.others)
+
+    @property
+    def starts_gazebo(self) -> bool:
+        """Return whether the package's own launch file has a node of Gazebo."""
+        return any(GAZEBO.search(node.package) for node in self.others)
+
+
+def names_gazebo(package: Package, problem: str) -> bool:
+    """Return whether a launch file that can't be read starts Gazebo: the package's own, or one that `problem` names.
+
+    The package that `problem` misses may be another one that comes with Gazebo, such as xacro.
+    """
+    for path in package.launch_files:
+        if path == package.launch_file or path.name in problem:
+            with contextlib.suppress(HostingError):  # it is not XML
+                tags = [*read_xml(path).iter("include"), *read_xml(path).iter("node")]
+                if any(GAZEBO.search(f"{tag.get('file', '')} {tag.get('pkg', '')}") for tag in tags):
+                    return True
+    return False
+
+
+def started(
+    package: Package, folder: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()
+) -> Started:
+    """Read the launch files of a package that is built in the workspace at `folder`: the package's own one, then others
+    until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
+    """
+    copy = folder / "src" / package.name
+    relays = [path for path in files_below(folder / "devel" / "lib" / package.name) if path.is_file()]
+    nodes: List[LaunchNode] = []
+    parameters: Dict[str, Any] = {}
+    notes: List[str] = []
+    others: Sequence[LaunchNode] = ()
+    for path in package.launch_files:
+        is_main = path == package.launch_file
+        try:
+            file = read(copy / path.relative_to(package.path), copy, environment, run, arguments if is_main else ())
+        except HostingError:
+            if is_main:
+                raise
+            continue  # it may need packages that only another machine has
+        if is_main:
+            others = [node for node in file.nodes if node.package != package.name]
+        choices = choose(copy, [*nodes, *file.nodes], relays, expects_one=False)
+        if is_main or any(choice.node in file.nodes for choice in choices.values()):
+            nodes += file.nodes
+            parameters = {**file.parameters, **parameters}
+            names = {it.name for it in (*files_below(copy), *relays)}
+            notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
+        if all(part in choices and choices[part].node is not None for part in PARTS.values()):
+            break
+    return Started(choose(copy, nodes, relays), parameters, notes, others)
+
+
+def _not_done(
+    package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice], names: Collection[str]
+) -> Iterator[str]:
+    """What launch files of the package, which has files of these `names`, ask for beside its server and its bridge."""
+    graded = [choice.node for choice in choices.values()]
+    for node in (node for node in nodes if node.is_own):
+        if node.package == package.name and node.type not in names:
+            yield f"{node.place}: roslaunch finds no {node.type} in this package"
+        elif node not in graded and node.package not in SHOWN_BY:
+            yield (
+                f"{node.place}: node {node.name} ({node.package} {node.type}) is not started: server and bridge are "
+                "graded one at a time, each alone"
+            )
+        elif node in graded and node.package != package.name:
+            yield f"{node.place}: pkg={node.package!r} is not this package, whose name is {package.name!r}"
+        for attribute in node.not_done if node in graded else ():
+            yield f"{node.place}: {attribute} has no effect in a grading"

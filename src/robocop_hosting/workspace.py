@@ -1,0 +1,180 @@
+"""Catkin workspaces that are built from copies of packages, with the environment to run them in."""
+
+import contextlib
+import fcntl
+import os
+import re
+import shutil
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
+
+from aro_robocop_goto_as.errors import HostingError, InstallationError
+from aro_robocop_goto_as.process import child
+
+from . import tree
+
+Environment = Dict[str, str]
+Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status
+
+# Variables that catkin's setup files extend, one workspace on top of another.
+CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
+COMPAT = ("aro_sim", "gazebo_msgs", "ros_numpy")
+LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
+NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
+LOG_LINES = 25  # of a failed build's log that are shown
+MAX_SHOWN = 4_000  # characters of them
+MAX_READ = 200_000  # bytes of a log's end
+# By CMake, Python, GCC and make.
+FIRST_ERROR = re.compile(r"^(CMake Error|Traceback|.*\berror: |make.*\*\*\*)", re.MULTILINE)
+
+
+def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
+    """Run a command without a sandbox."""
+    process = child.start(command, environment=environment, stdout=output, stderr=errors)
+    try:
+        return process.wait()
+    finally:
+        child.end(process, None, 0.0)
+
+
+def output_of(run: Run, command: Sequence[str], environment: Environment, limit: int = -1) -> Tuple[int, bytes, str]:
+    """Exit status, output and errors of a command, both cut at `limit` bytes."""
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        status = run(command, environment, output, errors)
+        output.seek(0)
+        errors.seek(0)
+        return status, output.read(limit), errors.read(limit).decode(errors="replace")
+
+
+def workspace_name(path: Path) -> str:
+    """The name of the folder in which a path's package is built: make, CMake and genmsg don't accept every name."""
+    return f"package-{zlib.crc32(os.fsencode(path)):08x}"
+
+
+def base_environment() -> Environment:
+    """This process's environment without any workspace, and with the ROS of ROBOCOP_BASE_SETUP, if that is set."""
+    environment = {name: value for name, value in os.environ.items() if name not in CHAINED}
+    environment["PYTHONDONTWRITEBYTECODE"] = "1"
+    setup = environment.get("ROBOCOP_BASE_SETUP")
+    return sourced(Path(setup), environment) if setup else environment
+
+
+def sourced(setup: Path, environment: Environment, run: Run = run_plain) -> Environment:
+    """The environment after bash has sourced a setup file."""
+    status, output, errors = output_of(run, ["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
+    if status != 0:
+        raise HostingError(f"{setup}: {errors.strip()[-MAX_SHOWN:]}")
+    pairs = [entry.partition("=") for entry in os.fsdecode(output).split("\0") if entry]
+    return {name: value for name, _, value in pairs}
+
+
+def copy_sources(
+    sources: Mapping[str, Path],
+    folder: Path,
+    follow_links: bool = True,
+    copy: Callable[[str, str], object] = shutil.copy2,
+) -> None:
+    """Replace the sources of the workspace at `folder` by copies of packages (name -> folder)."""
+    source = folder / "src"
+    tree.remove(source)
+    source.mkdir(parents=True)
+    for name, path in sources.items():
+        for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
+            pass
+        shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
+        for inner, _, _ in tree.walk(source / name):
+            os.chmod(inner, os.stat(inner).st_mode | 0o700)  # a copy of a read-only folder can't be removed
+
+
+def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:
+    """Build copies of packages (name -> folder) in a workspace at `folder`; return the environment with it on top.
+
+    An earlier build is reused. HostingError shows the end of the log of a build that failed.
+    """
+    copy_sources(sources, folder)
+    return make(folder, " and ".join(sources), underlay)
+
+
+def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) -> Environment:
+    """As build(), but the sources are already in place."""
+    log = folder / "build.log"
+    tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
+    with open(log, "w+b") as output:
+        status = run(
+            ["catkin_make", "-C", str(folder), f"-DPYTHON_EXECUTABLE={sys.executable}", "-DCATKIN_ENABLE_TESTING=OFF"],
+            {**underlay, "ROS_LANG_DISABLE": "gencpp:geneus:genlisp:gennodejs"},
+            output,
+            output,
+        )
+        output.seek(max(0, output.seek(0, os.SEEK_END) - MAX_READ))
+        text = output.read().decode(errors="replace") if status != 0 else ""
+    if status != 0:
+        raise HostingError(f"{names} can't be built:\n{error_of(text, folder)}\nfull log: {log}")
+    return sourced(folder / "devel" / "setup.bash", underlay, run)
+
+
+def error_of(log: str, folder: Path) -> str:
+    """A failed build's log from its first error on, or its end if it names no error; paths are relative to `folder`."""
+    log = log.replace(f"{folder}/", "")
+    error = FIRST_ERROR.search(log)
+    lines = log[error.start() :].splitlines()[:LOG_LINES] if error else log.splitlines()[-LOG_LINES:]
+    shown = "\n".join(lines)
+    return shown[:MAX_SHOWN] if error else shown[-MAX_SHOWN:]
+
+
+def build_once(
+    folder: Path, key: str, underlay: Environment, build_workspace: Callable[[], Environment]
+) -> Environment:
+    """The environment of the workspace at `folder`, which is built unless its last build had the same key."""
+    stamp = folder / "built-from"
+    with exclusive(folder):
+        if stamp.is_file() and stamp.read_text() == key:
+            return sourced(folder / "devel" / "setup.bash", underlay)
+        stamp.unlink(missing_ok=True)
+        environment = build_workspace()
+        stamp.write_text(key)
+    return environment
+
+
+def checksums(*folders: Path) -> str:
+    """A text that changes with any file in these folders."""
+    return " ".join(
+        f"{path.relative_to(folder.parent)}:{zlib.crc32(path.read_bytes()):x}"
+        for folder in folders
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    )
+
+
+@contextlib.contextmanager
+def exclusive(folder: Path) -> Iterator[None]:
+    """Wait until no other process uses this folder, and lock it; the lock is a file beside the folder."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(folder.parent / f"{folder.name}.lock", "wb") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print(f"waiting for another process that uses {folder}", file=sys.stderr, flush=True)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def compat_environment(share: Path, state: Path) -> Environment:
+    """The environment with the lab's aro_sim and Gazebo's message types, on which hosted packages are built.
+
+    These packages are built from `share`/compat, a folder of this package, in `state`/compat.
+    """
+    folder, sources = state / "compat", {name: share / "compat" / name for name in COMPAT}
+    underlay = base_environment()
+    return build_once(folder, checksums(share / "compat"), underlay, lambda: build(sources, folder, underlay))
+
+
+def places() -> Tuple[Path, Path]:
+    """The folder of everything that is built, and this package's folder; InstallationError without ./robocop."""
+    try:
+        return Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
+    except KeyError as error:
+        raise InstallationError(f"{error.args[0]} is not set; use ./robocop COMMAND instead of rosrun") from error

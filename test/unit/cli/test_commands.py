@@ -1,0 +1,213 @@
+"""What the words of ./robocop start, shown by dry runs."""
+
+import re
+import shlex
+import socket
+
+import pytest
+import rosbag
+from command import ROOT, dry_run, robocop, x_server
+from rosgraph_msgs.msg import Clock
+
+from aro_robocop_goto_as.cli import program
+from aro_robocop_goto_as.cli.commands import COMMANDS
+from aro_robocop_goto_as.cli.system_commands import web_arguments
+from aro_robocop_goto_as.process.ports import free_port
+
+LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
+
+
+def test_help_lists_every_command():
+    described = set(re.findall(r"(?m)^  ([a-z][a-z-]*)", robocop("help").stdout))
+    assert described == {*COMMANDS} - {"--version"}
+
+
+def test_clean_with_an_argument_removes_nothing():
+    done = robocop("clean", "web", ROBOCOP_DRY_RUN="1")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == "robocop: clean: expected no arguments, got web\n"
+
+
+@pytest.mark.parametrize("words", [("run", "--help"), ("sim", "world:=stage_1", "-h")])
+def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
+    done = robocop(*words)
+    assert done.returncode == 0 and done.stdout.startswith(f"  {words[0]} "), done.stderr
+    assert done.stdout.strip("\n") in robocop("help").stdout
+    assert len(re.findall(r"(?m)^  [a-z]", done.stdout)) == (2 if words[0] == "sim" else 1)
+
+
+def test_unknown_command_is_refused_with_the_one_that_may_be_meant():
+    done = robocop("tset")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "robocop: unknown command 'tset' (./robocop help lists them); did you mean test?\n"
+
+
+def test_ros_listens_on_loopback_by_default():
+    assert dry_run("run")[1] == ["ROS_HOSTNAME=localhost"]
+
+
+def test_ros_listens_on_loopback_with_a_master_on_another_port_of_this_machine():
+    uri = "http://localhost:11399"
+    assert dry_run("run", ROS_MASTER_URI=uri)[1] == ["ROS_HOSTNAME=localhost", f"ROS_MASTER_URI={uri}"]
+
+
+@pytest.mark.parametrize(
+    "name, value", [("ROS_MASTER_URI", "http://robot:11311"), ("ROS_IP", "192.0.2.1"), ("ROS_HOSTNAME", "robot")]
+)
+def test_ros_network_setting_is_respected(name, value):
+    assert dry_run("run", **{name: value})[1] == [f"{name}={value}"]
+
+
+def test_without_a_display_the_web_page_is_started_instead_of_rviz_with_a_message():
+    command, _, messages = dry_run("run", "world:=empty")
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:=true world:=empty")
+    assert "no usable display; the web page is started instead of RViz" in messages
+
+
+@pytest.mark.parametrize("chosen", ["true", "false"])
+def test_without_a_display_the_web_page_is_left_as_chosen(chosen):
+    command, _, messages = dry_run("run", f"web:={chosen}")
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch rviz:=false web:={chosen}")
+    assert "no usable display; RViz is not started\n" in messages
+
+
+def test_without_a_display_pybullets_window_is_refused():
+    done = robocop("sim", "gui:=true", ROBOCOP_DRY_RUN="1")
+    assert done.returncode == 1 and "gui:=true: it is a window, and there is no usable display" in done.stderr
+
+
+def test_sim_takes_that_rviz_is_not_wanted():
+    assert dry_run("sim", "world:=empty", "rviz:=false")[0].endswith(f"{LAUNCH} robocop_sim.launch world:=empty")
+    assert "there is no argument rviz" in robocop("sim", "rviz:=true").stderr
+
+
+def test_set_up_of_an_unknown_part_is_refused_with_the_known_ones():
+    done = robocop("setup", "wbe")
+    assert done.returncode == 1
+    assert "no part 'wbe'; there are: axclient class grade " in done.stderr and "did you mean web?" in done.stderr
+
+
+def test_rviz_is_opened_on_a_working_display():
+    with x_server() as display:
+        assert "rviz:=true" in dry_run("run", DISPLAY=display)[0]
+
+
+@pytest.mark.parametrize("argument", ["rviz:=true", "rviz:=false"])
+def test_explicit_rviz_argument_overrides_the_display_check(argument):
+    command = dry_run("run", argument)[0]
+    assert command.endswith(f"{LAUNCH} robocop_goto_as.launch {argument}")
+
+
+@pytest.mark.parametrize("command", ["run", "sim"])
+def test_verbose_shows_the_messages_of_all_nodes(command):
+    started = dry_run(command, "--verbose", "world:=empty", ROS_MASTER_URI=f"http://localhost:{free_port()}")[0]
+    assert LAUNCH.replace("--quiet ", "") in started and started.endswith(" world:=empty")
+
+
+@pytest.mark.parametrize("command", ["run", "sim"])
+def test_unknown_launch_argument_is_refused_with_the_known_ones(command):
+    done = robocop(command, "wrld:=empty", ROBOCOP_DRY_RUN="1")
+    assert done.returncode == 1
+    assert "there is no argument wrld; there are: " in done.stderr and " world " in done.stderr
+    assert done.stderr.endswith("; did you mean world?\n")
+
+
+@pytest.mark.parametrize("command", ["grade", "grade-class"])
+def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_path):
+    (tmp_path / "hand_ins").mkdir()
+    for words in ([], [str(tmp_path / "none.py")], [str(tmp_path / "hand_ins"), "--unsafe"]):
+        done = robocop(command, *words)
+        assert (done.returncode, done.stdout) == (1, "")
+        assert done.stderr.startswith(f"robocop: {command}: expected a file or folder with something to grade, got: ")
+        assert done.stderr.count("\n") == 1, "no other messages"
+        assert ("hand_ins (the folder is empty)" in done.stderr) is ("--unsafe" in words)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [("run", "rviz:=false"), ("goto", "1", "0")])
+def test_port_that_never_answers_is_reported_within_seconds(command):
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
+        done = robocop(*command, ROS_MASTER_URI=uri, timeout=60.0)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert f"{uri} did not answer within 5 s: stop the process that uses this port" in done.stderr
+
+
+def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(dry_run("record", "lab")[0])
+    assert words[:3] == ["rosrun", "rosbag", "record"] and "--output-name=lab.bag" in words
+    assert all(re.fullmatch(words[-1], topic) for topic in ("/scan", "/robot_1/odom", "/robocop_goto_as/result"))
+    (tmp_path / "lab.bag").write_text("")
+    for arguments, reason in (
+        (["lab"], "lab.bag exists; give another name"),
+        (["a", "b"], "expected one file, got a b"),
+    ):
+        done = robocop("record", *arguments)
+        assert (done.returncode, done.stderr) == (1, f"robocop: record: {reason}\n")
+
+
+def test_record_without_a_running_system_says_what_to_start(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = robocop("record", ROS_MASTER_URI=f"http://localhost:{free_port()}")
+    assert done.returncode == 1
+    assert done.stderr.endswith("no ROS system is running; start ./robocop run in another terminal first\n")
+
+
+def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
+    command, _, messages = dry_run("replay", f"{tmp_path}/run.bag", "rate:=2")
+    assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false rate:=2")
+    command, _, _ = dry_run("replay", f"{tmp_path}/run.bag", "--start", "12.5")
+    assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false start:=12.5")
+    assert dry_run("replay", f"{tmp_path}/run.bag", "rate:=2", "--start", "12.5")[0].endswith(" rate:=2 start:=12.5")
+    assert "would set up: run web\n" in messages
+    assert "--start: expected seconds" in robocop("replay", "a", "--start", "soon", ROBOCOP_DRY_RUN="1").stderr
+    assert "rate: expected a number from 0.01 on" in robocop("replay", "a", "rate:=x", ROBOCOP_DRY_RUN="1").stderr
+    assert f"replay: {__file__} is no bag of ROS 1; expected" in robocop("replay", __file__).stderr
+    with rosbag.Bag(str(tmp_path / "whole.bag"), "w") as whole:
+        whole.write("/clock", Clock())
+    (tmp_path / "cut.bag").write_bytes((tmp_path / "whole.bag").read_bytes()[:4200])
+    assert "cut.bag is not complete" in robocop("replay", f"{tmp_path}/cut.bag").stderr
+    done = robocop("replay", "nowhere.bag")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "replay: expected a bag of ./robocop record or of a report, got 'nowhere.bag'" in done.stderr
+
+
+def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
+    assert dry_run("sim", "--with", str(tmp_path), "gui:=true")[0].endswith(
+        f"/robocop_sim_with.py {tmp_path} gui:=true"
+    )
+    assert dry_run("sim", "--with", str(tmp_path), "world:=worlds/empty.sdf")[0].endswith(
+        f"{tmp_path} world:={ROOT}/worlds/empty.sdf"
+    )
+    assert dry_run("sim", "--verbose", "--with", str(tmp_path))[0].endswith(
+        f"/robocop_sim_with.py {tmp_path} --verbose"
+    )
+    assert "--with: expected the folder of a catkin package" in robocop("sim", "--with").stderr
+
+
+@pytest.mark.parametrize("words, parts, workers", [([], "class web test", " -n "), (["--all"], "class web test", "")])
+def test_tests_run_one_more_at_a_time_than_processors_unless_all_do(words, parts, workers):
+    command, _, messages = dry_run("test", *words, "test/unit")
+    assert f"would set up: run rviz hosting grade {parts}\n" in messages
+    assert workers in command and command.endswith(" ".join([*words, "test/unit"]))
+
+
+def test_failed_set_up_ends_the_command(monkeypatch):
+    monkeypatch.setattr(program, "SCRIPT", "false")
+    with pytest.raises(SystemExit) as ended:
+        program.need("web")
+    assert ended.value.code == 1
+    assert not program.set_up()
+
+
+@pytest.mark.parametrize(
+    "words, web, others",
+    [
+        (["world:=maze_1"], [], ["world:=maze_1"]),
+        (["web:=true", "seed:=1", "web_port:=81"], ["robocop_web.py", "web_port:=81"], ["seed:=1"]),
+        (["web:=false", "web_port:=81"], [], []),
+    ],
+)
+def test_a_package_runs_with_the_web_page_if_that_is_asked_for(words, web, others):
+    assert web_arguments(words) == (web, others)

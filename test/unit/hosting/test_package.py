@@ -1,0 +1,169 @@
+"""Hosted packages: found at a path."""
+
+import os
+from pathlib import Path
+from typing import Dict
+
+import pytest
+from hosted_packages import LAB, MANIFEST, tree
+
+from aro_robocop_goto_as.errors import HostingError
+from robocop_hosting.package import find_package, names_gazebo, started
+from robocop_hosting.workspace import run_plain
+
+
+def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> None:
+    tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name) for name in (LAB, "tools")})
+    tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": "", "build/x/package.xml": "<package/>"})
+    for path in ("", "src", f"src/{LAB}"):
+        package = find_package(str(tmp_path / path))
+        assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
+
+
+def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> None:
+    depends = {LAB: "<exec_depend>maths</exec_depend>", "maths": "<depend>units</depend>", "units": "", "other": ""}
+    for name, lines in depends.items():
+        tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
+    tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": ""})
+    package = find_package(str(tmp_path))
+    assert package.sources == {name: tmp_path / "src" / name for name in (LAB, "maths", "units")}
+
+
+@pytest.mark.parametrize(
+    "files, expected",
+    [
+        ({}, "no package.xml in it or below it"),
+        ({"package.xml": "<package>"}, "package.xml: not XML that can be read: no element found"),
+        ({"package.xml": "<package/>"}, "package.xml: expected a <name>"),
+        (
+            {"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")},
+            "2 packages found, give the",
+        ),
+        (
+            {"package.xml": MANIFEST.format("p"), "b.launch": "<launch/>", "launch/a.launch": "<launch/>"},
+            "no Python script, and launch files, of which sim --with starts one by --launch NAME: a.launch, b.launch",
+        ),
+        ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
+        ({"package.xml": MANIFEST.format(LAB), "src/move.py": "print(1)"}, "action server; found: src/move.py"),
+        ({"package.xml": MANIFEST.format("../../up")}, "expected a <name> of letters, digits, _ and -, got '../../up'"),
+        (
+            {
+                "package.xml": MANIFEST.format(LAB),
+                "a/robocop_goto_as.launch": "<launch/>",
+                "b/robocop_goto_as.launch": "<launch></launch>",
+            },
+            "a/robocop_goto_as.launch and b/robocop_goto_as.launch: nothing says which",
+        ),
+    ],
+)
+def test_folder_without_a_package_to_start_is_refused(tmp_path: Path, files: Dict[str, str], expected: str) -> None:
+    with pytest.raises(HostingError, match=expected):
+        find_package(str(tree(tmp_path, files)))
+
+
+def test_missing_path_is_refused() -> None:
+    with pytest.raises(HostingError, match="/no/such/place: expected the folder of a catkin package"):
+        find_package("/no/such/place")
+
+
+PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
+
+
+def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path: Path) -> None:
+    tree(tmp_path, PAIR)
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "a.launch"
+    tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
+    assert find_package(str(tmp_path)).launch_file == tmp_path / "launch" / "robocop_goto_as.launch"
+    assert find_package(str(tmp_path), "a.launch").launch_file == tmp_path / "a.launch"
+    with pytest.raises(HostingError, match="no launch file 'b.launch'; available: a.launch, robocop_goto_as.launch"):
+        find_package(str(tmp_path), "b.launch")
+
+
+@pytest.mark.parametrize("folder", ["backup", "OLD", "lab - Copy", "__MACOSX", ".ipynb_checkpoints"])
+def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path, folder: str) -> None:
+    lab = {"package.xml": MANIFEST.format(LAB), "launch/robocop_goto_as.launch": "<launch/>"}
+    other = {f"{folder}/{name}": text.replace("/>", "></launch>") for name, text in lab.items()}
+    beside = tree(tmp_path / "beside", {**{f"my_lab/{name}": text for name, text in lab.items()}, **other})
+    inside = tree(tmp_path / "inside", {**lab, f"{folder}/launch/robocop_goto_as.launch": "<launch></launch>"})
+    assert find_package(str(beside)).path == beside / "my_lab"
+    assert find_package(str(inside)).launch_file == inside / "launch" / "robocop_goto_as.launch"
+
+
+def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
+    node = '<node pkg="{}" type="{}" name="n{}"/>\n'
+    nodes = [
+        (LAB, "robocop_goto_as.py"),
+        (LAB, "none.py"),
+        ("tf2_ros", "static"),
+        ("rviz", "rviz"),
+        ("other", "goto.py"),
+    ]
+    launch = "".join(node.format(*names, number) for number, names in enumerate(nodes))
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": f"<launch>{launch}</launch>",
+        "scripts/robocop_goto_as.py": "",
+        "scripts/goto.py": "move_base_simple",
+    }
+    package = find_package(str(tree(tmp_path / "ws" / "src" / LAB, files)))
+    found = started(package, tmp_path / "ws", dict(os.environ), run_plain)
+    place = "launch/robocop_goto_as.launch, line"
+    assert {part: choice.path.name for part, choice in found.choices.items()} == {
+        "server": "robocop_goto_as.py",
+        "bridge": "goto.py",
+    }
+    assert found.notes == [
+        f"{place} 2: roslaunch finds no none.py in this package",
+        f"{place} 3: node n2 (tf2_ros static) is not started: server and bridge are graded one at a time, each alone",
+        f"{place} 5: pkg='other' is not this package, whose name is '{LAB}'",
+    ]
+
+
+def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unless_a_condition_leaves_them_out(
+    tmp_path: Path,
+) -> None:
+    nodes = '<node pkg="gazebo_ros" type="a" name="a" if="$(arg all)"/><node pkg="aro_sim" type="b" name="b"/>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": '<launch><arg name="all" default="1"/>'
+        '<include file="$(dirname)/nodes.launch" pass_all_args="true"/></launch>',
+        "launch/nodes.launch": f'<launch><arg name="all"/>{nodes}</launch>',
+        "scripts/robocop_goto_as.py": "",
+    }
+    package = find_package(str(tree(tmp_path / "src" / LAB, files)))
+    for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
+        found = started(package, tmp_path, dict(os.environ), run_plain, words)
+        assert {node.package for node in found.others} == starts
+        assert found.starts_gazebo == ("gazebo_ros" in starts)
+
+
+def test_launch_file_that_needs_gazebo_is_known_when_another_package_is_missing(tmp_path: Path) -> None:
+    lines = '<param name="x" command="$(find xacro)/xacro x"/><include file="$(find gazebo_ros)/launch/{}.launch"/>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": "<launch/>",
+        "launch/world.launch": f"<launch>{lines}</launch>",
+        "launch/messages.launch": f"<launch>{lines.replace('gazebo_ros', 'gazebo_msgs')}</launch>",
+        "scripts/robocop_goto_as.py": "",
+    }
+    package = find_package(str(tree(tmp_path, files)))
+    problem = "launch/{}.launch, line 1: roslaunch can't read it: package xacro not found"
+    known = {name for name in ("world", "messages") if names_gazebo(package, problem.format(name))}
+    assert known == {"world"}
+
+
+def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
+    node = f'<launch><node pkg="{LAB}" type="{{0}}" name="n"><param name="of" value="{{0}}"/></node></launch>'
+    files = {
+        "package.xml": MANIFEST.format(LAB),
+        "launch/robocop_goto_as.launch": node.format("robocop_goto_as.py"),
+        "launch/clicks.launch": node.format("second.py"),
+        "launch/gazebo.launch": '<launch><include file="$(find no_such)/x.launch"/></launch>',
+        "scripts/robocop_goto_as.py": "",
+        "scripts/first.py": "'move_base_simple'  # 1",
+        "scripts/second.py": "'move_base_simple'  # 2",
+    }
+    package = find_package(str(tree(tmp_path / "src" / LAB, files)))
+    found = started(package, tmp_path, dict(os.environ), run_plain)
+    assert found.choices["bridge"].path.name == "second.py"
+    assert (found.parameters, found.notes) == ({"/n/of": "robocop_goto_as.py"}, [])

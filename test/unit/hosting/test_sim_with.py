@@ -1,0 +1,72 @@
+"""Hosted packages: launched with the right arguments, and from scripts that can be started."""
+
+import os
+from pathlib import Path
+
+import pytest
+from hosted_packages import LAB, MANIFEST, tree
+
+from aro_robocop_goto_as.errors import HostingError
+from aro_robocop_goto_as.names import PACKAGE
+from robocop_hosting.launch_file import LaunchNode
+from robocop_hosting.package import Started, find_package
+from robocop_hosting.scripts import Choice
+from robocop_hosting.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
+
+PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
+
+
+def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(tmp_path: Path) -> None:
+    package = find_package(str(tree(tmp_path, PAIR)))
+    given, known = ["speed:=0.1", "seed:=7", "spawn:=1 2"], ["seed", "spawn"]
+    assert sort_arguments(package, given, known) == ({"speed": "0.1"}, "seed:=7 'spawn:=1 2'")
+    with pytest.raises(HostingError, match="wrold:=x: neither .* they have: speed, seed, spawn"):
+        sort_arguments(package, ["wrold:=x"], known)
+
+
+def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROBOCOP_RVIZ", "true")
+    package = find_package(str(tree(tmp_path, PAIR)))
+    assert sort_arguments(package, ["rviz:=false"], ["seed"]) == ({}, "")
+    assert os.environ["ROBOCOP_RVIZ"] == "false"
+
+
+def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_path: Path) -> None:
+    files = {"package.xml": MANIFEST.format(LAB), "launch/all.launch": "<launch/>", "launch/nodes.launch": "<launch/>"}
+    said = instead_of_gazebo(find_package(str(tree(tmp_path, files)), "all.launch"))
+    assert said.startswith("all.launch starts Gazebo") and "there are: nodes.launch" in said
+
+
+@pytest.mark.parametrize("package, script", [("aro_sim", "lab_simulator.py"), (PACKAGE, "robocop_sim.py")])
+def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, package: str, script: str) -> None:
+    hosted = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
+    for others in ([], [LaunchNode(package, script, "sim", "x.launch")]):
+        written = launch_file(hosted, tmp_path, {}, Started({}, {}, (), others)).read_text()
+        assert ("aro_sim" in written) != bool(others)
+
+
+@pytest.mark.parametrize(
+    "line", ["my_lab --launch other.launch sync:=lockstep", "--launch other.launch my_lab sync:=lockstep"]
+)
+def test_options_may_stand_before_or_among_the_arguments(line: str) -> None:
+    args = parsed(line.split())
+    assert (args.path, args.launch, args.arguments) == ("my_lab", "other.launch", ["sync:=lockstep"])
+
+
+def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_the_reason(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tree(
+        tmp_path, {"lab/a.py": "#!/usr/bin/env python\n", "lab/b.py": "\n#!/usr/bin/env python3\n", "lab/old/a.py": ""}
+    )
+    script, other = tmp_path / "lab" / "a.py", tmp_path / "lab" / "old" / "a.py"
+    other.chmod(0o755)
+    make_startable(Choice(script, None, False, [other]), tmp_path)
+    assert (script.stat().st_mode & 0o777, other.stat().st_mode & 0o777) == (0o755, 0o644)
+    told = capsys.readouterr().err
+    assert "lab/a.py is not executable" in told
+    assert "lab/a.py is started by '/usr/bin/env python', which the lab may not have" in told
+    with pytest.raises(HostingError, match="lab/b.py has its #! line below other lines, so roslaunch can't start it"):
+        make_startable(Choice(tmp_path / "lab" / "b.py", None, False, []), tmp_path)
