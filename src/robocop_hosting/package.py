@@ -204,7 +204,7 @@ def started(
 def _not_done(
     package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice], names: Collection[str]
 ) -> Iterator[str]:
-    """What launch files of the package, which has files of these `names`, ask for beside its server and its bridge."""
+    """Notes about requests of launch files that are not carried out; `names`: the names of the package's files."""
     graded = [choice.node for choice in choices.values()]
     for node in (node for node in nodes if node.is_own):
         if node.package == package.name and node.type not in names:

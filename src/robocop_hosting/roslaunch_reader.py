@@ -1,6 +1,6 @@
 """Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's loader makes of a launch file, as JSON.
 
-It is a program of its own, as launch files can run commands. It imports nothing of the grader's.
+It is a separate program, because launch files can run commands. It imports nothing of the grader.
 """
 
 import json

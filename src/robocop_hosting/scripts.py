@@ -1,4 +1,4 @@
-"""A folder -> the scripts of the lab's server and bridge in it: those that roslaunch would start."""
+"""A folder -> the scripts of the lab's server and bridge in it, the scripts that roslaunch would start."""
 
 import codecs
 import contextlib
@@ -107,8 +107,10 @@ def best_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
 def choose(
     top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = (), expects_one: bool = True
 ) -> Dict[str, Choice]:
-    """The script of each part that is there: what the launch files' `nodes` start, scripts of the handout's names, or
-    the only one that offers the action or listens to clicks.
+    """The script of each part in `top`.
+
+    The script is the one that a launch file's node in `nodes` starts, or the one with the handout's name, or the only
+    one that offers the action or listens to clicks.
 
     `relays`: programs that the build has made, among them those of catkin_install_python. HostingError if two different
     scripts are equally likely, unless not `expects_one`.

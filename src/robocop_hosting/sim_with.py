@@ -22,7 +22,7 @@ INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
 def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) -> Tuple[Path, Environment, Started]:
-    """Build a package in `state`/with/...; that folder, the environment to run it in, and what its launch file starts.
+    """Build a package in `state`/with/...; return that folder, its environment, and what its launch file starts.
 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
@@ -53,7 +53,7 @@ def instead_of_gazebo(package: Package) -> str:
 
 
 def make_startable(choice: Choice, source: Path) -> None:
-    """Have roslaunch start this script, and no other one of its name."""
+    """Make sure that roslaunch starts this script, and no other script of its name."""
     name = choice.path.relative_to(source)
     if not os.access(choice.path, os.X_OK):
         _tell(

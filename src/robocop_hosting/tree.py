@@ -1,7 +1,7 @@
 """Other people's folders, however deep they are nested, and their files, which may be pipes, devices, or too large.
 
 os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels; so
-walk() gives up before, and remove() leaves it to another program.
+walk() gives up at a lower number of levels, and remove() starts another program that removes the folder.
 """
 
 import contextlib

@@ -13,14 +13,14 @@ from ..texts import text
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
-MAX_WRONG_TIME = 0.45  # [s] no more values in a row may not fit
+MAX_WRONG_TIME = 0.45  # [s] longest row of values that may not fit
 MAX_UNEXPLAINED = 0.3  # share of all wrong values
 MAX_PAIRS = 100  # of a scenario that are compared
-LARGE = 7.0  # [m], [rad] values beyond it are squares or degrees, of which tolerances are ten times as large
-FAR = 1.0  # [m], [rad] that a miss counts at most
-SCALED = 0.2  # [m], [rad] true errors that are larger tell by which factor others differ from them
+LARGE = 7.0  # [m], [rad] larger values are squared or in degrees; the tolerances are then ten times as large
+FAR = 1.0  # [m], [rad] a larger miss counts as this
+SCALED = 0.2  # [m], [rad] smaller true errors are not used to estimate a factor
 MAX_SPREAD = 0.1  # of such a factor
-OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
+OFFSET = 0.05  # [m], [rad] a smaller constant difference counts as no difference
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
