@@ -5,14 +5,14 @@ import os
 PACKAGE = "aro_robocop_goto_as"
 SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
 SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"  # nodes, fixed by the handout
-COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # what to type for ./robocop in another terminal; set in the container image
+COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # set in the container image
 RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
 ACTION = "robocop_goto_as"  # fixed by the handout
 ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
 
 
 def robocop() -> str:
-    """What to type for ./robocop."""
+    """What to type for ./robocop in another terminal."""
     return os.environ.get(COMMAND_VARIABLE) or "./robocop"
 
 

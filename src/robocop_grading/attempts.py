@@ -1,4 +1,4 @@
-"""Which attempt counts of a scenario that the session has repeated with a new node."""
+"""If the session has repeated a scenario with a new node: which of the two attempts counts."""
 
 from typing import Dict, List, Mapping, Tuple
 
@@ -11,11 +11,11 @@ AGAIN = "_again"  # after a scenario's name: its repetition with a new node
 
 
 def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Record], List[str], List[str]]:
-    """The record that counts of each scenario, the names of those of which the repetition counts, and what to say.
+    """The record that counts for each scenario, the names of scenarios whose repetition counts, and what to say.
 
-    A repetition counts where an earlier mistake may have left something behind in the first node: a check has failed
-    in a scenario before it, or in one with several goals, in which each node starts anew. Otherwise the first node went
-    wrong of itself.
+    A repetition counts if a check fails in it as well. It also counts if an earlier mistake may have left something
+    behind in the first node: a check fails in a scenario before this one, or in any scenario with several goals.
+    Otherwise the first attempt counts, because the first node went wrong by itself.
     """
     chosen = {name: record for name, record in records.items() if not name.endswith(AGAIN)}
     repeated = [name for name in chosen if name + AGAIN in records]

@@ -10,6 +10,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from aro_robocop_goto_as.process.start import typed
 from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
@@ -106,21 +107,30 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     return str(folder / given.name), unpacked.notes
 
 
-def main() -> None:
-    """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
-    parser = argparse.ArgumentParser(prog="robocop grade", description=__doc__, allow_abbrev=False)
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog=typed("grade"), description=__doc__, allow_abbrev=False)
     parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
     parser.add_argument("--only", nargs="+", default=(), metavar="CHECK", help="run only what these checks need")
-    args = parser.parse_args()
+    return parser.parse_args()
+
+
+def _plan(args: argparse.Namespace, share: Path) -> Plan:
+    file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
+    return load(file, args.seed).restricted(args.only)
+
+
+def main() -> None:
+    """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
+    args = arguments()
     interrupt_on_signal()
     try:
         state, share = places()
-        plan_file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
-        plan = load(plan_file, args.seed).restricted(args.only)
+        plan = _plan(args, share)
         given = make_report_folder(Path(args.report)) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
@@ -146,11 +156,10 @@ def main() -> None:
     except KeyboardInterrupt:
         ignore_all()
         sys.exit(INTERRUPTED)
-    except Exception as error:  # the grader failed on this submission: report it in one line
+    except Exception as error:  # the grader failed on this submission
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
         sys.exit(1)
-    if sys.stderr.isatty():
-        print("\r\033[K", end="", file=sys.stderr, flush=True)
+    print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
     print(f"scenarios: seed {plan.seed}")
     print(printable(f"report: {folder / 'report.html'}"))

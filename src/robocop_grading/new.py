@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Optional
 
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
+from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.workspace import places
 
 SKELETON = Path(__file__).resolve().parent / "skeleton"
@@ -55,7 +56,7 @@ def make_autograder(share: Path, path: Path) -> None:
 
 def main() -> None:
     """Exit status 1 if the folder exists already."""
-    parser = argparse.ArgumentParser(prog="robocop new", description=__doc__, allow_abbrev=False)
+    parser = argparse.ArgumentParser(prog=typed("new"), description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "name", help="folder to create; the package itself is called aro_robocop_goto_as, as in the lab"
     )

@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import PIPE
-from typing import Callable, Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
@@ -118,8 +118,7 @@ class Runner:
                 elif word == "error":
                     raise UngradableError(rest)
             if time.monotonic() >= deadline:
-                where = scenario or "its start"
-                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {where}")
+                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario or 'its start'}")
             grace = END_TIMEOUT
         finally:
             timer.cancel()
@@ -127,19 +126,23 @@ class Runner:
             guard.stop()
         if not scenario:
             raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}")
-        records, counted, told = counting(self.plan, records_in(out, part))
-        for name in counted:
-            (out / f"{part}-{name}{AGAIN}.bag").replace(out / f"{part}-{name}.bag")
+        records, told = self._counting(out, part)
         problem, killed = guard.reason, ""
-        for record in records.values():
-            if any(death.is_unexplained for death in record.deaths):
-                killed = f"the {part} was killed in scenario {record.name}"
+        for name in (it.name for it in records.values() if any(death.is_unexplained for death in it.deaths)):
+            killed = f"the {part} was killed in scenario {name}"
         excused = kernel_kills() > kills
         if not problem and status != 0:
             problem = f"the run was cut short during {scenario} (status {status}): {_end_of(log)}"
             if status in rec.KILLED:  # not because of the submission, whose processes the kernel ends first
                 killed, excused = f"the grader's own process was killed in scenario {scenario}", True
         return Recorded(records, problem, killed, excused, told)
+
+    def _counting(self, out: Path, part: str) -> Tuple[Dict[str, rec.Record], List[str]]:
+        """The records that count, whose bags get their scenarios' names, and what to say of repeated scenarios."""
+        records, counted, told = counting(self.plan, records_in(out, part))
+        for name in counted:
+            (out / f"{part}-{name}{AGAIN}.bag").replace(out / f"{part}-{name}.bag")
+        return records, told
 
 
 def _end_of(log: Path) -> str:

@@ -11,6 +11,7 @@ from xml.sax.saxutils import quoteattr
 
 from aro_robocop_goto_as.errors import HostingError, RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
+from aro_robocop_goto_as.process.start import typed
 
 from .package import Package, Started, arguments_of, find_package, names_gazebo, started
 from .scratch import scratch_folder
@@ -121,7 +122,7 @@ def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> 
 
 def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
     """The command line, whose options and NAME:=VALUE words may come in any order."""
-    parser = argparse.ArgumentParser(prog="robocop sim --with", description=__doc__, allow_abbrev=False)
+    parser = argparse.ArgumentParser(prog=typed("sim --with"), description=__doc__, allow_abbrev=False)
     parser.add_argument("path", help="folder of a catkin package, or of a workspace with one in it")
     parser.add_argument("--launch", default="", help="which of its launch files (default robocop_goto_as.launch)")
     parser.add_argument("--verbose", action="store_true", help="list all parameters and nodes at the start")

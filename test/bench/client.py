@@ -134,9 +134,11 @@ def connect(publisher: str, topic: str) -> socket.socket:
     link = socket.create_connection((protocol[1], protocol[2]))
     link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("ll", TIMEOUT, 0))
     write_ros_handshake_header(link, {"callerid": CALLER, "topic": topic, "type": "*", "md5sum": "*"})
-    length = link.recv(4, socket.MSG_WAITALL)
-    (size,) = struct.unpack("<I", length)
-    header = decode_ros_handshake_header(length + link.recv(size, socket.MSG_WAITALL))
+    try:
+        length = link.recv(4, socket.MSG_WAITALL)
+        header = decode_ros_handshake_header(length + link.recv(struct.unpack("<I", length)[0], socket.MSG_WAITALL))
+    except BlockingIOError as error:
+        raise BenchError(f"{publisher} does not answer a subscriber of {topic} within {TIMEOUT} s") from error
     if "error" in header:
         raise BenchError(f"{publisher} refuses {topic}: {header['error']}")
     return link

@@ -65,7 +65,7 @@ def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
     command.wait_until(lambda: "driving" in command.output, "driving")
     command.process.send_signal(signal.SIGTERM)
     assert command.wait_for_exit() == 1
-    assert "PREEMPTED: PREEMPTED: " in command.output
+    assert "\nPREEMPTED: goal " in command.output
 
 
 def test_unknown_world_is_a_wrong_argument_and_nothing_is_started(goto):

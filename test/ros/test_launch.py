@@ -12,7 +12,6 @@ import roslaunch.xmlloader
 import yaml
 
 from aro_robocop_goto_as.bridge_params import BridgeParams
-from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.sim_params import SimParams
@@ -95,6 +94,13 @@ def test_an_unknown_model_is_refused_with_the_models_that_there_are(capfd, argum
     with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
         Launch(argument)
     assert capfd.readouterr().err.startswith("ROBOT_MODEL: there is no model 'tank'; known are: burger, burger_rgbd, ")
+
+
+def test_robots_in_a_configuration_are_refused_with_the_argument_to_use(tmp_path, capfd):
+    (tmp_path / "config.yaml").write_text("robots: 3 0\n")
+    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
+        Launch(f"config:={tmp_path}/config.yaml")
+    assert "pass it as the argument robots:=" in capfd.readouterr().err
 
 
 def test_simulator_bridges_and_rviz_can_be_left_out():
@@ -182,31 +188,9 @@ def test_every_parameter_of_server_and_bridge_comes_from_argument_else_config_el
     assert Launch("sim:=false", bridge, "robots:=red 0 0").given("/red" + BRIDGE) == values
 
 
-def test_robot_description_follows_the_model_from_config_profile_or_argument(tmp_path, capfd):
-    config = tmp_path / "config.yaml"
-    config.write_text("model: waffle\nscan_angle_max: !degrees 90\n")  # a tag of rosparam
-    described = Launch(f"config:={config}", "robots:=red 0 0; blue:turtlebot2 1 0").named("robot_description")
-    names = {name: ElementTree.fromstring(text).get("name") for name, text in described.items()}
-    assert names == {"/robot_description": "turtlebot3_waffle", "/blue/robot_description": "turtlebot2"}
-    assert capfd.readouterr().err == ""
-
-    config.write_text("robots: 3 0\nmodel: wafle\n")
-    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
-        Launch(f"config:={config}")
-    error = capfd.readouterr().err
-    assert "ROBOT_MODEL: there is no model 'wafle'; known are: burger" in error
-    assert "pass it as the argument robots:=" in error
-
-
 def test_strings_that_look_like_numbers_or_booleans_stay_strings():
     sim = Launch("world:=7", "spawn:=0 0 0", "model:=burger", "scan_profile:=true", "robots:=1e3 0 0").given(SIM)
     assert sim == {"world": "7", "spawn": "0 0 0", "model": "burger", "scan_profile": "true", "robots": "1e3 0 0"}
-
-
-@pytest.mark.parametrize("seed", ["12345678901234567890123", "-2147483648000", "1.5"])
-def test_a_seed_that_is_not_a_32_bit_integer_is_refused_by_the_node(seed):
-    with pytest.raises(ParameterError, match=f"seed: expected int, got str '{seed}'"):
-        from_dict(SimParams, Launch(f"seed:={seed}", file="robocop_sim.launch").given(SIM), SIM)
 
 
 def test_spawn_pose_can_be_given_as_to_turtlebot3_gazebo():

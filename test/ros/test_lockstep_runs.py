@@ -6,7 +6,6 @@ started and stopped many times and one of them is frozen by SIGSTOP.
 
 import itertools
 import json
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -74,10 +73,6 @@ class Remote:
     def status(self):
         """The next report from now on."""
         return self._ask("status")
-
-    def wait_for_driver(self, driver, *processes):
-        """Wait until lockstep waits for a controller."""
-        self.ros.wait(lambda: driver in self.status()["drivers"], f"{driver} drives", self.simulator, *processes)
 
 
 @pytest.fixture(scope="module")
@@ -171,44 +166,3 @@ def test_controller_unaware_of_lockstep_gives_the_same_trajectory_in_another_run
     assert misses == 0
     assert len(set(poses)) > 290, "the robot did not move"
     assert run_metronome(ros) == (poses, 0)
-
-
-@pytest.mark.slow
-def test_controller_that_hangs_causes_one_miss_and_is_waited_for_again_when_it_continues(ros):
-    simulator = ros.simulator(lockstep_timeout=0.5)
-    remote = Remote(ros, simulator)
-    remote.step(1.0)
-    controller, _ = start_metronome(ros, remote)
-    remote.step(1.0)
-    controller.send_signal(signal.SIGSTOP)
-    try:
-        remote.step(3.0)
-        status = remote.status()
-    finally:
-        controller.send_signal(signal.SIGCONT)
-    assert status == {"lockstep_misses": 1, "drivers": []}
-    assert "no answer from /metronome within 0.5 s" in simulator.output
-    ros.wait(lambda: remote.step(0.1) or "/metronome" in remote.status()["drivers"], "it drives again", simulator)
-
-
-@pytest.mark.slow
-def test_server_that_stood_still_until_its_sockets_were_full_reaches_goals_again(ros):
-    figures = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60, "world": "empty", "scan_samples": 3600}
-    simulator = ros.simulator(lockstep_timeout=0.5, **figures)  # long scans fill the sockets soon
-    server = ros.node("robocop_goto_as.py", f"__name:={SERVER[1:]}")
-    remote = Remote(ros, simulator)
-    remote.wait_for_driver(SERVER, server)
-    server.send_signal(signal.SIGSTOP)
-    try:
-        stopped = f"{SERVER} (/scan) has stopped reading"
-        ros.wait(lambda: remote.step(20.0) or stopped in simulator.output, stopped, simulator)
-    finally:
-        server.send_signal(signal.SIGCONT)
-    again = f"{SERVER} (/scan) reads again"
-    ros.wait(lambda: remote.step(0.1) or again in simulator.output, again, simulator, server)
-    ros.wait(
-        lambda: remote.step(0.1) or SERVER in remote.status()["drivers"], "it answers each tick", simulator, server
-    )
-    topic, kind = "/robocop_goto_as/goal", "aro_robocop_goto_as/GoToPositionActionGoal"
-    goal = ros.start("goal", "rostopic", "pub", "-1", topic, kind, "{goal: {position: {x: 0.3}}}")
-    ros.wait(lambda: remote.step(0.5) or "REACHED" in server.output, "the goal", simulator, server, goal)

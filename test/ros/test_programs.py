@@ -10,6 +10,7 @@ import pytest
 from systems import Program
 from waiting import DEADLINE, wait_for
 
+from aro_robocop_goto_as.probes.master import running_node
 from aro_robocop_goto_as.process.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,7 +23,7 @@ def test_each_program_answers_help_without_a_master(name):
     command = ["rosrun", "aro_robocop_goto_as", name, "--help"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=DEADLINE)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "usage: " in done.stdout
+    assert f"usage: rosrun aro_robocop_goto_as {name}" in done.stdout
     assert name not in NODES or len(done.stdout.splitlines()) == 3
 
 
@@ -54,14 +55,20 @@ def launched_script(name):
 
 
 @pytest.mark.slow
-def test_a_second_simulator_is_refused_and_one_without_its_master_ends(roslaunch, tmp_path):
-    launched = roslaunch("robocop_sim.launch", "drive:=kinematic")
-    launched.wait_until(lambda: launched.offers("/robocop_sim/reset"), "the simulator")
-    simulator = launched.wait_for_process("robocop_sim.py")
-    second = [sys.executable, launched_script("robocop_sim.py")]
-    done = subprocess.run(second, env=launched.environment, capture_output=True, text=True, timeout=DEADLINE)
-    assert (done.returncode, "a simulator is already running as /robocop_sim" in done.stderr) == (1, True)
-    assert launched.process.poll() is None and launched.processes("robocop_sim.py") == [simulator]
+def test_a_second_launch_ends_and_the_first_goes_on_until_its_master_ends(roslaunch):
+    arguments = ("robocop_goto_as.launch", "rviz:=false", "drive:=kinematic")
+    launched = roslaunch(*arguments)
+    launched.wait_until(lambda: "is ready, no goal yet" in launched.output, "the system")
+    assert launched.output.count("/robocop_goto_as is ready for goals") == 1
+    names = ("robocop_sim.py", "robocop_goto_as.py", "robocop_rviz_goto_ac.py")
+    first = [launched.processes(name) for name in names]
+    second = launched.start("second", *Roslaunch.command, *arguments)
+    second.wait_for_exit()
+    assert "robocop_sim: a simulator is already running as /robocop_sim on" in second.output
+    assert [launched.processes(name) for name in names] == first
+    frames = "/robocop_state_publisher"  # ROS's own node has ended, and started again
+    launched.wait_until(lambda: running_node(launched.uri, frames), "the state publisher")
+    ((simulator,), _, _) = first
 
     os.kill(launched.process.pid, signal.SIGSTOP)  # roslaunch itself would end the simulator, too
     try:

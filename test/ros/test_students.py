@@ -154,13 +154,3 @@ def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     system = hosted("timer_driven", "scan_profile:=no_such")
     assert system.process.wait(DEADLINE) == 1, system.output
     assert "scan_profile" in system.output and system.processes() == []
-
-
-@pytest.mark.slow
-def test_a_package_that_does_not_build_is_reported_with_the_log_of_the_build(hosted, tmp_path):
-    package = copy_of("timer_driven", tmp_path)
-    (package / "action" / "GoToPosition.action").write_text("geometry_msgs/Pint position\n---\n---\n")
-    (tmp_path / "ros").mkdir()
-    system = Hosted(package, tmp_path / "ros")
-    assert system.process.wait(DEADLINE) == 1
-    assert "aro_robocop_goto_as can't be built:" in system.output and "Pint" in system.output

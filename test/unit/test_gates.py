@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-import foreign_insides
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,16 +25,6 @@ ROSDEP_KEYS = {
 ROSDEP_KEYS.update(PIL="python3-pil", pybullet="python3-pybullet-pip", trimesh="python3-trimesh-pip")
 # Imported on request only: in compat/, in install/deb-packages/class.txt or grade.txt, in install/requirements-web.txt.
 OPTIONAL = {"dask", "gazebo_msgs", "distributed", "seccomp", "viser", "websockets", "wx"}
-# Where the insides of other libraries are used, in how many lines at most, and why. What is not here may use none.
-INSIDES = {
-    f"{PACKAGE}/ros/connected_nodes.py": (2, "rospy only counts connections"),
-    f"{PACKAGE}/ros/publishing/": (6, "rospy can't send to several topics or subscribers at once, nor without loss"),
-    f"{PACKAGE}/ros/sim/gazebo_topics.py": (1, "genpy has no public name for a message's definition"),
-    f"{PACKAGE}/ros/web/server.py": (2, "viser has no setting for who may use its web server"),
-    f"{GRADER}/session/services.py": (3, "genpy has no public name for a service's request and response"),
-    f"{GRADER}/session/topics.py": (1, "genpy has no public name for a message's definition"),
-    f"{GRADER}/agent/": (1000, "the agent replaces parts of the standard library and of rospy from within"),
-}
 
 
 def run_checker(*command, folder=ROOT):
@@ -76,26 +65,9 @@ def test_shellcheck_reports_nothing():
     run_checker("shellcheck", "robocop", ".ci/run", f"src/{PACKAGE}/cli/completion.bash")
 
 
-def test_sources_are_valid_python_3_8():
-    paths = [path for part in PYTHON for path in [ROOT / part, *(ROOT / part).rglob("*.py")] if path.is_file()]
-    assert len(paths) > 100
-    for path in paths:
-        ast.parse(path.read_text(encoding="utf-8"), filename=str(path), feature_version=(3, 8))
-
-
 def test_modules_import_only_what_the_contracts_in_pyproject_allow():
     # In src/: elsewhere the package's name means its generated messages, which catkin builds.
     run_checker("lint-imports", "--no-cache", "--config", ROOT / "pyproject.toml", folder=SOURCE)
-
-
-def test_insides_of_libraries_are_used_only_where_that_is_allowed():
-    problems = []
-    for path in SOURCE.rglob("*.py"):
-        name, places = str(path.relative_to(SOURCE)), foreign_insides.places(path)
-        allowed = max((number for row, (number, _) in INSIDES.items() if name.startswith(row)), default=0)
-        if len(places) > allowed:
-            problems += [f"{name}:{place.line}: {place.what} (allowed: {allowed} lines)" for place in places]
-    expect_none(problems)
 
 
 def test_scripts_are_installed_and_only_start_a_main():

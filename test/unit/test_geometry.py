@@ -13,6 +13,7 @@ from aro_robocop_goto_as.geometry import (
     compose,
     compose3,
     inverse,
+    inverse3,
     lifted,
     quaternion_from_rpy,
     rotation_matrix,
@@ -23,6 +24,8 @@ from aro_robocop_goto_as.geometry import (
 lengths = st.floats(-1e3, 1e3)
 angles = st.floats(-20.0, 20.0)
 poses = st.builds(Pose2D, lengths, lengths, angles)
+near = st.floats(-9.0, 9.0)
+spatial = st.builds(lambda *six: Pose3D.from_xyz_rpy(six[:3], six[3:]), *(6 * [near]))
 
 
 @given(angles)
@@ -38,6 +41,16 @@ def test_a_pose_composed_with_its_inverse_is_the_identity(pose: Pose2D) -> None:
     there_and_back = compose(pose, inverse(pose))
     assert (there_and_back.x, there_and_back.y) == pytest.approx((0.0, 0.0), abs=1e-9)
     assert wrap_angle(there_and_back.yaw) == pytest.approx(0.0, abs=1e-9)
+
+
+@given(spatial, spatial)
+def test_poses_in_space_compose_as_their_matrices_and_the_inverse_undoes_that(a: Pose3D, b: Pose3D) -> None:
+    both, turn = compose3(a, b), rotation_matrix(a.orientation)
+    assert both.position == pytest.approx(turn @ np.array(b.position) + np.array(a.position))
+    assert rotation_matrix(both.orientation) == pytest.approx(turn @ rotation_matrix(b.orientation))
+    back = compose3(inverse3(a), both)
+    assert back.position == pytest.approx(b.position, abs=1e-9)
+    assert rotation_matrix(back.orientation) == pytest.approx(rotation_matrix(b.orientation), abs=1e-9)
 
 
 @given(poses, poses)

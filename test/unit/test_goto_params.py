@@ -10,8 +10,6 @@ import pytest
 from aro_robocop_goto_as.cfg import GotoConfig
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.goto import Goal, decide
 from aro_robocop_goto_as.goto_params import GotoParams, differences, tuned
 
 P = GotoParams()
@@ -55,15 +53,3 @@ def test_the_documented_bounds_are_those_of_the_parameters() -> None:
         name: (float(low), float(high)) for names, low, high in rows for name in re.findall(r"`(\w+)`", names)
     }
     assert documented == {name: (GotoConfig.min[name], round(GotoConfig.max[name], 2)) for name in GotoConfig.defaults}
-
-
-def test_every_value_within_the_bounds_gives_a_velocity() -> None:
-    for name in GotoConfig.defaults:
-        for value in (GotoConfig.min[name], GotoConfig.max[name]):
-            try:
-                p = tuned(P, {name: value})
-            except ParameterError:  # contradicts another velocity
-                continue
-            for goal in (Goal(1.0, 0.0), Goal(-1.0, 0.5)):
-                twist = decide(Pose2D(), math.inf, goal, p).twist
-                assert math.isfinite(twist.v) and math.isfinite(twist.w)

@@ -41,6 +41,10 @@ def test_what_is_no_valid_return_is_no_obstacle(nothing: float) -> None:
     assert _ahead([nothing] * 360) == math.inf
 
 
+def test_the_nearest_return_counts() -> None:
+    assert _ahead([5.0] * 5 + [0.7] + [6.0] * 354) == 0.7
+
+
 def test_minus_infinity_means_zero_clearance() -> None:
     assert _ahead([-math.inf] + [5.0] * 359) == 0.0
 
@@ -70,8 +74,9 @@ def test_beams_in_one_direction_or_round_and_round_do_not_point_ahead(increment:
     assert clearance_ahead([0.5] * 360, 0.0, increment, 0.12, 10.0, math.pi / 6) is None
 
 
-def test_a_single_beam_needs_no_increment() -> None:
+def test_a_single_beam_needs_no_increment_and_one_and_a_half_turns_are_allowed() -> None:
     assert clearance_ahead([0.5], 0.0, 0.0, 0.12, 10.0, math.pi / 6) == 0.5
+    assert clearance_ahead([0.5] * 360, 0.0, math.radians(539.0) / 359, 0.12, 10.0, math.pi / 6) == 0.5
 
 
 def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:

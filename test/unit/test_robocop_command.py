@@ -180,45 +180,27 @@ def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(chec
     assert not (checkout / ".robocop").exists() and not (checkout.parent / "cache").exists()
 
 
-ENGINES = "docker podman buildah"
-
-
-def image(on_system, tmp_path, engines):
-    """Outcome of `./robocop image` in a dry run, where /usr/bin has these engines: name -> script."""
-    mounts = usr_bin_without(ENGINES, tmp_path)
-    for name, script in engines.items():
-        (tmp_path / "links" / name).write_text(f"#!/bin/sh\n{script}\n")
-        (tmp_path / "links" / name).chmod(0o755)
-    return on_system({}, *mounts, command="image", PATH="/usr/bin:/bin")
-
-
 ANSWERS, FAILS = "exit 0", "echo no daemon >&2; exit 1"
 
 
 @pytest.mark.parametrize(
-    "engines, chosen",
+    "engines, shown",
     [
-        ({"docker": ANSWERS, "podman": ANSWERS}, "docker"),
-        ({"docker": FAILS, "podman": ANSWERS, "buildah": ANSWERS}, "podman"),
-        ({"buildah": ANSWERS}, "buildah"),
+        ({"docker": ANSWERS, "podman": ANSWERS}, "docker build --tag robocop --label "),
+        ({"docker": FAILS, "podman": ANSWERS, "buildah": ANSWERS}, "podman build --tag robocop --label "),
+        ({"buildah": ANSWERS}, "buildah build --tag robocop --label "),
+        ({}, "robocop: image: this needs docker, podman or buildah; on Debian and Ubuntu: apt-get install podman"),
+        ({"docker": FAILS}, "robocop: image: docker is installed, but it does not answer: no daemon"),
     ],
 )
-def test_image_is_built_by_the_first_engine_that_answers(on_system, tmp_path, engines, chosen):
-    done = image(on_system, tmp_path, engines)
-    assert done.stdout.startswith(f"{chosen} build --tag robocop --label "), done.stderr
-    assert done.stdout.split()[-1] == str(ROOT)
-
-
-@pytest.mark.parametrize(
-    "engines, reason",
-    [
-        ({}, "image: this needs docker, podman or buildah; on Debian and Ubuntu: apt-get install podman"),
-        ({"docker": FAILS}, "image: docker is installed, but it does not answer: no daemon"),
-    ],
-)
-def test_image_without_an_engine_is_refused_with_what_to_do(on_system, tmp_path, engines, reason):
-    done = image(on_system, tmp_path, engines)
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", f"robocop: {reason}\n")
+def test_image_is_built_by_the_first_engine_that_answers(on_system, tmp_path, engines, shown):
+    mounts = usr_bin_without("docker podman buildah", tmp_path)
+    for name, script in engines.items():
+        (tmp_path / "links" / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / "links" / name).chmod(0o755)
+    done = on_system({}, *mounts, command="image", PATH="/usr/bin:/bin")
+    assert (done.stdout + done.stderr).startswith(shown)
+    assert done.returncode == (0 if " build " in shown else 1)
 
 
 @pytest.mark.parametrize(

@@ -118,6 +118,11 @@ def examine(
         ("settings", ", ".join(f"{key}={os.environ[key]}" for key in SETTINGS if key in os.environ)),
         ("ROS master", master_state),
     ]
+    problems = _problems(unsupported, missing, complete and installed["pybullet"][:1].isdigit())
+    return rows, problems + ([("the ROS master", master_problem)] if master_problem else [])
+
+
+def _problems(unsupported: str, missing: Dict[str, str], complete: bool) -> List[Row]:
     problems = []
     if unsupported:
         problems.append(("this system is not supported", unsupported))
@@ -127,11 +132,9 @@ def examine(
         problems.append((f"{len(missing['run'].split())} Debian packages", install))
     if missing.get("modules"):
         problems.append((f"Python modules of ROS: {missing['modules']}", "install ros-noetic-* or python3-* packages"))
-    if not complete or not installed["pybullet"][:1].isdigit():
+    if not complete:
         problems.append(("the virtual environment or the workspace", "./robocop setup"))
-    if master_problem:
-        problems.append(("the ROS master", master_problem))
-    return rows, problems
+    return problems
 
 
 def report(script: str, checkout: str, state: str) -> int:

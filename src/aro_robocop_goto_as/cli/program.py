@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 from ..names import PACKAGE
 from ..process import signals
+from ..process.start import BY_ROBOCOP
 from . import doctor
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -97,6 +98,7 @@ def start_script(name: str, *arguments: str) -> NoReturn:
     """Become one of the package's scripts."""
     # Ctrl-C while Python starts would print a traceback; the scripts unblock it before their imports.
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    os.environ[BY_ROBOCOP] = "true"
     start(f"{os.environ['ROBOCOP_WS']}/lib/{PACKAGE}/{name}", *arguments)
 
 

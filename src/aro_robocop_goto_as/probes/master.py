@@ -117,5 +117,9 @@ def no_simulator(uri: str) -> str:
         stands = ask_master(uri, "getParam", "/use_sim_time") is True
     except (OSError, MasterError):
         return ""
-    without = "; without one, time stands still until: rosparam set /use_sim_time false" if stands else ""
+    without = (
+        "; /use_sim_time is set, so time stands still without one (rosparam set /use_sim_time false ends that)"
+        if stands
+        else ""
+    )
     return f"no simulator is running: {robocop()} run starts one{without}"

@@ -2,8 +2,14 @@
 
 import contextlib
 import gc
+import os
 import signal
+import sys
 from typing import Iterator
+
+from ..names import PACKAGE
+
+BY_ROBOCOP = "ROBOCOP_STARTS_A_SCRIPT"  # environment variable, set by ./robocop for the script that it becomes
 
 
 @contextlib.contextmanager
@@ -15,3 +21,12 @@ def imports() -> Iterator[None]:
     yield
     gc.freeze()  # what they created is here to stay
     gc.enable()
+
+
+def typed(command: str) -> str:
+    """The words that started this program, for its usage: this command of ./robocop, else those for rosrun.
+
+    To be called once: it forgets ./robocop, as the programs that this one starts were not started by it.
+    """
+    script = os.path.basename(sys.argv[0])
+    return f"robocop {command}" if os.environ.pop(BY_ROBOCOP, "") else f"rosrun {PACKAGE} {script}"

@@ -1,4 +1,4 @@
-"""The grader's requests to go on until a simulated time, and the answers when everything is done."""
+"""Receives the grader's requests to live until a simulated time, and answers when everything until then is done."""
 
 import _thread
 import ctypes
@@ -8,7 +8,7 @@ import math
 import os
 import pickle
 import socket
-from typing import Any, Dict, List, Tuple
+from typing import List, Tuple
 
 from . import connections, files, grader, ros, stuck, wire
 from .scheduler import allocate_lock, scheduler
@@ -16,11 +16,9 @@ from .scheduler import allocate_lock, scheduler
 # Processor time [s] that a node may use before simulated time goes on without it
 STARTING_TIME = 20.0  # until all its threads wait for the first time; ROS and NumPy take 2 to 4
 REQUEST_TIME = 0.5  # at each later request of the grader
-LOOP_TIME = (
-    0.002  # at each request after MAX_EXCEEDED requests in a row were exceeded: the node is a loop without pauses
-)
+LOOP_TIME = 0.002  # at each request after MAX_EXCEEDED in a row have used up theirs: the node is a loop without pauses
 AFTER_LOOP_TIME = 0.2  # at each request after such a loop has ended
-TURN = 0.05  # of one thread, before other threads get their turns although it still runs
+TURN = 0.05  # of one running thread, before other threads get their turns beside it
 MAX_EXCEEDED = 3  # requests in a row
 MANY = 100  # wake-ups of threads between two looks at the processor time
 LOOK = 0.005  # [s, wall] between two looks at the processor time
@@ -93,7 +91,7 @@ class Channel:
         self._write(wire.MESSAGE, wire.named(topic, data))
 
     def _call(self, service: str, request: bytes) -> bytes:
-        """A service's response; one thread at a time reads from the wire."""
+        """Call a service of the grader, and return its response; only one thread at a time reads from the wire."""
         if not scheduler.active:
             raise OSError("services of the grader can't be called from a forked process")
         scheduler.calling.add(_thread.get_ident())
@@ -107,7 +105,7 @@ class Channel:
     # -- turns --
 
     def serve(self) -> None:
-        """Until the grader closes its end, which it does only after it has killed this process."""
+        """Answer requests until the grader closes its end; the grader does so only after it has killed this process."""
         while True:
             kind, body = self._read()
             if kind == wire.TOPIC:
@@ -130,12 +128,12 @@ class Channel:
         self.grader.note_delays()
         if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
             self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
-            told: Dict[str, Any] = {**connections.topics(self.grader), "programs": sorted(stuck.others.of_ros)}
-            told["delays"] = sorted(self.grader.delays.items())
+            told = connections.topics(self.grader)
+            told.update(programs=sorted(stuck.others.of_ros), delays=sorted(self.grader.delays.items()))
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:
-        """Wait for the next request and let no thread run meanwhile: a loop without pauses would go on for nothing."""
+        """Wait for the next request, and let no thread run meanwhile: a loop without pauses would only take time."""
         _recv_with_gil(self._descriptor, ctypes.create_string_buffer(1), 1, socket.MSG_PEEK)
 
     def _go_on(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:

@@ -11,11 +11,11 @@ _real = {
     name: getattr(time, name) for name in ("time_ns", "monotonic_ns", "sleep", "localtime", "gmtime", "clock_gettime")
 }
 
-LOOKS, LOOKS_TIME = 100, 0.001  # a thread's looks at clocks at one time, and how long more take [s]: 10 us each
+LOOKS, LOOKS_TIME = 100, 0.001  # a thread's looks at clocks at one time, and the pause [s] after them: 10 us each
 
 
 def looked() -> None:
-    """A thread has looked at a clock; a loop that waits for a time by that finds that it goes on."""
+    """Note that a thread has looked at a clock: simulated time goes on for a loop that waits by looking at a clock."""
     scheduler.spend(1.0 / LOOKS, LOOKS_TIME)
 
 
@@ -86,7 +86,7 @@ SimulatedDatetime.__module__ = "datetime"
 
 
 def install() -> None:
-    """Have everything use these clocks, also modules that have been imported already."""
+    """Make all modules use these clocks, also modules that have been imported already."""
     import queue
     import socketserver
     import threading

@@ -15,7 +15,7 @@ from .scheduler import scheduler
 
 
 def _to_itself() -> End:
-    """The node's end of a connection to one of its own topics or services."""
+    """Connect the node to one of its own topics or services; return the node's end."""
     mine: End = End(lambda data: theirs.feed(data))
     theirs = End(mine.feed)
     mine.on_close, theirs.on_close = theirs.end, mine.end
@@ -24,7 +24,7 @@ def _to_itself() -> End:
 
 
 def _answer(api: Any, body: Any) -> Any:
-    """What xmlrpc.client would get from a server."""
+    """The answer that xmlrpc.client would get from a server."""
     arguments, method = xmlrpc.client.loads(body)
     function = None if str(method).startswith("_") else getattr(api, str(method), None)
     if function is None:  # as xmlrpc.server; such as system.multicall, by which rospy takes leave of the master
@@ -35,9 +35,13 @@ def _answer(api: Any, body: Any) -> Any:
 
 def install(grader: Grader) -> None:
     """Have rospy use these connections."""
-    import rospy
-    from rosgraph.network import write_ros_handshake_header
-    from rospy.impl import masterslave, tcpros_base
+    _install_requests(grader)
+    _install_transport(grader)
+
+
+def _install_requests(grader: Grader) -> None:
+    """Have requests to the master, to the grader and to the node itself answered here."""
+    from rospy.impl import masterslave
 
     cls: Any = xmlrpc.client.Transport
     request = cls.request
@@ -61,6 +65,13 @@ def install(grader: Grader) -> None:
             grader.tell_of_child()
 
     handler.__init__ = noted
+
+
+def _install_transport(grader: Grader) -> None:
+    """Have connections to the grader and to the node itself end in an End."""
+    import rospy
+    from rosgraph.network import write_ros_handshake_header
+    from rospy.impl import tcpros_base
 
     transport: Any = tcpros_base.TCPROSTransport
     connect, write_header = transport.connect, transport.write_header

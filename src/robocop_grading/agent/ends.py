@@ -14,21 +14,21 @@ class End:
     """One end of a connection, in place of a socket: holds the bytes that have arrived, and hands on what is sent."""
 
     def __init__(self, send: Callable[[bytes], object], sends_header: bool = True) -> None:
-        """`sends_header`: whether to hand on also the first thing that rospy sends, the connection's header."""
+        """`sends_header`: whether the connection's header, which rospy sends first, is handed on, too."""
         self._send, self._sends = send, sends_header
         self._data = bytearray()
         self._reader: Optional[Waiter] = None
         self.on_close: Callable[[], object] = lambda: None
         self.is_open = True
-        self._since_ns = 0  # when what is not read yet began to arrive
+        self._since_ns = 0  # when the unread bytes began to arrive
 
     @property
     def waiting_ns(self) -> int:
-        """How long the first of what is not read yet has waited."""
+        """How long [ns] the oldest unread byte has waited."""
         return scheduler.now_ns - self._since_ns if self._data and self.is_open else 0
 
     def feed(self, data: bytes) -> None:
-        """Something arrives."""
+        """Append bytes that have arrived, and wake the thread that waits for them."""
         with scheduler.guard:
             self._since_ns = self._since_ns if self._data else scheduler.now_ns
             self._data += data
@@ -65,7 +65,7 @@ class End:
         self._sends = True
 
     def fileno(self) -> None:
-        """rospy polls for the ends of connections that have a number."""
+        """Return no number: rospy polls only ends of connections that have a number."""
 
     def getsockname(self) -> Any:
         return "localhost", 0

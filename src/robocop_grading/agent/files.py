@@ -29,7 +29,7 @@ _poll_with_gil = ctypes.PyDLL(None, use_errno=True).poll  # PyDLL does not relea
 
 
 def _ready(files: Files) -> List[int]:
-    """What is ready of each of these now, as events of poll(), without letting another thread run meanwhile."""
+    """The events of poll() that are ready for each of these files now; no other thread runs meanwhile."""
     entries = (_PollEntry * len(files))(*(_PollEntry(file, events) for file, events in files))
     while _poll_with_gil(entries, len(files), 0) < 0:
         if ctypes.get_errno() != errno.EINTR:  # a signal
@@ -45,7 +45,7 @@ def _poll(files: Files, timeout: Optional[float]) -> bool:
 
 
 def wait(files: Files, timeout: Optional[float] = None) -> bool:
-    """Wait until one of these is ready; False if `timeout` [s, simulated] is over before."""
+    """Wait until one of these files is ready; return False if `timeout` [s, simulated] is over before."""
     if any(_ready(files)) or any(file < 0 for file, _ in files):  # a closed one fails at once
         return True
     if not scheduler.active:
@@ -78,7 +78,7 @@ def wait_for_more(timeout: float) -> None:
 
 
 def wake() -> bool:
-    """Wake the threads whose files are ready; whether there are any."""
+    """Wake the threads whose files are ready; return whether any file is ready."""
     with scheduler.guard:
         files = _wanted()
         ready = {
@@ -119,7 +119,7 @@ def _receiving(method: Callable[..., Any], flags_at: int) -> Callable[..., Any]:
 
 
 def _when_ready(look: Callable[[], Any], files: Files, timeout: Optional[float]) -> Any:
-    """What `look` finds at once, or after `timeout` [s, simulated], or as soon as one of these files is ready."""
+    """Return what `look` finds: at once, as soon as one of these files is ready, or after `timeout` [s, simulated]."""
     ready = look()
     if timeout == 0 or any(ready):
         return ready
@@ -152,9 +152,9 @@ class Poll:
         self._files.pop(_descriptor(file), None)
 
     def poll(self, timeout: Optional[float] = None) -> List[Tuple[int, int]]:
-        """Wait for `timeout` [ms, simulated]; without one, looks let time go on.
+        """Wait for `timeout` [ms, simulated]. If it is 0, a second look at one simulated time lets time go on.
 
-        multiprocessing's Connection.poll() and Queue.empty() look again until the clock is later than at first.
+        multiprocessing's Connection.poll() and Queue.empty() look again and again until the clock has advanced.
         """
         seconds = None if timeout is None else timeout / 1e3
         if seconds == 0 and self._empty_ns == scheduler.now_ns:
@@ -201,7 +201,7 @@ def simulated_select(
 
 
 def install() -> None:
-    """Have everything wait this way, also modules that have been imported already."""
+    """Make all modules wait in this way, also modules that have been imported already."""
     cls: Any = socket.socket
     for name, flags_at in (("recv", 1), ("recv_into", 2), ("recvfrom", 1), ("recvmsg", 2)):
         setattr(cls, name, _receiving(getattr(cls, name), flags_at))

@@ -70,7 +70,7 @@ class Grader:
             self._port.accept()[0].close()
 
     def note_delays(self) -> None:
-        """Note of which topics the messages wait longer than before."""
+        """Note the topics whose messages have waited longer than ever before."""
         for topic, ends in self._ends.items():
             steps = max((end.waiting_ns for end in ends), default=0) // DELAY_STEP_NS
             if steps * DELAY_STEP_NS > 1e9 * self.delays.get(topic, 0.0):
@@ -92,7 +92,7 @@ class Grader:
             self.publisherUpdate("/master", header["topic"], nodes)
 
     def feed(self, topic: str, data: bytes) -> None:
-        """It publishes a message."""
+        """The grader publishes a message."""
         if self._offered.get(topic, {}).get("latching") == "1":
             self._latched[topic] = data
         ends = self._ends.get(topic, [])
@@ -116,7 +116,7 @@ class Grader:
     # -- in place of the network --
 
     def api(self, host: str) -> Any:
-        """What answers requests to an address; None if it is not known here."""
+        """The object that answers requests to an address; None if the address is not known here."""
         if self.node is not None and host == urlsplit(self.node.uri or "").netloc:
             return self.node
         return {self._master_host: self.master, f"localhost:{self.port}": self}.get(host)

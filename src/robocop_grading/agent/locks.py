@@ -1,4 +1,4 @@
-"""Locks whose waiting threads the scheduler knows; conditions, events, queues and semaphores are made of them."""
+"""Locks that tell the scheduler which threads wait; conditions, events, queues and semaphores use these locks."""
 
 import threading
 from collections import deque
@@ -58,7 +58,7 @@ class Lock:
 
 
 def install() -> None:
-    """Have everything that is imported from now on use these locks."""
+    """Make all modules that are imported from now on use these locks."""
     import _thread
     import queue
 

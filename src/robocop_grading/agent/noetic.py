@@ -1,4 +1,4 @@
-"""What the lab's Ubuntu 20.04 has and later releases have dropped: a hand-in that uses it is right there."""
+"""Names that later releases than the lab's Ubuntu 20.04 have dropped: a hand-in that uses them is right there."""
 
 import builtins
 import collections

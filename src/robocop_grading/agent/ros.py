@@ -32,7 +32,7 @@ class Clock:
         self._publish(CLOCK_MESSAGE.pack(8, *divmod(self.now_ns, 10**9)))
 
     def set(self, now_ns: int) -> bool:
-        """Let rospy's time go on, if it is simulated time; whether that has woken a thread."""
+        """Let rospy's time go on, if it is simulated time; return whether a thread has woken up."""
         self.now_ns, turns = now_ns, scheduler.turns
         with scheduler.work():
             if not sys.modules["rospy.rostime"].is_wallclock():
@@ -41,7 +41,7 @@ class Clock:
         return scheduler.turns != turns
 
     def show(self) -> None:
-        """Set rospy's time, and wake who waits in rospy.sleep() until it begins."""
+        """Set rospy's time, and wake threads that wait in rospy.sleep() until time begins."""
         import rospy
 
         rospy.rostime._rostime_current = rospy.Time(0, self.now_ns)
@@ -51,7 +51,7 @@ class Clock:
             condition.release()
 
     def sleep(self, length_ns: int) -> None:
-        """Have the calling thread wake up at the first tick at the end of its own sleep only, not at each one."""
+        """Have the calling thread sleep until the first tick at or after the end of its sleep."""
         import rospy
 
         until_ns, waiter = self.now_ns + length_ns, scheduler.this_thread()
@@ -64,7 +64,7 @@ class Clock:
             scheduler.wait(waiter)
 
     def end_sleeps(self) -> None:
-        """Have the sleeps by /clock that are over end now, in the order of their times."""
+        """End the sleeps by /clock whose time has come, in the order of their times."""
         import rospy
 
         with scheduler.guard:
@@ -91,7 +91,7 @@ def install(shown: Clock) -> None:
 
 
 def _init_simtime(simtime: Any, shown: Clock) -> Callable[[], bool]:
-    """rospy's function, without a subscription to /clock: set() does what its messages do, for less work."""
+    """rospy's function, without a subscription to /clock: Clock.set() replaces its messages, with less work."""
     subscribe = simtime.init_simtime
 
     def init_simtime() -> bool:
@@ -146,7 +146,7 @@ class _Subscription:
                 waiting[1].put(message)
 
     def next_message(self, end_ns: int) -> Any:
-        """The next message, at the time of rospy's look for it; None if rospy is shut down, or at the end [ns]."""
+        """The next message, at the time of rospy's look for it; None if rospy is shut down, or at `end_ns` [ns]."""
         import rospy
 
         started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]

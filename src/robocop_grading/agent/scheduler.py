@@ -15,7 +15,7 @@ MONOTONIC_START = 2**14 * SECOND  # of the node's monotonic clock; asyncio's tim
 SLACK = 50_000  # [ns] the shortest wait, as on Linux, so that rounding cannot stall a loop
 Files = List[Tuple[int, int]]  # descriptors with the events of poll() that are waited for
 
-# The system's own, which everything else of the process no longer finds.
+# The system's own functions; the rest of the process finds those of locks.py, threads.py and clock.py instead.
 allocate_lock, start_new_thread, sleep = _thread.allocate_lock, _thread.start_new_thread, time.sleep
 _system: Any = _thread
 
@@ -44,7 +44,7 @@ class Scheduler:
                                       +-> running, unawaited: it sleeps in an unknown way, or computes for long, and
                                           the others have their turns meanwhile; until it waits or ends
 
-    So the threads meet in the same order in every run. All methods that say so are called with the guard held.
+    So the threads run in the same order in every run. Methods that say "with the guard held" are called in this way.
     """
 
     def __init__(self) -> None:
@@ -94,7 +94,7 @@ class Scheduler:
         self.leave()
 
     def end_wait_at(self, until_ns: int, waiter: Waiter) -> None:
-        """Have a wait end at a simulated time, after those that end then already; with the guard held."""
+        """Have a wait end at a simulated time, after the waits that already end at this time; with the guard held."""
         heapq.heappush(self._sleepers, (until_ns, next(self._numbers), waiter))
 
     def leave(self) -> None:
@@ -104,7 +104,7 @@ class Scheduler:
         self._pass_on()
 
     def _pass_on(self) -> None:
-        """Let the next thread have its turn, unless one that is waited for runs; with the guard held."""
+        """Give the next thread its turn, unless the scheduler waits for a running thread; with the guard held."""
         if self.starting or not self.running <= self.unawaited:
             return
         if self.queue:
@@ -119,7 +119,7 @@ class Scheduler:
             self._idle.release()
 
     def wait(self, waiter: Waiter) -> None:
-        """Wait for the calling thread's next turn, when it has parked."""
+        """Wait for the next turn of the calling thread, which has parked."""
         try:
             waiter.gate.acquire()
         except BaseException:  # of a signal's handler
@@ -154,9 +154,10 @@ class Scheduler:
         self.wait(waiter)
 
     def spend(self, share: float, pause_s: float) -> None:
-        """The calling thread has done this share of what a thread can do at one simulated time; then it waits [s].
+        """Note that the calling thread has done this share of what a thread can do at one simulated time.
 
-        Work takes time in the lab, too: a loop without pauses that calls this is as fast on each machine.
+        When the shares at one simulated time exceed 1, the thread waits for `pause_s` [s]. Work takes time in the
+        lab, too: with this, a loop without pauses is as fast on each machine.
         """
         if not self.active:
             return
@@ -170,7 +171,7 @@ class Scheduler:
     # -- for those who start threads --
 
     def new_thread(self) -> Waiter:
-        """The first turn of a thread that is about to be started, which calls begin() at first."""
+        """Queue the first turn of a thread that is about to be started; the thread begins with a call of begin()."""
         waiter = Waiter(0)
         with self.guard:
             self.wake(waiter)
@@ -184,7 +185,7 @@ class Scheduler:
             self.running.add(_thread.get_ident())
 
     def no_thread(self, waiter: Waiter) -> None:
-        """The system did not start a thread."""
+        """Drop the first turn of a thread that the system did not start."""
         with self.guard:
             if waiter in self.queue:
                 self.queue.remove(waiter)
@@ -240,7 +241,7 @@ class Scheduler:
 
     @contextlib.contextmanager
     def work(self) -> Iterator[None]:
-        """While this lasts the calling thread is one of those that run, so that the others wait for their turns."""
+        """A block in which the calling thread counts as running, so that the other threads wait for their turns."""
         with self.guard:
             self.running.add(_thread.get_ident())
         try:
@@ -250,7 +251,7 @@ class Scheduler:
                 self.leave()
 
     def advance(self, until_ns: int) -> None:
-        """Let simulated time go on; no thread waits for a time in between."""
+        """Let simulated time go on to a time; no thread may wait for an earlier time."""
         self.now_ns = max(self.now_ns, until_ns)
 
 

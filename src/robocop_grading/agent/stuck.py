@@ -1,9 +1,9 @@
-"""What the scheduler does not see: threads that wait in another way, and other processes of the hand-in.
+"""Finds what the scheduler does not see: threads that wait in an unknown way, and other processes of the hand-in.
 
-Both are found in /proc. A thread that the kernel shows asleep, not for a disk, and that has not run between two looks,
-counts as waiting. So does one that has slept for most of a second in which no other one had a turn, such as one that
-polls in C, until it waits in a known way. Other processes hold simulated time as long as they work, and count with
-their processor time.
+Both are found in /proc. A thread counts as waiting if the kernel shows it asleep, but not for a disk, and it has not
+run between two looks. A thread that polls in C also counts as waiting: it has slept for most of a second in which no
+other thread had a turn. It counts as waiting until it waits in a known way. Other processes hold simulated time as
+long as they work, and their processor time counts as the node's.
 """
 
 import contextlib
@@ -24,13 +24,13 @@ TICK = os.sysconf("SC_CLK_TCK")
 ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
 WINDOW = 1.0  # [s, wall]
 _process_time, _thread_time, _wall_time = time.process_time, time.thread_time, time.monotonic
-_asleep: Dict[int, str] = {}  # threads at the previous look, with how often they have run
+_asleep: Dict[int, str] = {}  # the threads at the previous look, and how often each of them has run
 _pollers: Set[int] = set()  # threads that have slept for most of a window
 _window: Optional["_Window"] = None
 
 
 def all_asleep() -> Optional[Set[int]]:
-    """The threads that run, if each was asleep at this look and the previous one, and did not run; else None."""
+    """The running threads, if all of them count as waiting; otherwise None."""
     global _asleep, _window
     with scheduler.guard:
         threads = set(scheduler.running)
@@ -47,7 +47,7 @@ def all_asleep() -> Optional[Set[int]]:
 
 
 def _sleep_of(native_id: int) -> str:
-    """How often a thread has run, if it sleeps now."""
+    """How often a thread has run, if it sleeps now; otherwise an empty text."""
     try:
         with open(f"/proc/self/task/{native_id}/status", errors="replace") as file:  # a thread has any name
             asleep = ASLEEP.search(file.read())
@@ -57,12 +57,12 @@ def _sleep_of(native_id: int) -> str:
 
 
 class _Window:
-    """A time in which the same threads run, to see which of them sleep for most of it."""
+    """A period in which the same threads run; it finds the threads that sleep for most of the period."""
 
     def __init__(self, threads: Set[int]) -> None:
         self.turn, self.since = scheduler.turns, _wall_time()
         self._work = {thread: _work_of(native_ids.get(thread, 0)) for thread in threads}
-        self._awake = dict.fromkeys(threads, 0)  # at how many looks, also of one that waits for a disk
+        self._awake = dict.fromkeys(threads, 0)  # at how many looks; a thread that waits for a disk is awake
         self._looks = 0
 
     def look(self, found: Dict[int, str]) -> bool:
@@ -84,7 +84,7 @@ class _Window:
 
 
 def _work_of(native_id: int) -> float:
-    """For how long [s] a thread has run or waited for the processor; not a number where the kernel does not tell."""
+    """For how long [s] a thread has run or waited for the processor; NaN if the kernel does not tell."""
     try:
         with open(f"/proc/self/task/{native_id}/schedstat") as file:
             return sum(map(int, file.read().split()[:2])) / 1e9
@@ -136,7 +136,7 @@ def _words_of(pattern: str) -> Iterator[List[str]]:
 
 
 def processor_time() -> float:
-    """[s] that this process has used, without the thread that asks, and the others, as of the last look at them."""
+    """Processor time [s] of this process, without the calling thread, and of the others at the last look at them."""
     return _process_time() - _thread_time() + others.processor_time
 
 

@@ -23,7 +23,7 @@ def _end() -> None:
 
 
 def register_main() -> None:
-    """The thread that calls this is the hand-in's main thread."""
+    """Register the calling thread as the hand-in's main thread."""
     scheduler.running.add(_thread.get_ident())
     native_ids[_thread.get_ident()] = threading.get_native_id()
 
@@ -39,10 +39,17 @@ def _join_others() -> None:
 
 
 def install() -> None:
-    """For all threads that are started from now on."""
+    """Count all threads that are started from now on."""
     system: Any = threading
     # The first to be registered is called last. Python 3.8 waits by itself, which stuck.py sees.
     getattr(system, "_register_atexit", lambda _: None)(_join_others)
+    _install_thread_class()
+    system = _thread
+    system.start_new_thread = system.start_new = _start_new_thread
+
+
+def _install_thread_class() -> None:
+    """threading.Thread: its start, run and join."""
     cls: Any = threading.Thread
     start, bootstrap, join = cls.start, cls._bootstrap, cls.join
 
@@ -81,24 +88,22 @@ def install() -> None:
 
     cls.start, cls._bootstrap, cls.join = counted_start, counted_bootstrap, simulated_join
 
-    @functools.wraps(_thread.start_new_thread)
-    def start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
-        if not scheduler.active:
-            return start_unknown_thread(function, arguments, options)
-        turn = scheduler.new_thread()
 
-        def counted() -> None:
-            _begin(turn)
-            try:
-                function(*arguments, **options)
-            finally:
-                _end()
+@functools.wraps(_thread.start_new_thread)
+def _start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int:  # noqa: B006  as the system's
+    if not scheduler.active:
+        return start_unknown_thread(function, arguments, options)
+    turn = scheduler.new_thread()
 
+    def counted() -> None:
+        _begin(turn)
         try:
-            return start_unknown_thread(counted, ())
-        except RuntimeError:  # no more threads
-            scheduler.no_thread(turn)
-            raise
+            function(*arguments, **options)
+        finally:
+            _end()
 
-    system = _thread
-    system.start_new_thread = system.start_new = start_new_thread
+    try:
+        return start_unknown_thread(counted, ())
+    except RuntimeError:  # no more threads
+        scheduler.no_thread(turn)
+        raise

@@ -1,4 +1,4 @@
-"""What the grader and the agent say to each other: frames on a socket, each with its length, its kind and its body.
+"""The messages between grader and agent: frames on a socket, each with its length, its kind and its body.
 
 grader -> agent
     SETUP     the node's parameters, and headers of connections, pickled
@@ -8,9 +8,9 @@ grader -> agent
 agent -> grader
     MESSAGE   a topic, and bytes of the stream of its messages
     CALL      a service, and the request as on TCPROS; a REPLY follows
-    TOPICS    what it publishes and subscribes to, programs of ROS that it has started, and delays, as JSON
+    TOPICS    the node's topics, the programs of ROS that the node has started, and delays, as JSON
     CHILD     a forked child has become a node, which nobody connects
-    DONE      until when [ns], when it does something by itself [ns]
+    DONE      until when [ns], and when the node next does something by itself [ns]
 """
 
 import struct
@@ -26,18 +26,18 @@ Message = Tuple[str, bytes]  # a topic, and what is sent on it, with its length
 
 
 def frame(kind: int, body: bytes) -> bytes:
-    """A frame as it is sent."""
+    """Make a frame, as it is sent."""
     return HEAD.pack(len(body), kind) + body
 
 
 def named(name: str, data: bytes) -> bytes:
-    """A body that begins with a name."""
+    """Make a body that begins with a name."""
     text = name.encode()
     return _NAME.pack(len(text)) + text + data
 
 
 def split(body: bytes) -> Tuple[str, bytes]:
-    """Its name, and the rest; struct.error or UnicodeError if it is none."""
+    """The name at the beginning of a body, and the rest; struct.error or UnicodeError if there is no name."""
     (size,) = _NAME.unpack_from(body)
     start = _NAME.size + size
     return body[_NAME.size : start].decode(), body[start:]

@@ -61,7 +61,7 @@ def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
 def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
     """That something is old because the callback of a topic with such a name is too slow; empty if none is."""
     delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
-    return text("late", what, *max(delays)) if delays else ""
+    return text("late", what, *reversed(max(delays))) if delays else ""
 
 
 def silent(record: Record, goal: Goal) -> bool:

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
+from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
@@ -112,9 +113,9 @@ class Class:
         self._next_write = time.monotonic() + PERIOD
 
 
-def main() -> None:
-    """Exit status 0: everybody is judged; 1: somebody was not gradable; 130: interrupted."""
-    parser = argparse.ArgumentParser(prog="robocop grade-class", description=__doc__, allow_abbrev=False)
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog=typed("grade-class"), description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
     )
@@ -125,41 +126,58 @@ def main() -> None:
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
     parser.add_argument("--again", nargs="*", metavar="NAME", help=AGAIN)
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
-    args = parser.parse_args()
-    interrupt_on_signal()
+    return parser.parse_args()
+
+
+def grade_class(args: argparse.Namespace) -> Class:
+    """Grade what is not graded yet; RobocopError says why that can't be done."""
     folder = Path(args.folder).resolve()
+    state, share = places()
+    if args.workers is not None and args.workers < 1:
+        raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
+    if args.scheduler and not args.scheduler.startswith("tls://"):
+        # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
+        raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
+    results_folder = Path(args.report).resolve() if args.report else state / "classes" / folder.name
+    plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
+    digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
+    out = make_report_folder(results_folder)
+    hand_ins = _hand_ins(folder, args.unsafe)
+    version = ElementTree.parse(share / "package.xml").findtext("version")
+    with scratch_folder(), exclusive(out / ".run"):
+        seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
+        plan = load(plan.path, seed)
+        results = Results(out, {"plan": digest, "seed": seed, "grader": version})
+        group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
+        print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
+        print(f"scenarios: seed {seed}", flush=True)
+        if not args.scheduler:
+            open_sandbox(args.unsafe)
+            lab_environment(share, state)
+        send_child_errors_to(out / WORKERS_LOG)
+        workers = args.workers or len(os.sched_getaffinity(0))
+        grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
+    return group
+
+
+def _hand_ins(folder: Path, unsafe: bool) -> Dict[str, str]:
+    """What the folder has, by name; what is no hand-in is printed."""
+    if not unsafe:
+        expect_private(folder)
+    hand_ins, others = collect(folder, (CSV, HTML))
+    for name in hand_ins.keys() & {CSV, HTML}:
+        raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
+    for name in others:
+        print(f"ignored: {one_line(name)}, which is no hand-in", flush=True)
+    return hand_ins
+
+
+def main() -> None:
+    """Exit status 0: everybody is judged; 1: somebody was not gradable; 130: interrupted."""
+    args = arguments()
+    interrupt_on_signal()
     try:
-        state, share = places()
-        if args.workers is not None and args.workers < 1:
-            raise GradingSetupError(f"--workers {args.workers}: expected 1 or more")
-        if args.scheduler and not args.scheduler.startswith("tls://"):
-            # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
-            raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
-        results_folder = Path(args.report).resolve() if args.report else state / "classes" / folder.name
-        plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
-        digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
-        out = make_report_folder(results_folder)
-        if not args.unsafe:
-            expect_private(folder)
-        hand_ins, others = collect(folder, (CSV, HTML))
-        for name in hand_ins.keys() & {CSV, HTML}:
-            raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
-        for name in others:
-            print(f"ignored: {one_line(name)}, which is no hand-in", flush=True)
-        version = ElementTree.parse(share / "package.xml").findtext("version")
-        with scratch_folder(), exclusive(out / ".run"):
-            seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
-            plan = load(plan.path, seed)
-            results = Results(out, {"plan": digest, "seed": seed, "grader": version})
-            group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
-            print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
-            print(f"scenarios: seed {seed}", flush=True)
-            if not args.scheduler:
-                open_sandbox(args.unsafe)
-                lab_environment(share, state)
-            send_child_errors_to(out / WORKERS_LOG)
-            workers = args.workers or len(os.sched_getaffinity(0))
-            grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
+        group = grade_class(args)
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(1)
@@ -171,6 +189,7 @@ def main() -> None:
         os._exit(INTERRUPTED)  # dask's handlers at exit would wait for workers that had not started, and print why not
     finally:
         ignore_all()
+    out = group.results.folder
     print("\n".join([*group.summary_lines(), f"table: {out / CSV}", f"overview: {out / HTML}"]))
     sys.exit(1 if group.figures.not_judged else 0)
 

@@ -53,7 +53,7 @@ class BridgeClicks(SystemTest):
         driving = self.clicks.wait_for_status("is ACTIVE: driving, ")
         self.assertRegex(driving, r"\(position_error \d\.\d\d m, angle_error -?\d\.\d\d rad\)$")
         self.wait_for_goals(1)[0].cancel()
-        self.clicks.wait_for_status("robocop_goto_as is ready, last goal PREEMPTED: PREEMPTED: ")
+        self.clicks.wait_for_status("robocop_goto_as is ready, last goal PREEMPTED: goal ")
 
 
 if __name__ == "__main__":

@@ -46,8 +46,8 @@ class BridgeWaits(unittest.TestCase):
         clicks, log = Clicks(), Recorder("/rosout", Log)
         clicks.wait_for_status(f"waiting for {ACTION}")
         self.assertEqual({m.data for m in clicks.status.messages}, {f"waiting for {ACTION}"})
-        advice = clicks.wait_for_status("to start it again")
-        self.assertTrue(advice.endswith(": ./robocop shell rosrun aro_robocop_goto_as robocop_goto_as.py"), advice)
+        advice = clicks.wait_for_status("robocop run starts one")
+        self.assertEqual(advice, f"waiting for {ACTION}; no simulator is running: ./robocop run starts one")
         log.wait_for(lambda m: m.name == BRIDGE and m.level == Log.WARN and m.msg == advice, "the advice as a warning")
 
         misspelt = Server(MISSPELT)

@@ -45,7 +45,7 @@ class GotoCommand(SystemTest):
             self.robot.wait_until_it_drives()
             command.send_signal(signal.SIGINT)
             self.assertEqual(command.wait_for_exit(), 1, command.output)
-        self.assertRegex(command.output, r"(?m)^PREEMPTED: PREEMPTED: ")
+        self.assertRegex(command.output, r"(?m)^PREEMPTED: goal ")
         self.robot.wait_until_it_stands()
 
 

@@ -142,12 +142,16 @@ class ServerEnds(unittest.TestCase):
         goal.cancel()
         self.assert_ended(goal, "PREEMPTED")
 
-    def test_goal_ends_as_stuck_after_five_seconds_without_progress(self):
+    def test_goal_ends_as_stuck_after_five_seconds_without_progress_and_other_nodes_that_command_are_named(self):
+        commands = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        self.addCleanup(commands.unregister)
         goal = self.start()
         self.robot.obeys = False
         took = self.robot.follow(goal)
         self.assertTrue(4.5 < took < 5.5, took)
-        self.assertRegex(self.assert_ended(goal, "STUCK"), r"^STUCK: no progress for 5\.\d s; 1\.\d+ m")
+        text = self.assert_ended(goal, "STUCK")
+        self.assertRegex(text, r"^STUCK: no progress for 5\.\d s; 1\.\d+ m")
+        self.assertTrue(text.endswith(f"; /cmd_vel is also published by {rospy.get_name()}"), text)
 
     def test_goal_ends_at_its_timeout(self):
         goal = self.start(100.0, 0.0)

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from support import analytic_distances, world_named
+from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.obstacle_distance import ObstacleDistance
+from aro_robocop_goto_as.raycast.obstacle_distance import MAX_SPACING, MIN_HEIGHT, ObstacleDistance, body_heights
 from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere, Walls
 from aro_robocop_goto_as.world.model import Obstacle, World
 
@@ -19,6 +19,13 @@ SHEET = Mesh(np.array([[[-9, 0, -9], [9, 0, -9], [0, 0, 9]]], float), "")
 def _nearest(geometry: Geometry, pose: Pose3D, x: float, y: float) -> "tuple[float, str]":
     world = World("w", (Obstacle("m/l/c", pose, geometry),), Pose2D(), (), "")
     return tuple(ObstacleDistance(world, HEIGHTS).nearest(x, y))
+
+
+def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a_gap() -> None:
+    for model in map(model_named, ("burger", "turtlebot2")):
+        heights = body_heights(model)
+        assert (heights[0], heights[-1]) == pytest.approx((MIN_HEIGHT, model.scan_height))
+        assert max(np.diff(heights)) <= MAX_SPACING
 
 
 @pytest.mark.parametrize("name", ["stage_4", "world", "maze_1"])

@@ -24,7 +24,9 @@ def _fleet(robots: int = 1) -> Fleet:
 
 
 def _site(fleet: Fleet) -> Any:
-    return SimpleNamespace(fleet=fleet)
+    """A site where the left wheel slips by two sigmas, and the right one by one; only their sizes count."""
+    noise = SimpleNamespace(standard_normal=lambda out: np.copyto(out, [2.0, -1.0]))
+    return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
@@ -40,6 +42,35 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
     expected = chord * math.cos(w * t / 2.0), chord * math.sin(w * t / 2.0)
     assert odometers.poses[0, :2] == pytest.approx(expected, abs=1e-6)
     assert odometers.twists[0] == pytest.approx((v, w), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "params, x, yaw",
+    [
+        (OdometryParams(odom_wheel_radius_error=0.1), 1.1 * 0.033, 0.0),
+        (OdometryParams(odom_slip=0.1), 0.033 * (1.2 + 1.1) / 2.0, 0.033 * (1.1 - 1.2) / 0.16),
+        (OdometryParams(encoder_tick=0.3), 0.9 * 0.033, 0.0),
+    ],
+)
+def test_each_error_of_odometry_has_its_size(params: OdometryParams, x: float, yaw: float) -> None:
+    fleet = _fleet()
+    odometers = Odometers(params, _site(fleet))
+    fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
+    for measure in odometers.measuring([0]):
+        measure()
+    chord = x * np.sinc(yaw / (2.0 * math.pi))
+    assert odometers.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
+
+
+def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
+    fleet = _fleet()
+    odometers = Odometers(OdometryParams(odom_slip=0.1), _site(fleet))
+    fleet.wheel_angles[0] = 1.0, 1.0
+    assert odometers.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
+    assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
+    for measure in odometers.measuring([0]):
+        measure()
+    assert odometers.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)
 
 
 def test_odometry_of_the_world_has_no_errors() -> None:

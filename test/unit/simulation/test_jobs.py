@@ -32,3 +32,11 @@ def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() 
     assert outcomes == [threading.get_ident(), "raised"]
     with pytest.raises(ShutdownError):
         jobs.call(lambda: None)
+
+
+def test_queued_jobs_are_run_and_those_that_they_post_are_left_for_later() -> None:
+    jobs, ran = Jobs(Clock(), lambda: False), []
+    jobs.post(lambda: jobs.post(lambda: ran.append("later")))
+    jobs.post(lambda: ran.append("queued"))
+    jobs.run_queued()
+    assert (ran, len(jobs)) == (["queued"], 1)

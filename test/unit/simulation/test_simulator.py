@@ -3,22 +3,17 @@
 import math
 from typing import Callable, Dict, List, Tuple
 
-import numpy as np
 import pytest
 from support import ORIGIN, drive, everything
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
+from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
 DRIVES: List[Dict[str, object]] = [{"drive": "wheels"}, KINEMATIC]
-
-
-def _drive_and_stop(sim: Simulator, twist: Twist2D, seconds: float) -> None:
-    drive(sim, twist, seconds)
-    drive(sim, STANDSTILL, 1.0)
 
 
 def _odom(sim: Simulator) -> Pose2D:
@@ -98,14 +93,9 @@ def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make)
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
 
 
-def test_odometry_of_the_world_is_the_true_pose_from_the_start(simulator: Make) -> None:
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", odom_slip=0.1)
-    _drive_and_stop(sim, Twist2D(0.2, 0.3), 1.0)
-    (seen,) = [
-        seen for seen in (sim.step({"odom": [0], "ground_truth": [0]}) for _ in range(8)) if seen and seen.of("odom")
-    ]
-    np.testing.assert_array_equal(seen.odometry.poses, seen.fleet.poses)
-    np.testing.assert_array_equal(seen.odometry.twists, seen.fleet.twists)
+def test_map_and_odom_are_one_where_odometry_is_of_the_world(simulator: Make) -> None:
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world")
+    assert _odom(sim) == sim.world_from_footprint()
     sim.place(Pose2D(1.0, -1.0, 1.0))
     assert sim.map_from_odom() == Pose2D()
 
@@ -133,6 +123,16 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
 
 
 # Several robots
+
+
+def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_reach(simulator: Make) -> None:
+    occupancy = simulator("stage_1", ORIGIN, Pose2D(9.0, 0.0)).occupancy()
+
+    row = occupancy.cells[int(-occupancy.origin.y / occupancy.resolution)]
+    at_start, before_wall, wall, outside = (
+        int(row[int((x - occupancy.origin.x) / occupancy.resolution)]) for x in (0.0, 1.8, 1.849, 2.2)
+    )
+    assert (at_start, before_wall, wall, outside) == (FREE, FREE, OCCUPIED, FREE)
 
 
 @pytest.mark.parametrize("params", DRIVES)

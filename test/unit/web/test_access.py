@@ -1,8 +1,6 @@
 """Which requests the page answers, and where it listens."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from aro_robocop_goto_as.web.access import is_loopback, refusal, url
 
@@ -51,11 +49,6 @@ def test_several_origins_are_refused() -> None:
 def test_an_origin_that_is_allowed_is_answered_and_no_other_one() -> None:
     assert refusal(["localhost:8080"], [PROXY], [], [PROXY]) == ""
     assert refusal(["localhost:8080"], [PROXY + ".evil.example"], [], [PROXY])
-
-
-@given(st.text(), st.text())
-def test_any_text_as_host_and_origin_gives_an_answer(host: str, origin: str) -> None:
-    assert isinstance(refusal([host], [origin], ["pc-7"], []), str)
 
 
 def test_loopback_addresses_are_told_from_those_that_others_reach() -> None:

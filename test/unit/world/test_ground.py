@@ -5,7 +5,7 @@ import math
 import pytest
 import trimesh
 from sdf_files import collision, model, world_file
-from support import drive, model_named
+from support import drive
 
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
@@ -26,26 +26,15 @@ def slab(shape=None, z=0.0, name="asphalt", at=(0.0, 0.0), turn="0 0 0.3"):
     return model(collision(shape or box(20, 20, 0.1)), name, pose)
 
 
-@pytest.fixture
-def simulator():
-    made = []
-
-    def make(world, drive_by, spawn=None):
-        model_of_robot = model_named("burger")
-        p = SimParams.of(drive=drive_by, scan_profile="ideal")
-        made.append(make_simulator(p, world, [RobotSpec("", model_of_robot, spawn or world.spawn)]))
-        return made[-1]
-
-    yield make
-    for one in made:
-        one.close()
-
-
 GROUNDS = {  # case: (body of the world, height of the ground [m])
     "slab on a ground plane": (PLANE + slab(), 0.05),
     "slab alone, beside the origin": (slab(at=(30.0, 0.0)), 0.05),
     "slab beside the origin of a ground plane": (PLANE + slab(at=(30.0, 0.0)), 0.0),
     "higher of two slabs": (slab() + slab(box(6, 5, 0.3), name="pad"), 0.15),
+    "four tiles that meet at the origin": (
+        "".join(slab(box(10, 10, 0.1), 0.0, f"tile {x} {y}", (x, y), "0 0 0") for x in (-5, 5) for y in (-5, 5)),
+        0.05,
+    ),
     "round slab": (slab("<cylinder><radius>4</radius><length>0.1</length></cylinder>"), 0.05),
     "block sunk into the ground": (slab(box(9, 9, 2), z=-0.9), 0.1),
     "raised ground plane": (PLANE.replace("</uri>", "</uri><pose>0 0 0.1 0 0 0</pose>"), 0.1),
@@ -68,15 +57,18 @@ def test_ground_is_what_is_flat_large_and_low_under_the_spawn(tmp_path, body, he
 
 
 @pytest.mark.parametrize("drive_by", ["wheels", "kinematic"])
-def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, simulator, drive_by):
+def test_robot_drives_and_scans_on_a_slab_as_on_the_floor(tmp_path, burger, drive_by):
     seen = {}
     for name, body, height in (("floor", PLANE, 0.175), ("slab", PLANE + slab(), 0.225)):
         # A shelf from 0.15 to 0.20 m above the ground: a scanner at 0.182 m sees it, 5 cm lower it would not.
         shelf = slab(box(1, 20, 0.05), height, "shelf", (2.0, 0.0), "0 0 0")
-        sim = simulator(load_world(world_file(tmp_path / name, body + shelf)), drive_by)
+        world = load_world(world_file(tmp_path / name, body + shelf))
+        p = SimParams.of(drive=drive_by, scan_profile="ideal")
+        sim = make_simulator(p, world, [RobotSpec("", burger, world.spawn)])
         scans = [found.scan.ranges[0] for found in drive(sim, Twist2D(0.2, 0.3), 1.0, [SCAN]) if found.of(SCAN)]
         assert not sim.touching() and not sim.newly_placed_in_contact()
         seen[name] = (*sim.world_from_footprint(), *scans[-1])
+        sim.close()
     assert seen["slab"] == pytest.approx(seen["floor"], abs=1e-9)
     assert math.hypot(*seen["slab"][:2]) > 0.1 and min(seen["slab"][3:]) < 1.5
 

@@ -27,11 +27,13 @@ def test_file_of_another_kind_is_refused_with_what_was_expected(tmp_path, name, 
         load_world(str(tmp_path / name))
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
-def test_file_in_unicode_is_read_with_or_without_a_byte_order_mark(tmp_path, encoding):
-    (tmp_path / "w.world").write_text(
-        f"\n  <!-- zeď -->\n<sdf version='1.6'><world name='{encoding}'/></sdf>", encoding
-    )
+@pytest.mark.parametrize(
+    ("encoding", "declaration"),
+    [("utf-8", "<?xml version='1.0'?>\r\n"), ("utf-8-sig", "<?xml version='1.0'?>\n"), ("utf-16", "")],
+)
+def test_file_in_unicode_is_read_whatever_is_before_its_content(tmp_path, encoding, declaration):
+    text = f"\r\n  <!-- zeď -->\r\n{declaration}<sdf version='1.6'><world name='{encoding}'/></sdf>"
+    (tmp_path / "w.world").write_bytes(text.encode(encoding))
     assert load_world(str(tmp_path / "w.world")).name == encoding
 
 

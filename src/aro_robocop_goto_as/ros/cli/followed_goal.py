@@ -159,8 +159,8 @@ def _wait_or_explain(
         return ""
     if not rospy.get_rostime():
         return standstill()
-    unknown = "; the terminal in which the system was started shows why its server ended, if it did"
-    return f"no answer from {action} for {time.monotonic() - started:.0f} s{discovery.hint(action) or unknown}"
+    silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
+    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice(action)}"
 
 
 def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:

@@ -55,12 +55,8 @@ def _run(args: argparse.Namespace) -> int:
         return NOT_REACHED
     arguments = ["rviz:=false", "bridge:=false"]
     if args.world:
-        world = os.path.abspath(args.world) if os.path.isfile(args.world) else args.world
-        arguments.append(f"world:={world}")
-        from . import preflight  # only where it is needed, as it takes time
-
         try:
-            preflight.check({"world": world})
+            arguments.append(f"world:={_checked_world(args.world)}")
         except RobocopError as error:
             complain(f"--world: {error}")
             return WRONG_ARGUMENTS
@@ -79,6 +75,15 @@ def _run(args: argparse.Namespace) -> int:
         lines = ["the system started for this goal failed:", *errors, f"its complete output is in {log}"]
         complain("\n".join(lines))
     return status
+
+
+def _checked_world(given: str) -> str:
+    """A world's name, or the absolute path of its file; RobocopError if it can't be read."""
+    from . import preflight  # only where it is needed, as it takes time
+
+    world = os.path.abspath(given) if os.path.isfile(given) else given
+    preflight.check({"world": world})
+    return world
 
 
 def _import_go_to() -> Callable[..., int]:

@@ -7,6 +7,7 @@ import sys
 from typing import List
 
 from ...param_loading import MAX_COORDINATE
+from ...process.start import typed
 
 SERVER_TIMEOUT = 5.0  # [s, wall] for the server of a running system
 START_TIMEOUT = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
@@ -18,9 +19,9 @@ DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 def parse(argv: List[str]) -> argparse.Namespace:
     """The arguments; ends the program with exit status 2 if they are wrong."""
     parser = argparse.ArgumentParser(
-        prog="robocop goto",
+        prog=typed("goto"),
         description="Send one goal and follow it; exit status 0 when it is reached, 1 when not.",
-        epilog="Uses the running ROS system; without one it starts a headless simulator for this goal.",
+        epilog="Uses the running ROS system; without a ROS master it starts a headless simulator for this goal.",
     )
     parser.add_argument("x", type=_metres, help="[m]")
     parser.add_argument("y", type=_metres, help="[m]")

@@ -19,6 +19,7 @@ from ...geometry import STANDSTILL, Twist2D
 from ...names import absolute
 from ...probes import master
 from ...process import signals
+from ...process.start import typed
 from ..publishing.publisher import publisher
 from ..waiting import wait_until
 
@@ -107,7 +108,7 @@ class KeyboardTeleop:
 
 def _parse(argv: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="robocop teleop",
+        prog=typed("teleop"),
         description="Drive a robot with the keyboard; it stops when the key is released.",
         epilog="Exit status 0 when it was ended, 1 when it could not start.",
     )

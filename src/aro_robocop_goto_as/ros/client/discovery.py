@@ -32,8 +32,7 @@ def hint(action: str) -> str:
         return "; the ROS master does not answer"
     others = [name for name, type_ in servers.items() if type_ == ACTION_TYPE and name != wanted]
     if not others:
-        missing = master.no_simulator(master.master_uri())
-        return missing and f"; {missing}"
+        return ""
     robot, _, base_name = wanted[1:].rpartition("/")
     named = [name[1:].rpartition("/")[0] for name in others if name.endswith(f"/{base_name}")]
     question = ": which robot is meant?" if named else ": a misspelt name?"
@@ -42,9 +41,12 @@ def hint(action: str) -> str:
     return f"; there is {' and '.join(map(repr, others))} of the same type{question}"
 
 
-def advice() -> str:
-    """What a user of this namespace can do about a server that is still missing."""
-    namespace = rospy.get_namespace().rstrip("/")
+def advice(action: str) -> str:
+    """What a user can do about a server that is still missing."""
+    missing = master.no_simulator(master.master_uri())
+    if missing:
+        return missing
+    namespace = rospy.resolve_name(action).rpartition("/")[0]
     setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
     command = f"./robocop shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
     return f"the server's output may say why it ended; to start it again, in another terminal: {command}"

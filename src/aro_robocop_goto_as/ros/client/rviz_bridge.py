@@ -75,6 +75,8 @@ class Bridge:
         """Forward clicks until shutdown."""
         while not rospy.is_shutdown():
             if not self.clicked.wait(IDLE_POLL):
+                if not self.last_status and time.monotonic() - self.last_seen > SERVER_TIMEOUT:
+                    self.report()  # simulated time does not pass, and so no timer fires
                 continue
             self.clicked.clear()
             click = self.click
@@ -164,7 +166,7 @@ class Bridge:
             if self.waiting:
                 text += f"; goal {self.waiting} waits for it"
             if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
-                text, log = f"{text}; {discovery.advice()}", rospy.logwarn
+                text, log = f"{text}; {discovery.advice(ACTION)}", rospy.logwarn
             return self.publish_status(text, log)
         self.last_seen = time.monotonic()
         with self.sending:

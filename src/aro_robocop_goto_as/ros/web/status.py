@@ -9,6 +9,7 @@ from std_msgs.msg import String
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...names import ACTION, BRIDGE, SIMULATOR, absolute
+from ...probes import master
 from ...web import text
 from ...web.state import PageState
 from .part import Context, Inbox, Part
@@ -28,6 +29,7 @@ class Status(Part):
         self._sim: Optional[SimStatus] = None
         self._sim_at = 0.0  # [s, wall]
         self._bridge = ""
+        self._no_simulator = ""  # that none runs, as long as none has reported
 
         async def on_select(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
             if event.client is not None:
@@ -50,11 +52,14 @@ class Status(Part):
         self._bridge, found = WAITS.sub("", message.data), WAITS.search(message.data)
         self.context.state.change(waiting=found[1] if found else "")
 
+    def ask_master(self, state: PageState, inbox: Inbox) -> None:
+        self._no_simulator = master.no_simulator(master.master_uri()) if state.live and self._sim is None else ""
+
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else "")
+        self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else self._no_simulator)
         known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)

@@ -73,7 +73,7 @@ class _Reader(Contents):
 
     def children(self, element: Element, parent: Parent) -> None:
         """Read the models and includes in a <world> or a <model>."""
-        if len(parent.names) >= MAX_DEPTH:
+        if len(parent.names) > MAX_DEPTH:
             raise xml.error(element, f"more than {MAX_DEPTH} models within each other; supported: {MAX_DEPTH}")
         for child in element.iterchildren("include", "model"):
             if child.tag == "include":

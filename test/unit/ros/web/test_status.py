@@ -4,10 +4,27 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from aro_robocop_goto_as.probes import master
 from aro_robocop_goto_as.ros.web.part import Context
 from aro_robocop_goto_as.ros.web.status import Status
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.state import PageState, SharedState
+
+
+def made(state):
+    return Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
+
+
+def test_a_page_that_no_simulator_has_reported_to_says_whether_one_runs(monkeypatch):
+    monkeypatch.setattr(master, "no_simulator", lambda uri: "no simulator is running")
+    status = made(PageState())
+    status._alert = MagicMock()  # not the same as the other elements
+    status.ask_master(PageState(), MagicMock())
+    status.show(PageState())
+    assert "no simulator is running" in status._alert.content
+    status._on_sim(0.0, MagicMock())
+    status.ask_master(PageState(), MagicMock())
+    assert status._no_simulator == ""
 
 
 @pytest.mark.parametrize(
@@ -25,6 +42,6 @@ from aro_robocop_goto_as.web.state import PageState, SharedState
 )
 def test_a_server_that_executes_no_goal_is_ready_unless_the_bridge_reports_something_else(bridge, shown):
     state = PageState(answering=True, executing=False)
-    status = Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
+    status = made(state)
     status._on_bridge(0.0, MagicMock(data=bridge))
     assert status._rows(state) == [("server", shown)]

@@ -1,7 +1,5 @@
 """Maps of map_server are interpreted as by map_server."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from map_files import room, write_map, write_yaml, yaml_of
@@ -66,6 +64,24 @@ def test_colours_are_averaged_and_alpha_counts_as_in_map_server(tmp_path, pixel,
     assert world.occupancy.cells[0, 0] == expected
 
 
+@pytest.mark.parametrize(
+    "image", ["/home/student/maps/m.pgm", "C:\\Users\\student\\m.pgm", "package://maps/m.pgm", "maps/m.pgm"]
+)
+def test_image_that_is_not_where_the_file_says_is_looked_for_beside_it_and_that_is_said(tmp_path, image):
+    write_map(tmp_path, [[0, 255], [255, 255]])
+    world = load_world(write_yaml(tmp_path, yaml_of(image=image)))
+    assert world.occupancy.cells[::-1].tolist() == [[100, 0], [0, 0]]
+    assert world.approximated == (f"there is no image {image}; m.pgm beside the map's file is used",)
+
+
+def test_keys_of_other_programs_and_comments_in_another_encoding_are_ignored(tmp_path):
+    (tmp_path / "m.yaml").write_bytes(yaml_of(costs="[]").encode() + "# zeď\n".encode("cp1250"))
+    Image.fromarray(np.array([[254, 0]], np.uint8)).save(str(tmp_path / "m.pgm"))
+    world = load_world(str(tmp_path / "m.yaml"))
+    assert (world.occupancy.cells.tolist(), len(world.ignored)) == ([[0, 100]], 1)
+    assert "costs" in world.ignored[0]
+
+
 BROKEN = {  # case: (text of the YAML, line of the error or None, what the message must name)
     "not YAML": ("image: [m.pgm\nresolution: 1\n", 2, ["YAML"]),
     "too deep": ("image: " + 1000 * "[", None, ["nested too deeply"]),
@@ -102,9 +118,3 @@ def test_broken_map_is_refused_with_file_line_and_key(tmp_path, case):
     message = str(caught.value)
     assert message.startswith(f"{path}:{line}: " if line else str(tmp_path))
     assert [word for word in named if word not in message] == []
-
-
-def test_comment_in_another_encoding_is_skipped(tmp_path):
-    path = Path(write_map(tmp_path, room()))
-    path.write_bytes(path.read_bytes() + "# zeď\n".encode("cp1250"))
-    assert load_world(str(path)).occupancy is not None

@@ -28,6 +28,13 @@ def test_unknown_cells_are_not_walls(tmp_path):
     assert len(CrossSection(world, HEIGHT).segments) == 0
 
 
+def test_in_mode_raw_values_above_the_threshold_are_walls(tmp_path):
+    pixels = np.full((4, 4), 65)
+    pixels[0, 0] = 66
+    cut = CrossSection(load_world(write_map(tmp_path, pixels, mode="raw")), HEIGHT).segments
+    assert (len(cut), cut[..., 0].max(), cut[..., 1].min()) == (4, pytest.approx(0.05), pytest.approx(0.15))
+
+
 def test_origin_with_yaw_rotates_the_walls(tmp_path):
     world = load_world(write_map(tmp_path, room(), origin=f"[1, 2, {math.pi / 2}]"))
     cut = CrossSection(world, HEIGHT).segments
@@ -69,6 +76,3 @@ def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
         sim.step({})
     assert 1.2 < sim.world_from_footprint().x < 1.45 and sim.touching()
     sim.close()
-
-
-# Big maps

@@ -6,13 +6,9 @@ import trimesh
 from bullet_rays import bullet_engine, bullet_rays
 from sdf_files import mesh_world, only_obstacle, raised_by, world_file
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.raycast.beams import Fan
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
-from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.shapes import Mesh
-from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.world.load import load_world
 
 # An upright triangle on the x axis; the unit is centimetres, and x is declared to be up, which Gazebo ignores.
@@ -36,9 +32,9 @@ TRIANGLE_DAE = """<?xml version="1.0"?>
 
 def test_collada_mesh_is_read_with_unit_scene_and_scale(tmp_path):
     (tmp_path / "t.dae").write_text(TRIANGLE_DAE)
-    obstacle = only_obstacle(mesh_world(tmp_path, "t.dae", "<scale>2 1 1</scale>"))
+    obstacle = only_obstacle(mesh_world(tmp_path, "t.dae", "<scale>-2 1 1</scale>"))
     assert isinstance(obstacle.geometry, Mesh)
-    assert obstacle.geometry.corners == pytest.approx(np.array([[[0, 3, 0], [2, 3, 0], [0, 3, 2]]]))
+    assert obstacle.geometry.corners == pytest.approx(np.array([[[0, 3, 0], [-2, 3, 0], [0, 3, 2]]]))
     assert obstacle.geometry.file == str(tmp_path / "t.dae")
 
 
@@ -87,20 +83,6 @@ def test_mesh_larger_than_bullets_triangle_limit_is_complete(tmp_path):
     assert np.hypot(cut.segments[..., 0], cut.segments[..., 1]) == pytest.approx(np.sqrt(0.99), abs=1e-3)
 
 
-@pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_robot_is_stopped_by_a_mesh_where_its_scan_sees_it(tmp_path, burger, drive):
-    trimesh.creation.box((0.1, 2.0, 0.6)).export(str(tmp_path / "wall.stl"))
-    world = load_world(mesh_world(tmp_path, "wall.stl", pose="<pose>0.5 0 0.3 0 0 0</pose>"))
-    sim = make_simulator(SimParams.of(drive=drive, cmd_vel_timeout=0.0), world, [RobotSpec("", burger, Pose2D())])
-    ahead = sim.exact_distances()[0]
-    sim.command(Twist2D(0.2))
-    for _ in range(240 * 5):
-        sim.step({})
-    assert ahead == pytest.approx(0.45 + 0.032, abs=0.001)
-    assert 0.2 < sim.world_from_footprint().x < 0.45 and sim.touching()
-    sim.close()
-
-
 CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 0 1\n"
 BROKEN_MESHES = {  # file: (content, what the message must name)
     "empty.stl": (b"", "no triangles found; expected a complete mesh in .stl format"),
@@ -112,6 +94,9 @@ BROKEN_MESHES = {  # file: (content, what the message must name)
     "far.obj": (b"v 0 0 0\nv 1 0 0\nv 1e300 0 1\nf 1 2 3\n", "has corners beyond +-1e+06 m"),
     "binary.obj": (b"f " + bytes(range(128, 256)) * 9, "expected a mesh in .obj format"),
     "cut.dae": (TRIANGLE_DAE[:700].encode(), "XML"),
+    "below.dae": (TRIANGLE_DAE.replace("<p>", "<p>0 1 -1</p><p>").encode(), "a triangle has a vertex below 0"),
+    "web.dae": (b"<html>404</html>", "web.dae:1: <html>, expected <COLLADA xmlns='...'>"),
+    "git-lfs.stl": (b"version https://git-lfs.github.com/spec/v1\n", "no triangles found; expected a complete mesh"),
     "unit.dae": (TRIANGLE_DAE.replace("0.01", "0").encode(), "meter='0'"),
     "entity.dae": (b"<!DOCTYPE COLLADA [<!ENTITY e SYSTEM 'file:///etc/hostname'>]><COLLADA/>", "DOCTYPE"),
     "nowhere.dae": (TRIANGLE_DAE.replace("#s", "#other").encode(), "no <scene> with a <visual_scene>"),
@@ -142,7 +127,7 @@ A, B, C = (0, 0, 0), (1, 0, 0), (0, 0, 1)
     ],
 )
 def test_only_vertices_and_faces_of_an_obj_are_read(tmp_path, rest, expected):
-    (tmp_path / "m.obj").write_bytes(CORNERS + rest)
+    (tmp_path / "m.obj").write_bytes(b"\xef\xbb\xbf" + CORNERS + rest)
     found = only_obstacle(mesh_world(tmp_path, "m.obj")).geometry.corners
     assert sorted(found.tolist()) == sorted(np.array(expected).tolist())
 
@@ -152,7 +137,15 @@ NORMALS = """<source id="n"><float_array id="na" count="{}">0 1 0</float_array><
 <param name="Z" type="float"/></accessor></technique_common></source>"""
 VERTICES, TRIANGLES = '<vertices id="v">', '<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p>'
 WITH_NORMALS = TRIANGLES.replace("<p>0 1 2<", '<input semantic="{}" source="#n" offset="1"/><p>0 {} 1 0 2 0<')
-FAULTS = {  # outside of the geometry: (part of the file, what is there instead)
+POLYGONS = (
+    '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>3</vcount><p>0 1 2</p></polylist>'
+)
+VARIANTS = {  # case: (part of the file, what is there instead)
+    "a polygon": (f'<triangles count="1">{TRIANGLES}</triangles>', POLYGONS),
+    "nodes within nodes": (
+        '<instance_geometry url="#g"/>',
+        '<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url="#g"/></node>',
+    ),
     "an effect and an image that are missing": (
         "<library_geometries>",
         "<library_images><image/></library_images><library_effects><effect/></library_effects><library_geometries>",
@@ -173,9 +166,8 @@ FAULTS = {  # outside of the geometry: (part of the file, what is there instead)
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_only_the_geometry_of_a_collada_file_counts(tmp_path, fault):
-    part, instead = FAULTS[fault]
+@pytest.mark.parametrize(("part", "instead"), VARIANTS.values(), ids=VARIANTS)
+def test_only_the_geometry_of_a_collada_file_counts(tmp_path, part, instead):
     assert TRIANGLE_DAE.count(part) == 1
     (tmp_path / "t.dae").write_text(TRIANGLE_DAE.replace(part, instead))
     assert only_obstacle(mesh_world(tmp_path, "t.dae")).geometry.corners.tolist() == [[[0, 3, 0], [1, 3, 0], [0, 3, 2]]]

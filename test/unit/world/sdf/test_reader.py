@@ -9,18 +9,129 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.sdf import reader
 
+MOVER = '<plugin name="p" filename="robocop_motion">{}</plugin>'
+POST = "<cylinder><radius>0.1</radius><length>1</length></cylinder>"
+BEFORE_THE_WORLD = (
+    "<gravity>0 0 -9.8</gravity><physics/><light name='sun'/><gui><plugin name='p'/></gui><wind/><scene/>"
+)
+
+
+def nested(count):
+    """Models within each other."""
+    return "".join(f"<model name='m{i}'><static>1</static>" for i in range(count)) + "</model>" * count
+
+
+READ = {  # case: (body from line 3 on, {obstacle: its position [m]}, what is said of the rest)
+    "what Gazebo writes into every world": (BEFORE_THE_WORLD, {}, ()),
+    "models of Gazebo that need no file": (
+        "<include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>",
+        {"ground_plane/link/collision": (0, 0, 0)},
+        (),
+    ),
+    "plugins of Gazebo Sim itself": ("<plugin filename='gz-sim-physics-system' name='Physics'/>", {}, ()),
+    "an actor": ("<actor name='walker'><skin/></actor>", {}, ()),
+    "an extension in another namespace": ("<x:note xmlns:x='urn:x'>mine</x:note>", {}, ()),
+    "comments that XML forbids and Gazebo reads": (
+        "<!-- ---- walls ---- -->\n<!------- old --->\n<model name='m'><static>1</static><lin/></model>",
+        {},
+        ("<lin> in <model> is left out (line 5)",),
+    ),
+    "models within models": (
+        "<model name='house'><static>1</static><pose>1 0 0 0 0 0</pose>"
+        f"<model name='room'><pose>1 0 0 0 0 0</pose>{BOX}</model></model>",
+        {"house/room/l/c": (2, 0, 0)},
+        (),
+    ),
+    "as many models within models as are supported": (nested(20), {}, ()),
+    "angles in degrees, and a quaternion of any length": (
+        model(
+            "<pose rotation_format='quat_xyzw'>0 -1 0   0 0 -3 3</pose>"
+            + collision(SPHERE, pose="<pose>1 0 0 0 0 0</pose>"),
+            pose="<pose degrees='true'>2 0 0 0 0 90</pose>",
+        ),
+        {"m/l/c": (4, 0, 0)},
+        (),
+    ),
+    "a pose relative to a link of another model": (
+        model("<pose>2 1 0 0 0 0</pose>")
+        + model(collision(SPHERE), "n", "<pose relative_to='m::l'>1 0 0 0 0 0</pose>"),
+        {"n/l/c": (3, 1, 0)},
+        (),
+    ),
+    "a merged include": (
+        "<model name='m'><static>1</static><include merge='true'><uri>model://ground_plane</uri></include></model>",
+        {"m/ground_plane/link/collision": (0, 0, 0)},
+        (),
+    ),
+    "a placement frame": (
+        '<model name="m" placement_frame="l"><static>1</static></model>',
+        {},
+        ("placement_frame of model 'm' is left out (line 3)",),
+    ),
+    "a height map and an unknown element": (
+        model(collision("<heightmap/>") + '<colision name="wall"/>'),
+        {},
+        ("<colision> 'wall' in <link> is left out (line 4)", "'m/l/c' is left out: <heightmap> (line 4)"),
+    ),
+    "a polyline": (model(collision("<polyline/>")), {}, ("'m/l/c' is left out: <polyline> (line 4)",)),
+    "a part of a mesh": (
+        model(collision("<mesh><uri>a</uri><submesh/></mesh>")),
+        {},
+        ("'m/l/c' is left out: <submesh> (line 4)",),
+    ),
+    "a mesh on the web": (
+        model(collision("<mesh><uri>HTTPS://a.org/b.dae</uri></mesh>")),
+        {},
+        ("'m/l/c' is left out: 'HTTPS://a.org/b.dae' is a web address, and nothing is downloaded (line 4)",),
+    ),
+    "a model on Fuel": (
+        "<include><uri>fuel://a/models/Desk</uri></include>",
+        {},
+        ("an include is left out: 'fuel://a/models/Desk' is a web address, and nothing is downloaded (line 3)",),
+    ),
+    "unknown elements of the world": (
+        "<population name='cans'/><stat/>",
+        {},
+        ("<population> 'cans' in <world> is left out (line 3)", "<stat> in <world> is left out (line 3)"),
+    ),
+    "insertions and deletions of a state": (
+        "<state><insertions><model/></insertions><deletions>m</deletions>\n<modle/></state>",
+        {},
+        (
+            "<modle> in <state> is left out (line 4)",
+            "<insertions> in <state> is left out (line 3)",
+            "<deletions> in <state> is left out (line 3)",
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize(("body", "positions", "said"), READ.values(), ids=READ)
+def test_what_can_be_simulated_is_read_and_the_rest_is_listed_with_its_line(tmp_path, body, positions, said):
+    world = load_world(world_file(tmp_path, f'{body}<model name="last"><static>1</static>{BOX}</model>', "1.11"))
+    found = {obstacle.name: obstacle.pose.position for obstacle in world.obstacles}
+    assert list(found) == [*positions, "last/l/c"]
+    assert [found[name] for name in positions] == [pytest.approx(position) for position in positions.values()]
+    assert (world.ignored, world.approximated) == ((), said)
+
+
+def test_oldest_version_may_have_empty_frames_and_the_last_of_several_static_counts(tmp_path):
+    pose = "<pose frame=''>2 0 0 0 -0 0</pose>"
+    body = f"<model name='m'><static>0</static><static>1</static>{pose}{BOX}</model>"
+    world = load_world(world_file(tmp_path, body, "1.4"))
+    assert ([obstacle.pose.position for obstacle in world.obstacles], world.ignored) == ([(2, 0, 0)], ())
+
 
 def test_spawn_is_the_pose_of_the_frame_robot_spawn(tmp_path):
     frames = '<frame name="other"/><frame name="robot_spawn"><pose>1 -2 0 0 0 4</pose></frame>'
-    spawn = load_world(world_file(tmp_path, frames)).spawn
-    assert (spawn.x, spawn.y, spawn.yaw) == (1.0, -2.0, pytest.approx(4.0 - 2.0 * math.pi))
+    world = load_world(world_file(tmp_path, frames))
+    assert world.has_spawn and world.spawn == pytest.approx((1.0, -2.0, 4.0 - 2.0 * math.pi))
 
 
-def test_ignored_elements_are_listed_once_with_those_of_the_world_first(tmp_path):
+def test_plugins_are_listed_once_with_those_of_the_world_first(tmp_path):
     mover = '<model name="m"><static>1</static>\n<plugin name="mover"/><plugin name="mover"/></model>'
-    silent = '<gravity>0 0 -9.8</gravity><gui><plugin name="p"/></gui>'
-    world = load_world(world_file(tmp_path, f'<light name="lamp"/>\n{mover}\n{silent}\n<plugin name="eye"/>'))
-    assert world.ignored == ("plugin 'eye' (line 7)", "plugin 'mover' (line 5)") and world.approximated == ()
+    world = load_world(world_file(tmp_path, f'{mover}\n<plugin name="eye"/>'))
+    assert world.ignored == ("plugin 'eye' (line 5)", "plugin 'mover' (line 4)")
 
 
 BROKEN = {  # case: (body from line 3 on, line of the error, what the message must name)
@@ -89,6 +200,30 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
     ),
     "spawn on a model": ('<frame name="robot_spawn" attached_to="m"/>', 3, ["robot_spawn", "attached"]),
     "two spawns": ('<frame name="robot_spawn"/>\n<frame name="robot_spawn"/>', 4, ["robot_spawn", "second"]),
+    "model that isn't there": (
+        "<include><uri>model://jersey_barrier</uri></include>",
+        3,
+        ["'model://jersey_barrier' was not found; looked for", "models/jersey_barrier"],
+    ),
+    "too many models within models": (nested(21), 3, ["more than 20 models within each other"]),
+    "unknown part of a motion": (model("", pose=MOVER.format("<spin>1</spin>")), 3, ["<spin>", "turn, waypoint"]),
+    "waypoint of two numbers": (model("", pose=MOVER.format("<waypoint>1 2</waypoint>")), 3, ["'1 2'", "3 finite"]),
+    "waypoints at one time": (
+        model("", pose=MOVER.format("<waypoint>1 1 0</waypoint><waypoint>1 0 0</waypoint>")),
+        3,
+        ["at 1 s", "later"],
+    ),
+    "motion that does not return": (
+        model("", pose=MOVER.format("<waypoint>1 1 0</waypoint>")),
+        3,
+        ["'1 0'", "0 0, where the cycle starts again"],
+    ),
+    "two motions": (model("", pose=2 * MOVER.format("<turn>1</turn>")), 3, ["second", "robocop_motion"]),
+    "tilted shape that moves": (
+        model(collision(POST, pose="<pose>0 0 0 1 0 0</pose>"), pose=MOVER.format("<turn>1</turn>")),
+        4,
+        ["m/l/c", "upright cylinders, spheres"],
+    ),
     "not XML": ("\n<model></modle>", 4, ["modle", "XML"]),
 }
 
@@ -162,41 +297,6 @@ def test_models_of_the_same_name_are_numbered(tmp_path, chair):
         "the name 'chair' is already taken, so this model is called 'chair_2' (line 5)",
         "the name 'chair' is already taken, so this model is called 'chair_1' (line 7)",
     )
-
-
-LEFT_OUT = {  # body from line 3 on: what is said of it
-    '<model name="m" placement_frame="l"><static>1</static></model>': (
-        "placement_frame of model 'm' is left out (line 3)",
-    ),
-    model(collision("<heightmap/>") + '<colision name="wall"/>'): (
-        "<colision> 'wall' in <link> is left out (line 4)",
-        "'m/l/c' is left out: <heightmap> (line 4)",
-    ),
-    model(collision("<polyline/>")): ("'m/l/c' is left out: <polyline> (line 4)",),
-    model(collision("<mesh><uri>a</uri><submesh/></mesh>")): ("'m/l/c' is left out: <submesh> (line 4)",),
-    model(collision("<mesh><uri>HTTPS://a.org/b.dae</uri></mesh>")): (
-        "'m/l/c' is left out: 'HTTPS://a.org/b.dae' is a web address, and nothing is downloaded (line 4)",
-    ),
-    "<include><uri>fuel://a/models/Desk</uri></include>": (
-        "an include is left out: 'fuel://a/models/Desk' is a web address, and nothing is downloaded (line 3)",
-    ),
-    "<population name='cans'/><stat/>": (
-        "<population> 'cans' in <world> is left out (line 3)",
-        "<stat> in <world> is left out (line 3)",
-    ),
-    "<state><insertions><model/></insertions><deletions>m</deletions>\n<modle/></state>": (
-        "<modle> in <state> is left out (line 4)",
-        "<insertions> in <state> is left out (line 3)",
-        "<deletions> in <state> is left out (line 3)",
-    ),
-}
-
-
-@pytest.mark.parametrize("body", LEFT_OUT)
-def test_what_is_not_simulated_is_listed_with_its_line_and_the_rest_loads(tmp_path, body):
-    world = load_world(world_file(tmp_path, f'{body}<model name="n"><static>1</static>{BOX}</model>'))
-    assert [obstacle.name for obstacle in world.obstacles] == ["n/l/c"]
-    assert world.approximated == LEFT_OUT[body]
 
 
 def test_model_file_can_be_loaded_as_a_world(chair):

@@ -7,6 +7,12 @@ from sdf_files import raised_by
 
 BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message must name)
     "not SDF": ("<gazebo version='1.0'/>", 1, ["<gazebo>", "<sdf>"]),
+    "a robot's description": ("<?xml version='1.0'?>\n<robot name='r'/>", 2, ["<robot>, expected <sdf>"]),
+    "xacro": (
+        "<sdf version='1.6' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<xacro:wall length='3'/></sdf>",
+        2,
+        ["<xacro:...>, expected the file that xacro makes of it"],
+    ),
     "unsupported version": ("\n<sdf version='1.3'><world name='w'/></sdf>", 2, ["'1.3'", "1.4 and later"]),
     "no version": ("<sdf><world name='w'/></sdf>", 1, ["version None"]),
     "no world": ("<sdf version='1.7'/>", 1, ["<world>"]),
@@ -27,14 +33,10 @@ def test_file_that_is_not_a_world_is_refused_with_file_line_and_name(tmp_path, t
     assert [name for name in named if name not in message] == []
 
 
-@pytest.mark.parametrize(
-    "dtd",
-    ["", '[<!ENTITY e SYSTEM "file:///etc/hostname">]', '[<!ENTITY e "aa">]', 'SYSTEM "http://localhost/sdf.dtd"'],
-)
+@pytest.mark.parametrize("dtd", ["", '[<!ENTITY e SYSTEM "file:///etc/hostname">]'])
 def test_doctype_is_refused_whatever_it_declares(tmp_path, dtd):
     path = tmp_path / "w.sdf"
-    text = "&e;" if "ENTITY" in dtd else ""
-    path.write_text(f"<!DOCTYPE sdf {dtd}>\n<sdf version='1.7'><world name='w'>{text}</world></sdf>", "utf-8")
+    path.write_text(f"<!DOCTYPE sdf {dtd}>\n<sdf version='1.7'><world name='w'/></sdf>", "utf-8")
     message = raised_by(path)
     assert message.startswith(f"{path}: ") and "DOCTYPE" in message
 
@@ -44,7 +46,7 @@ def test_unreadable_file_is_refused_by_name(tmp_path):
     assert str(tmp_path) in raised_by(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["bludiště č. 1.sdf", "50%25.sdf", "100 %.sdf", "a#b?c:d.sdf"])
+@pytest.mark.parametrize("name", ["bludiště č. 1.sdf", "50%25.sdf", "a#b?c:d.sdf"])
 def test_special_characters_in_file_names_are_shown_unchanged(tmp_path, name):
     path = tmp_path / name
     path.write_text("<sdf/>", encoding="utf-8")
@@ -55,4 +57,4 @@ def test_special_characters_in_file_names_are_shown_unchanged(tmp_path, name):
 def test_arbitrary_content_raises_only_world_errors(tmp_path_factory, content):
     path = tmp_path_factory.getbasetemp() / "any.sdf"
     path.write_bytes(content)
-    raised_by(path)
+    assert raised_by(path).startswith(str(path))
