@@ -136,32 +136,7 @@ WRONG = (
     ),
     _server("no_heading", "feedback_angle", "is the heading left out", (ERROR, "angle_error = math.atan2(dy, dx)")),
     _server(
-        "heading_added",
-        "feedback_angle",
-        "added instead of subtracted",
-        (ERROR, "angle_error = wrap(math.atan2(dy, dx) + yaw)"),
-    ),
-    _server("heading_from_acos", "feedback_angle", "heading has no sign", (YAW, "yaw = 2 * math.acos(q.w)")),
-    _server(
-        "atan2_swapped", "feedback_angle", "atan2(dy, dx)", (ERROR, "angle_error = wrap(math.atan2(dx, dy) - yaw)")
-    ),
-    _server(
-        "sign_of_dy",
-        "feedback_angle",
-        "a sign were wrong in atan2(dy, dx)",
-        (ERROR, "angle_error = wrap(math.atan2(-dy, dx) - yaw)"),
-        alone=True,
-    ),
-    _server(
         "atan", "feedback_angle", "atan2(dy, dx) is needed", (ERROR, "angle_error = wrap(math.atan(dy / dx) - yaw)")
-    ),
-    _server("quaternion_z", "feedback_angle", "orientation.z", (YAW, "yaw = q.z")),
-    _server(
-        "unsigned_angle_in_feedback_only",
-        "feedback_angle",
-        "angle_error has no sign",
-        ("feedback.angle_error = angle_error", "feedback.angle_error = abs(angle_error)"),
-        alone=True,
     ),
     _server(
         "map_frame",
@@ -182,13 +157,6 @@ WRONG = (
         ),
     ),
     _server("ground_truth", "no_exception", "NoneType", ("'/odom'", "'/ground_truth_odom'")),
-    _server(
-        "distance_from_origin",
-        "feedback_position",
-        "position left out",
-        ("dx = goal.position.x - x", "dx = goal.position.x"),
-        ("dy = goal.position.y - y", "dy = goal.position.y"),
-    ),
     _server("no_feedback", "feedback_rate", "No feedback", (PUBLISH, "")),
     _server(
         "feedback_once_a_second",
@@ -227,13 +195,6 @@ WRONG = (
         ("            feedback.position_error = position_error\n            feedback.angle_error = angle_error\n", ""),
     ),
     _server(
-        "swapped_feedback",
-        "feedback_position",
-        "swapped",
-        ("feedback.position_error = position_error", "feedback.position_error = angle_error"),
-        ("feedback.angle_error = angle_error", "feedback.angle_error = position_error"),
-    ),
-    _server(
         "turns_one_way_only",
         "turns_to_goal",
         "turns away",
@@ -248,15 +209,6 @@ WRONG = (
         "reaches_goal",
         "threshold of position_error another one",
         ("position_error < 0.1:", "position_error < 0.05:"),
-    ),
-    _server(
-        "wrapped_on_one_side",
-        "feedback_angle",
-        "not wrapped: 3.",
-        (
-            ERROR,
-            "angle_error = math.atan2(dy, dx) - yaw\n            angle_error += (angle_error < -math.pi) * 2 * math.pi",
-        ),
     ),
     _server(
         "wrapped_too_far",
@@ -554,18 +506,6 @@ WRONG = (
         alone=True,
     ),
     _server(
-        "direction_calculated_once",
-        "feedback_angle",
-        "from where the robot is when the goal comes",
-        (
-            RATE,
-            f"{RATE}        x, y, _ = self.pose\n"
-            "        direction = math.atan2(goal.position.y - y, goal.position.x - x)\n",
-        ),
-        (ERROR, "angle_error = wrap(direction - yaw)"),
-        alone=True,
-    ),
-    _server(
         "feedback_after_the_sleep",
         "feedback_position",
         "in the feedback is old",
@@ -691,43 +631,6 @@ WRONG = (
         "/scan is used with the wrong type, sensor_msgs/PointCloud2; its type is sensor_msgs/LaserScan",
         ("'/scan', LaserScan", "'/scan', PointCloud2"),
         ("import LaserScan\n", "import LaserScan, PointCloud2\n"),
-        alone=True,
-    ),
-    _server(
-        "asin",
-        "feedback_angle",
-        "The sign of dx has no effect",
-        (ERROR, "angle_error = wrap(math.asin(dy / (position_error or 1.0)) - yaw)"),
-        alone=True,
-    ),
-    _server(
-        "wrapped_by_half_a_turn",
-        "feedback_angle",
-        "angle_error is taken modulo pi",
-        (ERROR, "angle_error = (math.atan2(dy, dx) - yaw + math.pi / 2) % math.pi - math.pi / 2"),
-        alone=True,
-    ),
-    _server("yaw_without_its_factor", "feedback_angle", "half of the true one", (YAW, "yaw = math.atan2(q.z, q.w)")),
-    _server(
-        "truncated_angle",
-        "feedback_angle",
-        "rounded to a whole number",
-        ("feedback.angle_error = angle_error", "feedback.angle_error = int(angle_error)"),
-        alone=True,
-    ),
-    _server(
-        "larger_of_dx_and_dy",
-        "feedback_position",
-        "the larger one of |dx| and |dy|",
-        ("math.hypot(dx, dy)", "max(abs(dx), abs(dy))"),
-        alone=True,
-    ),
-    _server(
-        "goal_coordinates_swapped",
-        "feedback_position",
-        "The goal's x and y are swapped",
-        ("dx = goal.position.x - x", "dx = goal.position.y - x"),
-        ("dy = goal.position.y - y", "dy = goal.position.x - y"),
         alone=True,
     ),
     _server(

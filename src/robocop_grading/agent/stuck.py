@@ -42,9 +42,7 @@ def all_asleep() -> Optional[Set[int]]:
     _pollers.intersection_update(scheduler.unawaited)  # the others have waited in a known way since
     if _window is None or not _window.look(found):
         _window = _Window(threads)
-    elif _wall_time() - _window.since >= WINDOW:
-        _pollers.update(_window.pollers())
-        _window = None  # the next second counts by itself: in this one the machine may have had no time
+    _pollers.update(_window.pollers())
     return threads if threads <= same | _pollers else None
 
 
@@ -77,8 +75,10 @@ class _Window:
         return True
 
     def pollers(self) -> Set[int]:
-        """The threads that have slept for most of the window."""
+        """The threads that sleep for most of the window, once it is over."""
         length = _wall_time() - self.since
+        if length < WINDOW:
+            return set()
         seldom = {thread for thread, awake in self._awake.items() if awake < self._looks / 2}
         return {it for it in seldom if _work_of(native_ids.get(it, 0)) - self._work[it] < length / 2.0}
 

@@ -153,6 +153,7 @@ def test_thread_that_waits_in_an_unknown_way_does_not_stop_time(tmp_path):
     assert printed(tmp_path, f"{text}time.sleep(1.0)\nprint({AFTER})")[-1] == "1.0"
 
 
+@pytest.mark.timeout(900)
 def test_thread_that_polls_in_c_does_not_stop_time_until_it_has_used_its_processor_time(tmp_path, monkeypatch):
     monkeypatch.setattr(agent_program, "PATIENCE", 600.0)  # it takes a second in which the machine has time for it
     polls = "import ctypes, threading\ndef poll():\n    while True: ctypes.CDLL(None).usleep(2000)\n"

@@ -1,0 +1,92 @@
+"""The formula that a server's feedback comes from is named as the cause of its wrong errors."""
+
+import math
+from dataclasses import replace
+from typing import Callable, List, Tuple
+
+import pytest
+from grading_records import GOAL, PLAN, RIGHT
+
+from robocop_grading.judge import judge
+from robocop_grading.plan_file import load
+from robocop_grading.record import Feedback, Goal, Sample, errors_at
+
+MIRRORED = tuple(
+    replace(at, y=-at.y, yaw=-at.yaw, world_y=-15.0 - at.world_y, world_yaw=at.world_yaw - 2.0 * at.yaw)
+    for at in RIGHT.samples
+)
+DRIVES = {  # scenario: how the robot drives, and where its goal is
+    "left": (RIGHT.samples, 1.0, 1.0),
+    "right": (MIRRORED, 1.3, -0.9),
+    "behind": (MIRRORED, -1.0, 0.3),
+    "far": (RIGHT.samples, -0.7, -1.2),
+}
+
+
+class Seen:
+    """What a server calculates its errors from."""
+
+    def __init__(self, at: Sample, goal: Goal) -> None:
+        self.at, self.goal, self.yaw = at, goal, at.yaw
+        self.dx, self.dy = goal.x - at.x, goal.y - at.y
+        self.direction = math.atan2(self.dy, self.dx)
+        self.distance, self.angle = errors_at(at, goal)
+
+
+def wrap(angle: float) -> float:
+    return math.atan2(math.sin(angle), math.cos(angle))
+
+
+def fed_back(samples: Tuple[Sample, ...], goal: Goal, name: str, formula: Callable[[Seen], float]) -> List[Feedback]:
+    """The feedback of a server with a wrong formula of one error."""
+    seen = [Seen(at, goal) for at in samples]
+    right = (replace(it, position_error=s.distance, angle_error=s.angle) for it, s in zip(RIGHT.feedback, seen))
+    return [replace(it, **{name: formula(s)}) for it, s in zip(right, seen)]
+
+
+POSITION: List[Tuple[Callable[[Seen], float], str]] = [
+    (lambda s: s.dx**2 + s.dy**2, "position_error is the squared distance: the square root is missing"),
+    (lambda s: abs(s.dx), "position_error is |dx|: is dy left out?"),
+    (lambda s: abs(s.dy), "position_error is |dy|: is dx left out?"),
+    (lambda s: max(abs(s.dx), abs(s.dy)), "the larger one of |dx| and |dy| instead of"),
+    (lambda s: abs(s.dx) + abs(s.dy), "position_error is |dx| + |dy| instead of the straight-line distance"),
+    (lambda s: math.hypot(s.goal.x, s.goal.y), "from odom's origin: is the robot's position left out"),
+    (lambda s: math.hypot(s.goal.x - s.at.world_x, s.goal.y - s.at.world_y), "taken in the world or map frame"),
+    (lambda s: math.hypot(s.goal.y - s.at.x, s.goal.x - s.at.y), "The goal's x and y are swapped; or: The x and y of"),
+    (lambda s: round(s.distance), "position_error is rounded to a whole number"),
+    (lambda s: s.angle, "position_error is the angle error: are the two swapped?"),
+]
+ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
+    (lambda s: s.direction, "is the heading left out, read only at the start, calculated wrongly from the quaternion"),
+    (lambda s: wrap(s.direction + s.yaw), "as if it were added instead of subtracted"),
+    (lambda s: wrap(s.direction - abs(s.yaw)), "The heading has no sign, as 2 * acos(w) has none"),
+    (lambda s: wrap(s.direction - s.yaw / 2.0), "The heading is half of the true one: its factor 2 is missing; or:"),
+    (lambda s: wrap(s.direction - math.sin(s.yaw / 2.0)), "The heading is as large as orientation.z"),
+    (lambda s: wrap(math.atan2(s.dx, s.dy) - s.yaw), "that of atan2(dx, dy): it has to be atan2(dy, dx)"),
+    (lambda s: wrap(math.atan2(-s.dy, s.dx) - s.yaw), "as if a sign were wrong in atan2(dy, dx)"),
+    (lambda s: wrap(math.atan(s.dy / s.dx) - s.yaw), "A goal behind looks like one ahead, as with atan(dy / dx)"),
+    (lambda s: wrap(math.asin(s.dy / s.distance) - s.yaw), "The sign of dx has no effect, as with asin(dy / distance)"),
+    (lambda s: -s.angle, "The sign of angle_error is wrong: it has to be the goal's direction minus the heading"),
+    (lambda s: abs(s.angle), "angle_error has no sign: left and right can't be distinguished"),
+    (lambda s: math.degrees(s.angle), "degrees"),
+    (lambda s: (s.angle + math.pi / 2.0) % math.pi - math.pi / 2.0, "angle_error is taken modulo pi; a turn is 2 * pi"),
+    (lambda s: s.direction - s.yaw, "angle_error is not wrapped: 3.2 rad"),
+    (lambda s: int(s.angle), "angle_error is rounded to a whole number"),
+    (lambda s: wrap(math.atan2(s.goal.y, s.goal.x) - s.yaw), "from where the robot is when the goal comes, or from"),
+]
+FORMULAS = [("position", *row) for row in POSITION] + [("angle", *row) for row in ANGLE]
+
+
+@pytest.mark.parametrize("error, formula, words", FORMULAS, ids=[words for _, _, words in FORMULAS])
+def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
+    error: str, formula: Callable[[Seen], float], words: str
+) -> None:
+    records = {}
+    for name, (samples, x, y) in DRIVES.items():
+        goal = replace(GOAL, x=x, y=y)
+        feedback = tuple(fed_back(samples, goal, f"{error}_error", formula))
+        records[name] = replace(RIGHT, name=name, goals=(goal,), samples=samples, feedback=feedback)
+    checks = {check.name: check for check in judge("anna", load(PLAN), {"server": records}, {}).checks}
+    wrong, right = checks[f"feedback_{error}"], checks[f"feedback_{'angle' if error == 'position' else 'position'}"]
+    assert wrong.failure is not None and words in wrong.failure.cause
+    assert right.failure is None
