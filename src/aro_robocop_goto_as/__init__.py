@@ -9,7 +9,7 @@ From a velocity command to odometry, scan, tf and clock:
     physics.kinematic, bullet     the engine: runs base controllers and motion up to that step
         base_controller.c         command -> command timeout, acceleration limits -> wheel speeds
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
-    simulation.agenda             what is due and subscribed to, and the calls that measure it, prepared once
+    simulation.agenda             the sensors that are due and subscribed to, and the calls that measure them
         sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
     simulation.observations       what the sensors have measured
     ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
@@ -55,10 +55,10 @@ From ./robocop COMMAND to the program that does the work:
 Only `ros` imports rospy. Each component of the simulator declares its parameters, in a group of its own; `sim_params`
 composes the groups. Limits and timeouts are parameters first, so look for them there and in `config/` before the
 code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
-name, C computes, and Python has its figures and calls it. `compiled` loads the libraries that CMake builds from these.
-`reading` is what all readers of user-written files share, `process` is about operating system processes, `probes` looks
-at the machine, also before anything is installed. The package `robocop_hosting` beside this one builds and runs other
-people's packages, `robocop_grading` judges them.
+name, C computes, and Python holds the figures and calls C. `compiled` loads the libraries that CMake builds from these.
+All readers of user-written files use `reading`. `process` is about operating system processes, and `probes` looks at
+the machine, also before anything is installed. Beside this package, `robocop_hosting` builds and runs other people's
+packages, and `robocop_grading` judges them.
 """
 
 from pkgutil import extend_path

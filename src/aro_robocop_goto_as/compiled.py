@@ -47,14 +47,14 @@ def load(name: str, version: int, path: Optional[str] = None) -> ctypes.PyDLL:
 
 
 def members(kind: Any, names: str) -> List[Tuple[str, Any]]:
-    """Members of one type for the `_fields_` of a ctypes.Structure."""
+    """Members of the same type, for the `_fields_` of a ctypes.Structure."""
     return [(name, kind) for name in names.split()]
 
 
 def address(name: str, array: np.ndarray, shape: Tuple[Optional[int], ...], dtype: type = np.float64) -> int:
     """The address of an array's data for C; None in `shape`: any length.
 
-    ValueError unless it is a contiguous array of exactly this type and shape, as C could read beyond it.
+    ValueError unless the array is contiguous and has exactly this type and shape: C could read beyond its end.
     """
     kind = array.dtype if isinstance(array, np.ndarray) else None
     if kind is None or kind.type is not dtype or not kind.isnative or not array.flags.c_contiguous:

@@ -93,7 +93,7 @@ class GradingSetupError(GradingError):
 
 
 class UngradableError(GradingError):
-    """The grader could not start its part of a run, or the run was ended from outside twice; it can be repeated."""
+    """The grader could not start its part of a run, or a run was ended from outside twice; runs can be repeated."""
 
 
 class NoTimeError(UngradableError):
@@ -101,4 +101,4 @@ class NoTimeError(UngradableError):
 
 
 class GraderLostError(GradingError):
-    """The submission's node answers the grader what can't be true, so nothing that follows can be judged."""
+    """The submission's node gives the grader answers that can't be true, so nothing that follows can be judged."""

@@ -24,7 +24,8 @@ def wrap_angle(angle: float) -> float:
 class Pose2D(NamedTuple):
     """Position x, y [m] with heading yaw [rad], counter-clockwise from the x axis.
 
-    A NamedTuple, as Twist2D, because several are created in each step and a frozen dataclass takes three times as long.
+    A NamedTuple, like Twist2D, because each step creates several poses, and a frozen dataclass takes three times as
+    long.
     """
 
     x: float = 0.0

@@ -92,7 +92,7 @@ class Turning:
         return max(params.min_angular_velocity, math.ldexp(params.max_angular_velocity, -self.reversals))
 
     def after(self, decision: Decision) -> "Turning":
-        """The same after one more decision."""
+        """The turning after one more decision."""
         if not isinstance(decision, Rotate):
             return self
         direction = math.copysign(1.0, decision.twist.w)
@@ -132,7 +132,7 @@ def approach(value: float, target: float, step: float) -> float:
 def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
     """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular.
 
-    The other one becomes 0 at once, as the handout's robot turns in place.
+    The other velocity becomes 0 at once, because the handout's robot turns in place.
     """
     if isinstance(decision, End):
         return STANDSTILL
@@ -150,7 +150,7 @@ def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
 
 @dataclass(frozen=True)
 class Progress:
-    """The errors when the robot last made progress, and the time of that [s]."""
+    """The errors when the robot last made progress, and that time [s]."""
 
     errors: Errors
     since: float

@@ -1,4 +1,4 @@
-"""Names in ROS: the lab's package, nodes and action, what belongs to a robot, and places. It imports nothing of ROS."""
+"""Names in ROS: of the lab's package, nodes and action, of a robot's topics and frames, of places. Imports no ROS."""
 
 import os
 
@@ -12,7 +12,7 @@ ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
 
 
 def robocop() -> str:
-    """What to type for ./robocop in another terminal."""
+    """The command line by which a user calls ./robocop in another terminal."""
     return os.environ.get(COMMAND_VARIABLE) or "./robocop"
 
 
@@ -22,7 +22,7 @@ def prefixed(robot: str, name: str) -> str:
 
 
 def absolute(robot: str, name: str) -> str:
-    """A topic of a robot, or of a node in its place: /NAME or /ROBOT/NAME, whatever this node's namespace."""
+    """A topic of a robot, or of a node that acts for it: /NAME or /ROBOT/NAME, whatever this node's namespace is."""
     return "/" + prefixed(robot.strip("/"), name)
 
 

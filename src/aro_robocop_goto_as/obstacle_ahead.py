@@ -23,9 +23,10 @@ def clearance_ahead(
     handout's rule. -inf means "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that
     there is nothing to return the beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a
     scanner that sends only zeros can't be told from one in an open space.
-    None when no beam points ahead, or it can't be said which ones do: angles are no numbers, several beams have one
-    direction, or they go round more than one and a half times, as angles in degrees would. NaN when no beam ahead is
-    valid: all are NaN (REP-117), or the range limits are, or they are not in order, so that no return could count.
+    None when no beam points ahead, or when the beams that do can't be told: angles are NaN or infinite, several beams
+    have one direction, or the beams go round more than one and a half times, as angles in degrees would. NaN when no
+    beam ahead is valid: all of them are NaN (REP-117), or the range limits are NaN or not in order, so that no return
+    could count.
     """
     distances = np.asarray(ranges, dtype=float)
     if len(distances) > 1 and not 0.0 < abs(increment) * (len(distances) - 1) <= 3.0 * math.pi:  # true for NaN

@@ -32,7 +32,7 @@ def parameter(
 
 
 def several(count: int = 0, low: Optional[float] = None, high: Optional[float] = None, default: Any = ()) -> Any:
-    """A field for a tuple of `count` values, or of any number of them above 0, with their bounds; given as a list."""
+    """A field for a tuple of `count` values, or of at least one, with their bounds; its value is given as a list."""
     return field(default=default, metadata={"low": low, "high": high, "count": count})
 
 
@@ -95,7 +95,7 @@ def types_of(cls: Type[Any]) -> Dict[str, Type[Any]]:
 
 
 def _made(cls: Type[T], values: Mapping[str, Any]) -> T:
-    """The dataclass with these values; each group takes its own."""
+    """The dataclass with these values; each group takes its own values."""
     given = {}
     for spec in fields(cast(Any, cls)):
         inner = spec.metadata.get("group")
@@ -124,7 +124,7 @@ def _to_float(value: int) -> float:
 
 
 def _checked(spec: "Field[Any]", kind: Type[Any], value: Any) -> Tuple[Any, Optional[str]]:
-    """A value as the field takes it, and what is wrong with it, in words, or None."""
+    """A value, converted for its field, and what is wrong with the value, in words, or None."""
     count = spec.metadata.get("count")
     if count is None:
         value = _to_float(value) if kind is float and type(value) is int else value
@@ -146,7 +146,7 @@ def _problem(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
 
 
 def _expectation(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
-    """What was expected instead of a value, and the value; None when the value is as expected."""
+    """A text with the value and what was expected instead; None when the value is as expected."""
     if type(value) is not kind:
         return f"{kind.__name__}, got {type(value).__name__} {value!r}"
     if kind is float and not math.isfinite(value):

@@ -55,7 +55,7 @@ def parse_xml(text: bytes, path: str, error: Type[RobocopError], lenient: bool =
     """The root element of an XML text; path: its name for messages. `error` if it is not XML or has a DOCTYPE.
 
     As in Gazebo, a comment may contain -- and any bytes, and blank lines or comments may precede the <?xml ...?>.
-    Elements of xacro are an error: what they stand for is not here.
+    Elements of xacro are an error: the text does not have the elements that they stand for.
     lenient: reads on after errors, such as a bare & or bytes that are not UTF-8.
     """
     # Line feeds are kept, for the lines that errors name.

@@ -1,4 +1,4 @@
-"""Shapes, of which both worlds and robots are made."""
+"""The shapes of which worlds and robots are made."""
 
 from dataclasses import dataclass
 from typing import Union

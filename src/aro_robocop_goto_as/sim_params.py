@@ -1,7 +1,7 @@
 """All parameters of the simulator: the groups that its components declare, and which values exclude one another.
 
-A group is a frozen dataclass with every default and bound, beside the component that reads it, or here if
-that is above this module. A field's name is the name of the ROS parameter, whatever the group; config/sim.yaml
+A group is a frozen dataclass with every default and bound. It is beside the component that reads it, or here if that
+component is above this module. A field's name is the name of the ROS parameter, whatever the group; config/sim.yaml
 documents each one with its unit and source. A default of None means "not given": ROS parameters can't hold a null, so
 the key is simply left out.
 """
@@ -38,7 +38,7 @@ class RobotParams:
 
 @dataclass(frozen=True)
 class Rates:
-    """How often each thing happens that is no sensor [Hz]."""
+    """The rates [Hz] of everything that is not a sensor."""
 
     physics_rate: int = parameter(240, low=1, high=10000)
     clock_rate: int = parameter(60, low=1)

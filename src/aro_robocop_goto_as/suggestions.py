@@ -1,4 +1,4 @@
-"""The end of a message about an unknown word: which ones there are, or which one was meant."""
+"""The end of a message about an unknown word: the known words, or the word that was probably meant."""
 
 from typing import Collection, Iterable
 
@@ -6,7 +6,7 @@ MAX_LINE = 78  # characters; `rosservice call` wraps a longer text
 
 
 def did_you_mean(word: str, known: Iterable[str], form: str = "{}", similarity: float = 0.6) -> str:
-    """The end of an error message about a mistyped word, which shows the one meant; empty if none is similar."""
+    """The end of an error message about a mistyped word, with the word that was meant; empty if no word is similar."""
     import difflib  # only where there is an error
 
     close = difflib.get_close_matches(word, list(known), n=1, cutoff=similarity)
@@ -14,6 +14,6 @@ def did_you_mean(word: str, known: Iterable[str], form: str = "{}", similarity: 
 
 
 def unknown(text: str, word: str, known: Collection[str]) -> str:
-    """A message about an unknown word, with the known ones if it stays in one line, else with the one meant."""
+    """A message about an unknown word, with the known words if they fit in one line, else with the one meant."""
     full = f"{text}; there are: {', '.join(known) or 'none'}"
     return full if len(full) <= MAX_LINE else text + did_you_mean(word, known)

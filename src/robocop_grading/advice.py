@@ -1,4 +1,4 @@
-"""Advice on a submission's source code: what gets full marks and fails now and then on a robot or in a simulator."""
+"""Advice on a submission's source code: mistakes that cost no points, but sometimes fail on a robot or simulator."""
 
 import ast
 import re
@@ -27,7 +27,7 @@ def next_todo(code: str) -> str:
 
 
 def advice(code: str) -> List[str]:
-    """What to say about a program, each thing once with its first line; nothing for one that is no Python 3."""
+    """The advice about a program, each piece once with its first line; none for a program that is not Python 3."""
     try:
         tree = ast.parse(code)
     except (SyntaxError, ValueError, RecursionError, MemoryError):

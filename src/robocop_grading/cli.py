@@ -34,7 +34,7 @@ LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHE
 
 
 class Progress:
-    """Tells which scenario has begun, and its number among those of these parts."""
+    """Prints which scenario has begun, and its number among the scenarios of these parts."""
 
     def __init__(self, plan: Plan, parts: Sequence[str]) -> None:
         self._order = [(part, name) for part in parts if plan.examines(part) for name in plan.scenarios_of(part)]
@@ -46,7 +46,7 @@ class Progress:
 
 
 def _show(text: str) -> None:
-    """Progress: on a terminal in place of what was shown before."""
+    """Show progress; on a terminal, in place of the previous progress."""
     if sys.stderr.isatty():
         print(f"\r\033[K{text} ...", end="", file=sys.stderr, flush=True)
     else:
@@ -90,7 +90,7 @@ def _marked(text: str, check: CheckResult) -> str:
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
-    """The path of what is graded, in `folder` if it has to be unpacked, and what is not used of it.
+    """The path of the submission, in `folder` if it has to be unpacked, and notes about files that are not used.
 
     GradingError for a path that a sandbox would not hide from other submissions.
     """

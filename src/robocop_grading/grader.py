@@ -35,7 +35,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = Fal
     """Write the report, and the bags of failed scenarios, to `folder`.
 
     `keep`: the report stays in its folder, and gets the bags of all scenarios. A part that is killed is run once more.
-    UngradableError if it is killed again, but may not have done so itself, or if the machine has no time for it.
+    UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
     """
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}

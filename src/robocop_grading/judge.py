@@ -1,4 +1,4 @@
-"""Applies the checks of a plan to records: for each one an outcome, points and a reason."""
+"""Applies the checks of a plan to records: each check gets an outcome, points and a reason."""
 
 import enum
 import re
@@ -55,7 +55,7 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A failure that does not follow from another one, what it costs, and how many checks it fails and blocks."""
+    """A failure that does not follow from another failure, its cost, and how many checks it fails and blocks."""
 
     check: CheckResult
     points: float
@@ -71,7 +71,7 @@ class Mistake:
 
     @property
     def sentence(self) -> str:
-        """What the mistake is."""
+        """The mistake in words."""
         return "" if self.check.failure is None else sentences(self.check.failure.cause)
 
 
@@ -129,7 +129,7 @@ class Grade:
 
     @property
     def failures_first(self) -> List[CheckResult]:
-        """The mistakes, what follows from them, what was not reached, what passed."""
+        """All results in this order: mistakes, failures that follow from them, checks not reached, passed checks."""
         order = [mistake.check for mistake in self.mistakes]
         order += [check for check in self.checks if check.outcome is Outcome.FAILED and check.follows]
         for outcome in (Outcome.NOT_REACHED, Outcome.PASSED):
@@ -147,7 +147,7 @@ def total(points: Iterable[float]) -> float:
 
 
 def points_in_words(points: float, available: float, extra: float, extra_available: float) -> str:
-    """Points of those available, and extra ones apart from them: nothing where none are available."""
+    """The points out of those available, in words, with extra points apart; no words for a kind without points."""
     words = [f"{points:g} of {available:g} points"] if available else []
     words += [f"{extra:g} of {extra_available:g} extra"] if extra_available else []
     return ", ".join(words) or "nothing was judged"
@@ -172,13 +172,16 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
 
 
 def _programs(records: Mapping[str, Record]) -> List[str]:
-    """What to say of programs of ROS that the node starts."""
+    """Notes about programs of ROS that the node starts."""
     programs = sorted({program for record in records.values() for program in record.programs})
     return [text("programs_of_ros", ", ".join(programs))] if programs else []
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
-    """What to say of topics that the node waits for in vain; its action server's own have no client by then."""
+    """Notes about topics that the node waits for in vain.
+
+    Topics of its own action server don't count: the server has no client when the record ends.
+    """
     return [
         text("truth_unpublished" if "ground_truth" in topic else "unpublished", topic)
         for record in records.values()
@@ -188,7 +191,7 @@ def _unpublished(records: Mapping[str, Record]) -> List[str]:
 
 
 def _end_of(part: str, records: Mapping[str, Record], plan: Plan) -> List[str]:
-    """Why a server did not start, or ended, if none of the plan's checks examines that."""
+    """Why a server did not start, or ended, if no check of the plan examines this."""
     if part != "server" or {FIRST, ALIVE}.intersection(check.name for check in plan.checks):
         return []
     verdicts = [CHECKS[name](record, plan.limits) for record in records.values() for name in (FIRST, ALIVE)]
@@ -196,19 +199,19 @@ def _end_of(part: str, records: Mapping[str, Record], plan: Plan) -> List[str]:
 
 
 def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -> List[str]:
-    """What to say of topics that the node uses with a wrong type, unless it is a check's cause."""
+    """Notes about topics that the node uses with a wrong type, unless a check names this as its cause."""
     said = "".join(check.words for check in checks)
     wrong = [wrong_type(record, topic) for record in records.values() for topic, *_ in record.other_types]
     return [it for it in wrong if it not in said]
 
 
 def without_figures(text: str) -> str:
-    """The text without its figures: causes that differ only in them are the same."""
+    """The text without its figures: causes that differ only in figures are the same."""
     return NUMBER.sub("#", text)
 
 
 def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> List[CheckResult]:
-    """One part's results with the failure that each one follows from, or is blocked by, if it has not its own cause."""
+    """One part's results; each that has no cause of its own gets the failure that it follows from, or is blocked by."""
     failed = {result.name: (result.failure, result.scenario) for result in results if result.failure is not None}
     causes = {name: without_figures(failure.cause) for name, (failure, _) in failed.items()}
     reasons = {name: _reason(name, failed, records) for name in failed}
@@ -234,7 +237,7 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> 
 
 
 def _reason(name: str, failed: Mapping[str, Tuple[Failed, str]], records: Mapping[str, Record]) -> str:
-    """The check with whose failure it begins."""
+    """The check whose failure is the first reason."""
     chain = [name]
     while True:
         failure, scenario = failed[chain[-1]]

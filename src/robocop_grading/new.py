@@ -1,4 +1,4 @@
-"""robocop new: create a package with the handout's TODOs, or what grades hand-ins on GitHub Classroom or Gradescope."""
+"""robocop new: create a package with the handout's TODOs, or the graders for GitHub Classroom or Gradescope."""
 
 import argparse
 import re

@@ -1,4 +1,4 @@
-"""Packages that a plan names because the lab has them: Debian's are looked for, PyPI's installed once."""
+"""Packages that a plan names because the lab has them: Debian's have to be installed, PyPI's are installed once."""
 
 import os
 import re
@@ -26,7 +26,7 @@ class Packages:
     pypi: Tuple[str, ...] = several()  # without their dependencies, which could replace Debian's, such as NumPy
 
     def conflicts(self) -> List[str]:
-        """What is not the name of a package, in words."""
+        """The names that are no package names, in words."""
         names = (*self.debian, *self.pypi)
         return [f"expected the name of a package, got {it!r}" for it in names if not NAME.fullmatch(it)]
 

@@ -46,7 +46,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Push:
-    """Once the robot is farther than `after` [m] from odom's origin, somebody moves it, whatever it is commanded."""
+    """A push: once the robot is farther than `after` [m] from odom's origin, it is moved, whatever is commanded."""
 
     after: float
     v: float  # [m/s]
@@ -80,7 +80,7 @@ class Block:
 
     @property
     def outline(self) -> Tuple[float, ...]:
-        """It seen from above, in odom: x, y, x, y, ... [m]."""
+        """The block's outline from above, in odom: x, y, x, y, ... [m]."""
         if self.box:
             length, width = self.box[3:]
             corners = [(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
@@ -114,7 +114,7 @@ class CheckPlan:
 
     @property
     def contract(self) -> str:
-        """What it tests."""
+        """The contract that the check tests."""
         return CHECKS[self.name].contract
 
 
@@ -145,14 +145,14 @@ class Plan:
         return any(check.part == part and scenario in ("", *check.scenarios) for check in self.checks)
 
     def scenarios_of(self, part: str) -> List[str]:
-        """The scenarios that are run for a part, in their order; no check of ours examines a bridge's last one."""
+        """The scenarios that are run for a part, in their order; no check examines the last scenario of a bridge."""
         if part == "server":
             return [START, *(it.name for it in self.scenarios if self.examines(part, it.name))]
         examined = [n for n, name in enumerate(BRIDGE_SCENARIOS, 1) if self.is_whole or self.examines(part, name)]
         return list(BRIDGE_SCENARIOS[: max(examined, default=0)])
 
     def restricted(self, names: Sequence[str]) -> "Plan":
-        """The plan with these checks only, if there are any; PlanError for a name that it does not have."""
+        """The plan with only these checks, or the whole plan without names; PlanError for an unknown check."""
         for name in names:
             if name not in {check.name for check in self.checks}:
                 known = ", ".join(check.name for check in self.checks)

@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class _File:
-    """The sections of the plan's file; those in which all is commented out may be left empty."""
+    """The sections of the plan's file; a section in which everything is commented out may be left empty."""
 
     scenarios: list = parameter()
     checks: dict = parameter()
@@ -86,7 +86,7 @@ def _loaded(cls: Type[T], raw: Any, where: str) -> T:
 
 
 def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
-    """A value of the plan, with a number for each range LOW..HIGH in it: a drawn one, or the middle without `numbers`.
+    """A value of the plan, with a number for each range LOW..HIGH in it: drawn, or the middle without `numbers`.
 
     PlanError if a range is empty.
     """

@@ -51,7 +51,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Cancel:
-    """A cancel request: for a goal, for those up to its stamp [s] unless that is 0, for all if it has neither."""
+    """A cancel request: for the goal of its id, for goals up to its stamp [s], or for all if both are missing."""
 
     time: float
     id: str
@@ -139,7 +139,7 @@ class Death:
 
     @property
     def is_unexplained(self) -> bool:
-        """Return whether it was killed by itself, or by the kernel as memory ran out; not by the grader."""
+        """Return whether the node killed itself, or the kernel killed it because memory ran out; not the grader."""
         return self.status in KILLED and not self.reason
 
 

@@ -31,7 +31,7 @@ Progress = Callable[[str, str], None]  # part, scenario
 # [s, wall] for all scenarios of a part. A quiet machine needs ten; a right server beside sixty busy processes, six
 # minutes. A node that uses too much processor time is ended by its own limit.
 BUDGET = 3600.0
-END_TIMEOUT = 600.0  # [s, wall] for a session that has said all; it needs milliseconds
+END_TIMEOUT = 600.0  # [s, wall] for the end of a session that has closed its output; it needs milliseconds
 LOG_LINES = 15
 
 
@@ -41,9 +41,9 @@ class Recorded:
 
     records: Dict[str, rec.Record]
     problem: str = ""
-    killed: str = ""  # what was killed, and not by the grader, if anything was
-    excused: bool = False  # it may not have killed itself: the machine's memory ran out, or it was the grader's process
-    told: Sequence[str] = ()  # what the report says of scenarios that were repeated
+    killed: str = ""  # what was killed, but not by the grader; empty if nothing was
+    excused: bool = False  # the submission may not be to blame: memory ran out, or the grader's process was killed
+    told: Sequence[str] = ()  # notes for the report about scenarios that were repeated
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,10 @@ class Runner:
     budget: float = BUDGET  # [s, wall]
 
     def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
-        """Run the scenarios of a script's part; records and bags go to `out`. It ends whatever the submission does.
+        """Run the scenarios of a script's part, which ends whatever the submission does; records and bags go to `out`.
 
-        NoTimeError if the machine has no time for it, UngradableError where it or the plan's packages can't be had.
+        NoTimeError if the machine has no time for the run; UngradableError if the session can't be started, or the
+        plan's packages can't be provided.
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
@@ -76,7 +77,7 @@ class Runner:
             "HOME": str(home),
             "TMPDIR": str(home),
             "PYTHONUNBUFFERED": "1",
-            "ROS_MASTER_URI": f"http://localhost:{free_port()}",  # no master, for programs that it starts
+            "ROS_MASTER_URI": f"http://localhost:{free_port()}",  # programs that the node starts find no master there
         }
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
@@ -99,8 +100,8 @@ class Runner:
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.
 
-        UngradableError, or NoTimeError, for what a submission has no part in: only a session that ends in another way
-        once it has begun a scenario is judged.
+        UngradableError or NoTimeError if the submission is not to blame. A session that fails in another way after it
+        has begun a scenario is judged.
         """
         log = out / f"{part}-session.log"
         process = child.start(command, log, environment, stdout=PIPE)

@@ -51,7 +51,7 @@ class Script:
     shown: str = ""  # its path within the submission, and what starts it
 
     def command(self) -> List[str]:
-        """Its command line, with this interpreter whatever its first line says: students' Pythons differ."""
+        """The command line, with this interpreter whatever the script's first line says: students' Pythons differ."""
         return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments, f"__name:={self.node}"]
 
 
@@ -136,7 +136,7 @@ def _lab_folder(state: Path) -> Path:
 
 
 def lab_environment(share: Path, state: Path) -> Environment:
-    """The environment with the lab's action and nothing written by anybody else; built once."""
+    """The environment with the lab's action and no code of a submission; built once."""
     folder, underlay = _lab_folder(state), compat_environment(share, state)
 
     def build_lab() -> Environment:
@@ -176,7 +176,7 @@ def _advice(script: Script) -> List[str]:
 def _obstacles(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:
     """Why roslaunch could not start a script that is started here by its interpreter.
 
-    `is_loose`: it is not in a package, and what copied it may have dropped its execute bit.
+    `is_loose`: the script is not in a package, so copying may have dropped its execute bit.
     """
     name = choice.path.name
     for problem, remedy in obstacles(choice.path):

@@ -1,4 +1,4 @@
-"""The longer texts of causes, by their names, sentences made of parts, and what can be shown of others' texts."""
+"""The longer texts of causes, by their names; sentences made of parts; other people's texts, made safe to show."""
 
 import functools
 from typing import Mapping

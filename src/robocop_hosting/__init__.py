@@ -1,4 +1,4 @@
-"""Somebody else's package: found, built in a workspace of its own, its launch file read, and run with this simulator.
+"""Finds somebody else's package, builds it in its own workspace, reads its launch file, runs it with this simulator.
 
-The grader and `robocop sim --with` (sim_with) share it. It imports the lab, never the grader.
+The grader and `robocop sim --with` (sim_with) share this package. It imports the lab, never the grader.
 """

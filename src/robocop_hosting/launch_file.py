@@ -35,7 +35,7 @@ class LaunchNode:
 
     @property
     def variables(self) -> Environment:
-        """Environment variables that roslaunch sets for it."""
+        """The environment variables that roslaunch sets for the node."""
         namespace = self.namespace.rstrip("/")
         return {**self.environment, **({"ROS_NAMESPACE": namespace} if namespace else {})}
 
@@ -50,7 +50,7 @@ class LaunchFile:
 
 
 def read(path: Path, top: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()) -> LaunchFile:
-    """What roslaunch makes of a launch file of the package at `top`; `run` is the sandbox, as it may run commands.
+    """What roslaunch makes of a launch file of the package at `top`, read by `run`: a launch file may run commands.
 
     `arguments`: NAME:=VALUE. HostingError with roslaunch's reason and the line if it can't be loaded.
     """

@@ -41,7 +41,7 @@ class Package:
 
 
 def arguments_of(launch_file: Optional[Path]) -> List[str]:
-    """Names of a launch file's arguments, without those that have a fixed value; none without a file."""
+    """Names of a launch file's arguments, except arguments with a fixed value; none if there is no file."""
     if launch_file is None:
         return []
     return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
@@ -116,7 +116,7 @@ def _name(manifest: Path) -> str:
 
 
 def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]:
-    """The launch file to start, and all of them; HostingError if there are several with its name, which differ."""
+    """The launch file to start, and all launch files; HostingError if several different files have its name."""
     files = [path for path in files_below(folder) if path.suffix == ".launch"]
     files.sort(key=lambda path: (best_place(path, folder, "launch"), path))
     matching = [path for path in files if path.name == (wanted or LAUNCH_FILE)]
@@ -136,7 +136,7 @@ def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]
 
 @dataclass(frozen=True)
 class Started:
-    """What roslaunch would start of a package, by part, the parameters it would set, and what of it is not done."""
+    """What roslaunch would start of a package, by part; the parameters it would set; what the grader does not do."""
 
     choices: Mapping[str, Choice]
     parameters: Mapping[str, Any]
@@ -157,7 +157,7 @@ class Started:
 def names_gazebo(package: Package, problem: str) -> bool:
     """Return whether a launch file that can't be read starts Gazebo: the package's own, or one that `problem` names.
 
-    What is missing may be another package that comes with Gazebo, such as xacro.
+    The package that `problem` misses may be another one that comes with Gazebo, such as xacro.
     """
     for path in package.launch_files:
         if path == package.launch_file or path.name in problem:
@@ -204,7 +204,7 @@ def started(
 def _not_done(
     package: Package, nodes: Sequence[LaunchNode], choices: Mapping[str, Choice], names: Collection[str]
 ) -> Iterator[str]:
-    """What launch files of the package, which has files of these `names`, ask for beside its server and its bridge."""
+    """Notes about requests of launch files that are not carried out; `names`: the names of the package's files."""
     graded = [choice.node for choice in choices.values()]
     for node in (node for node in nodes if node.is_own):
         if node.package == package.name and node.type not in names:

@@ -1,6 +1,6 @@
 """Usage: python3 roslaunch_reader.py FILE [NAME:=VALUE...]: what roslaunch's loader makes of a launch file, as JSON.
 
-It is a program of its own, as launch files can run commands. It imports nothing of the grader's.
+It is a separate program, because launch files can run commands. It imports nothing of the grader.
 """
 
 import json
@@ -57,7 +57,7 @@ def place_of(error: Optional[BaseException]) -> Tuple[str, int]:
 
 
 def not_done(node: Node) -> Iterator[str]:
-    """What roslaunch does for a node and the grader does not."""
+    """What roslaunch would do for a node, but the grader does not."""
     if node.launch_prefix:
         yield f"launch-prefix={node.launch_prefix!r}"
     if node.machine_name:

@@ -1,4 +1,4 @@
-"""A folder -> the scripts of the lab's server and bridge in it: those that roslaunch would start."""
+"""A folder -> the scripts of the lab's server and bridge in it, the scripts that roslaunch would start."""
 
 import codecs
 import contextlib
@@ -37,7 +37,7 @@ RELAY = re.compile(rb"^python_script = '([^'\n]+)'$", re.M)  # in what catkin_in
 
 @dataclass(frozen=True)
 class Choice:
-    """A part's script, the launch file's node that starts it, if there is one, and other scripts that could be it."""
+    """A part's script, the launch file's node that starts it, if any, and other scripts that could be this part."""
 
     path: Path
     node: Optional[LaunchNode]
@@ -61,7 +61,10 @@ def part_of(path: Path, top: Path) -> str:
 
 
 def _part_by_content(content: bytes) -> Tuple[str, bool]:
-    """The part of a program by the names and strings in it, or "", and whether it can be no other action client."""
+    """The part of a program by its names and strings, or "", and whether this is certain.
+
+    It is uncertain for a program that may be the client of another action.
+    """
     if not any(hint in content for hint in HINTS):
         return "", False
     words = _names_in(content.decode(errors="replace"))
@@ -96,7 +99,7 @@ def files_below(top: Path) -> List[Path]:
 
 
 def best_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
-    """The smaller, the more a file is meant: not in a copy, executable, in the folder where such files belong."""
+    """A key that is smallest for the likeliest file: not in a copy, executable, in the right kind of folder."""
     is_aside = ASIDE.search(str(path.relative_to(top))) is not None
     return is_aside, not os.access(path, os.X_OK), path.parent.name != folder
 
@@ -104,8 +107,10 @@ def best_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
 def choose(
     top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = (), expects_one: bool = True
 ) -> Dict[str, Choice]:
-    """The script of each part that is there: what the launch files' `nodes` start, scripts of the handout's names, or
-    the only one that offers the action or listens to clicks.
+    """The script of each part in `top`.
+
+    The script is the one that a launch file's node in `nodes` starts, or the one with the handout's name, or the only
+    one that offers the action or listens to clicks.
 
     `relays`: programs that the build has made, among them those of catkin_install_python. HostingError if two different
     scripts are equally likely, unless not `expects_one`.
@@ -156,7 +161,7 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[by
 
 
 def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]:
-    """Python files, and files of these names, with their content; HostingError if one of the latter can't be read."""
+    """Python files and files of these names, with their content; HostingError if a named file can't be read."""
     for path in files_below(top):
         if path.name in names or path.suffix == ".py":
             try:

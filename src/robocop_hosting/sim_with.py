@@ -22,7 +22,7 @@ INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
 def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) -> Tuple[Path, Environment, Started]:
-    """Build a package in `state`/with/...; that folder, the environment to run it in, and what its launch file starts.
+    """Build a package in `state`/with/...; return that folder, its environment, and what its launch file starts.
 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
@@ -53,7 +53,7 @@ def instead_of_gazebo(package: Package) -> str:
 
 
 def make_startable(choice: Choice, source: Path) -> None:
-    """Have roslaunch start this script, and no other one of its name."""
+    """Make sure that roslaunch starts this script, and no other script of its name."""
     name = choice.path.relative_to(source)
     if not os.access(choice.path, os.X_OK):
         _tell(
@@ -76,7 +76,7 @@ def _tell(words: str) -> None:
 
 
 def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: Started) -> Path:
-    """A launch file that starts the package and, unless that does it, the simulator, written into `folder`."""
+    """Write a launch file into `folder` that starts the package and, unless the package does so, the simulator."""
     parts = []
     if not found.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
@@ -96,7 +96,7 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found
 
 
 def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
-    """NAME:=VALUE words for the package's launch file, and those for the simulator's, which knows `simulator`."""
+    """The NAME:=VALUE words for the package's launch file, and those for the simulator, which knows `simulator`."""
     known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
     for_simulator: List[str] = []
@@ -131,7 +131,7 @@ def parsed(words: Optional[Sequence[str]] = None) -> argparse.Namespace:
 
 
 def main() -> None:
-    """Build what the arguments name, and launch it in this process, whose end is everything's. Exit status 1 or 130."""
+    """Build and launch the package that the arguments name; everything ends with this process. Exit status 1 or 130."""
     args = parsed()
     handlers = {number: signal.getsignal(number) for number in ending_signals()}
     interrupt_on_signal()

@@ -1,7 +1,7 @@
 """Other people's folders, however deep they are nested, and their files, which may be pipes, devices, or too large.
 
 os.walk, shutil.rmtree and Path.rglob call themselves for each level, and Python ends a program at 1,000 levels; so
-walk() gives up before, and remove() leaves it to another program.
+walk() gives up at a lower number of levels, and remove() starts another program that removes the folder.
 """
 
 import contextlib
@@ -54,7 +54,7 @@ def temporary_folder(prefix: str) -> Iterator[Path]:
 def read_bytes(path: Path, top: Optional[Path] = None) -> bytes:
     """The content of a regular file; HostingError for a pipe, a device, or more than a megabyte.
 
-    With `top`, it also has to be inside of that folder, wherever links in its path lead.
+    With `top`, the file also has to be inside that folder after all links in its path are followed.
     """
     real = Path(os.path.realpath(path))
     if top is not None and Path(os.path.realpath(top)) not in real.parents:

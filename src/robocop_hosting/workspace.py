@@ -50,7 +50,7 @@ def output_of(run: Run, command: Sequence[str], environment: Environment, limit:
 
 
 def workspace_name(path: Path) -> str:
-    """The name of the folder in which the package at a path is built: make, CMake and genmsg don't take all names."""
+    """The name of the folder in which a path's package is built: make, CMake and genmsg don't accept every name."""
     return f"package-{zlib.crc32(os.fsencode(path)):08x}"
 
 
@@ -90,7 +90,7 @@ def copy_sources(
 
 
 def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:
-    """Build copies of packages (name -> folder) in a workspace at `folder`; the environment with it on top.
+    """Build copies of packages (name -> folder) in a workspace at `folder`; return the environment with it on top.
 
     An earlier build is reused. HostingError shows the end of the log of a build that failed.
     """
@@ -117,7 +117,7 @@ def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) 
 
 
 def error_of(log: str, folder: Path) -> str:
-    """The part of a failed build's log that begins with the first error, else its end; paths are as from `folder`."""
+    """A failed build's log from its first error on, or its end if it names no error; paths are relative to `folder`."""
     log = log.replace(f"{folder}/", "")
     error = FIRST_ERROR.search(log)
     lines = log[error.start() :].splitlines()[:LOG_LINES] if error else log.splitlines()[-LOG_LINES:]
@@ -165,7 +165,7 @@ def exclusive(folder: Path) -> Iterator[None]:
 def compat_environment(share: Path, state: Path) -> Environment:
     """The environment with the lab's aro_sim and Gazebo's message types, on which hosted packages are built.
 
-    They are built from `share`/compat, this package's, in `state`/compat.
+    These packages are built from `share`/compat, a folder of this package, in `state`/compat.
     """
     folder, sources = state / "compat", {name: share / "compat" / name for name in COMPAT}
     underlay = base_environment()

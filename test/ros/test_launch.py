@@ -96,11 +96,10 @@ def test_an_unknown_model_is_refused_with_the_models_that_there_are(capfd, argum
     assert capfd.readouterr().err.startswith("ROBOT_MODEL: there is no model 'tank'; known are: burger, burger_rgbd, ")
 
 
-def test_robots_in_a_configuration_are_refused_with_the_argument_to_use(tmp_path, capfd):
+def test_robots_in_a_configuration_are_answered_with_the_argument_that_starts_their_nodes(tmp_path, capfd):
     (tmp_path / "config.yaml").write_text("robots: 3 0\n")
-    with pytest.raises(roslaunch.xmlloader.XmlParseException, match="robot_description"):
-        Launch(f"config:={tmp_path}/config.yaml")
-    assert "pass it as the argument robots:=" in capfd.readouterr().err
+    Launch(f"config:={tmp_path}/config.yaml")
+    assert "`robots` is set in a file" in capfd.readouterr().err
 
 
 def test_simulator_bridges_and_rviz_can_be_left_out():

@@ -219,18 +219,6 @@ def test_without_python_commands_install_nothing_in_a_dry_run(on_system, tmp_pat
     assert message in done.stderr
 
 
-def test_up_to_date_set_up_installs_nothing_and_adds_less_than_a_second(tmp_path):
-    """A second of processor time: wall time would depend on what else the machine does."""
-    assert robocop("setup").returncode == 0
-    with open(tmp_path / "errors", "w+") as errors:
-        command = subprocess.Popen([str(ROOT / "robocop"), "shell", "true"], env=environment(), stderr=errors)
-        _, status, usage = os.wait4(command.pid, 0)
-        command.returncode = status
-        errors.seek(0)
-        assert (status, errors.read()) == (0, ""), "a step of the setup was repeated"
-    assert usage.ru_utime + usage.ru_stime < 1.0
-
-
 # As apt 2.6 prints it with APT::Status-Fd, shortened; it fails once, as without package lists.
 APT = """#!/bin/sh
 [ -e {0}/updated ] || {{ touch {0}/updated; echo "E: Unable to locate package"; exit 100; }}

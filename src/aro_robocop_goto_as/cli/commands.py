@@ -90,12 +90,12 @@ def refuse_unknown(command: str) -> NoReturn:
 
 
 def clean(arguments: List[str]) -> None:
-    """End with an error: the shell script itself removes what was built, if there are none."""
+    """End with an error about arguments; without arguments, the shell script itself removes what was built."""
     refuse(f"clean: expected no arguments, got {' '.join(arguments)}")
 
 
 def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
-    """The command that passes its arguments on to one of the package's scripts, which needs these parts."""
+    """A command that passes its arguments on to a script of the package; the script needs these parts."""
 
     def start_script(arguments: List[str]) -> None:
         program.need(*parts)

@@ -1,4 +1,4 @@
-"""The help text of each command, and from it what `./robocop completion` prints for bash."""
+"""The help text of each command, and the script for bash that `./robocop completion` makes of these texts."""
 
 import re
 import shlex

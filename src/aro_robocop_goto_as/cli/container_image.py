@@ -8,7 +8,7 @@ from .program import ROOT, become, refuse, version
 
 
 def build(arguments: List[str]) -> NoReturn:
-    """Become the program that builds it. Arguments: a name, if any, and options of that program."""
+    """Become the program that builds the image. Arguments: the image's name, if any, and options of that program."""
     named = bool(arguments) and not arguments[0].startswith("-")
     name, options = (arguments[0], arguments[1:]) if named else ("robocop", arguments)
     engine = _engine()

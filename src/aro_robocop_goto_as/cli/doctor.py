@@ -67,7 +67,7 @@ def versions(python: str) -> Dict[str, str]:
 
 
 def master_row() -> Tuple[str, str]:
-    """What answers at ROS_MASTER_URI, and what to do about it; empty if it is no problem."""
+    """What answers at ROS_MASTER_URI, in words, and what to do about a problem; empty if there is no problem."""
     uri = master.master_uri()
     try:
         if not master.master_answers(uri):
@@ -138,7 +138,7 @@ def _problems(unsupported: str, missing: Dict[str, str], complete: bool) -> List
 
 
 def report(script: str, checkout: str, state: str) -> int:
-    """Print the report, for which the script `robocop` is called back; the exit status, 0 if nothing is missing."""
+    """Print the report, and return the exit status, 0 if nothing is missing; calls the script `robocop` back."""
 
     def ask(*words: str) -> str:
         return " ".join(subprocess.run([script, *words], stdout=subprocess.PIPE, text=True).stdout.split())

@@ -1,6 +1,7 @@
-"""Turns ./robocop into another program: installs what that program needs, then replaces this process by it.
+"""Turns ./robocop into another program: installs the packages that the program needs, then becomes the program.
 
-The shell script `robocop` is called back for both: `_set_up PART...`, and `_environment` for that of the workspace.
+It calls the shell script `robocop` back: `_set_up PART...` installs, and `_environment` prints the workspace's
+environment.
 """
 
 import os
@@ -86,7 +87,7 @@ def start(*command: str) -> NoReturn:
 
 
 def workspace_environment() -> Dict[bytes, bytes]:
-    """The environment of this process, and what the workspace's set-up files add. Ends this program on a failure."""
+    """This process's environment, with the additions of the workspace's set-up files; a failure ends this program."""
     done = subprocess.run([SCRIPT, "_environment"], stdout=subprocess.PIPE)
     if done.returncode != 0:
         sys.exit(1)  # it has said why

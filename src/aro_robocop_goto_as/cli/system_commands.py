@@ -33,7 +33,7 @@ def launch(given: LaunchArguments, *words: str) -> NoReturn:
 def refuse_second_simulator() -> None:
     """End with an error if a simulator is running: nodes of the same name on one master shut each other down.
 
-    Also if something other than a ROS master has the master's port.
+    It also ends with an error if something other than a ROS master has the master's port.
     """
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)
@@ -93,7 +93,7 @@ def _split_at(words: List[str], option: str) -> Tuple[List[str], bool, List[str]
 
 
 def web_arguments(words: Sequence[str]) -> Tuple[List[str], List[str]]:
-    """What aro_sim starts the web page with, nothing unless web:=true is among the words, and the other words."""
+    """The arguments by which aro_sim starts the web page, none unless web:=true is given; and the other words."""
     own = [word for word in words if word.partition(":=")[0] in ("web", "web_host", "web_port")]
     others = [word for word in words if word not in own]
     shown = any(word in [f"web:={true}" for true in TRUE] for word in own)
@@ -129,7 +129,7 @@ def record(arguments: List[str]) -> None:
 
 
 def _require_number(text: str, lowest: float, expected: str) -> None:
-    """End with an error for what rosbag would not take as a number."""
+    """End with an error for a word that rosbag would not take as a number."""
     with contextlib.suppress(ValueError):
         if lowest <= float(text) < math.inf:
             return

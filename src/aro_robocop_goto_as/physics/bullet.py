@@ -171,7 +171,7 @@ class BulletEngine:
     def move_obstacles(self, time: float) -> None:
         """Put the moving obstacles where they are at `time` [s]; contacts push robots out of their way.
 
-        It also keeps nearby robots awake: in Bullet, setting the pose of one body does not wake another.
+        This also keeps nearby robots awake: in Bullet, setting the pose of one body does not wake another body.
         """
         for x, y in self._obstacles.move(time):
             for robot in self._robots:
@@ -185,7 +185,7 @@ class BulletEngine:
         """Put a standing robot to sleep.
 
         Otherwise the solver's residual moves a standing Burger by 6.6 mm per minute (with 50 iterations).
-        Bullet wakes it when a moving body touches it, `_set_motors` does for a command.
+        Bullet wakes the robot when a moving body touches it; `_set_motors` wakes it for a command.
         """
         linear, angular = pybullet.getBaseVelocity(robot.body, physicsClientId=self.client)
         still = all(abs(v) < REST_LINEAR for v in linear) and all(abs(w) < REST_ANGULAR for w in angular)

@@ -1,4 +1,4 @@
-"""The floor and the obstacles of a world as bodies in Bullet; what is in the ground is left out."""
+"""The floor and the obstacles of a world as bodies in Bullet; obstacles within the ground are left out."""
 
 from itertools import filterfalse
 from typing import Dict, Iterator, List, Set, Tuple
@@ -22,7 +22,7 @@ class BulletObstacles:
         self._bodies: Dict[str, List[int]] = {}  # by the name of the obstacle
 
     def fill(self) -> None:
-        """Add all of them to an empty Bullet world."""
+        """Add all bodies to an empty Bullet world."""
         self.floors, self._moving, self._bodies = set(), [], {}
         for obstacle in (FLOOR, *filterfalse(is_in_ground, self._world.obstacles)):
             self._add(obstacle)
@@ -39,7 +39,7 @@ class BulletObstacles:
         self._world = world
 
     def move(self, time: float) -> Iterator[Tuple[float, float]]:
-        """Put those that move where they are at `time` [s], one by one; x, y [m] of each."""
+        """Put the moving obstacles where they are at `time` [s], one by one; yield x, y [m] of each."""
         for body, obstacle in self._moving:
             pose = obstacle.at(time)
             pybullet.resetBasePositionAndOrientation(

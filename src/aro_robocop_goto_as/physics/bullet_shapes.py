@@ -34,7 +34,7 @@ def load_urdf(model: RobotModel, client: int) -> int:
 
 
 def shapes_of(geometry: Geometry, client: int) -> List[int]:
-    """Create the collision shapes of a static body; more than one only above MAX_TRIANGLES."""
+    """Create the collision shapes of a static body; there are several only above MAX_TRIANGLES."""
     if not isinstance(geometry, (Mesh, Walls)):
         return [pybullet.createCollisionShape(**_primitive(geometry), physicsClientId=client)]
     hollow = pybullet.GEOM_FORCE_CONCAVE_TRIMESH  # instead of the triangles' convex hull
@@ -92,7 +92,7 @@ def _meshes(corners: np.ndarray) -> Iterator[Dict[str, Any]]:
 
 
 def _both_sides(corners: np.ndarray) -> np.ndarray:
-    """Triangles (2 n, 3, 3), visible from both sides, of (n, 3, 3), visible from where they run counter-clockwise."""
+    """Triangles (2 n, 3, 3) that are visible from both sides, made of (n, 3, 3) that are visible from one side only."""
     return np.stack([corners, corners[:, ::-1]], axis=1).reshape(-1, 3, 3)
 
 

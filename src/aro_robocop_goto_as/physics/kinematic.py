@@ -1,8 +1,8 @@
 """A kinematic engine: ideal differential drives, each a disc that is blocked by walls and by other robots.
 
 Each step moves a disc along the chord of its arc as far as the way is free, which is computed exactly, so it passes
-through nothing at any speed or step length. Rotation is never blocked. Wheels turn as commanded even where a robot is
-blocked, so its encoders keep counting, as those of slipping wheels do. kinematic.c does all of this.
+through nothing at any speed or step length. Rotation is never blocked. Wheels turn as commanded even if the robot is
+blocked, so its encoders keep counting, as with slipping wheels. kinematic.c does all of this.
 """
 
 import ctypes
@@ -47,7 +47,7 @@ class _KinematicStruct(ctypes.Structure):
 
 
 class _BodySection:
-    """What a robot's body can meet: the union of a world's cross-sections at several heights [m], indexed."""
+    """The obstacles in a robot's way: the union of a world's cross-sections at several heights [m], indexed."""
 
     def __init__(self, world: World, heights: Tuple[float, ...], time: float) -> None:
         sections = [CrossSection(world, height) for height in heights]

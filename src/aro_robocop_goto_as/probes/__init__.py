@@ -1,1 +1,1 @@
-"""Looks at the machine, with Python's standard library only, as ./robocop does before anything is installed."""
+"""Looks at the machine, with Python's standard library only, because ./robocop does so before anything is installed."""

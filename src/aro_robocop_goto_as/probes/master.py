@@ -65,7 +65,7 @@ def master_uri() -> str:
 
 
 def master_answers(uri: str) -> bool:
-    """Return whether there is a ROS master; MasterError if something that does not answer as a master has its port."""
+    """Return whether there is a ROS master; MasterError if another kind of program has the master's port."""
     try:
         return ask_master(uri, "getPid") is not None
     except OSError:
@@ -96,7 +96,7 @@ def running_node(uri: str, name: str, kind: str = "a node of this name") -> Opti
 
 
 def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
-    """The running nodes that publish topics of these names, in any namespace; topics without one are left out.
+    """The running nodes that publish topics of these names, in any namespace; topics without a publisher are left out.
 
     OSError and MasterError as ask_master().
     """
@@ -110,7 +110,7 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
 
 
 def no_simulator(uri: str) -> str:
-    """That no simulator runs, and what to do; empty if a node publishes time or odometry, or no master answers."""
+    """A message that no simulator runs; empty if a node publishes time or odometry, or no master answers."""
     try:
         if publishers(uri, "clock", "odom"):
             return ""

@@ -41,8 +41,8 @@ def start(
 def end(child: "Child[Any]", number: Optional[int] = signal.SIGTERM, grace: float = END_TIMEOUT) -> int:
     """End a child and its descendants; returns the child's exit status.
 
-    Sends signal `number` (None: no signal), waits up to `grace` [s, wall] for the child to end, then kills what is
-    left. Closes the pipes to the child.
+    Sends signal `number` (None: no signal), waits up to `grace` [s, wall] for the child to end, then kills all
+    processes that are left. Closes the pipes to the child.
     """
     runs = child.poll() is None
     family = _family(child.pid) if runs else set()  # before the signal: orphans can't be traced back to the child

@@ -1,4 +1,4 @@
-"""No process is left behind: the end of a child when its parent ends, and of every descendant of this process."""
+"""Leaves no process behind: ends a child when its parent ends, and every descendant of this process."""
 
 import contextlib
 import ctypes
@@ -40,7 +40,7 @@ def adopt_orphans() -> None:
 
 
 def reap_adopted(name: str) -> None:
-    """Let go of the adopted children of a name that have ended. Nobody else waits for them, so they stay as zombies."""
+    """Wait for the adopted children of a name that have ended; nobody else does, so they would stay as zombies."""
     import psutil
 
     for child in psutil.Process().children():

@@ -23,7 +23,8 @@ NO_SEGMENTS, NO_CIRCLES = np.zeros((0, 2, 2)), np.zeros((0, 3))
 class CrossSection:
     """Segments and circles in the horizontal plane at one height, in the world frame.
 
-    Only circles move: moving obstacles are upright cylinders or spheres. They are at time zero until `move`.
+    Only circles move: moving obstacles are upright cylinders or spheres. Until `move`, they are where they are at
+    time zero.
     """
 
     def __init__(self, world: World, height: float) -> None:

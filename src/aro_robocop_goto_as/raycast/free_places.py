@@ -26,7 +26,7 @@ Cell = Tuple[int, int]  # of the grid; (0, 0) is the pose in the centre
 class _Room:
     """Where in a world there is room for robots of a model, by the distance to the nearest obstacle.
 
-    In the world of a grid map, there is none in cells that are unknown, nor outside the map.
+    In the world of a grid map, there is no room in unknown cells and outside the map.
     """
 
     def __init__(self, world: World, model: RobotModel) -> None:
@@ -42,7 +42,7 @@ class _Room:
 
 
 def occupant(world: World, pose: Pose2D, model: RobotModel) -> str:
-    """What takes the room at a pose, in words that follow "is": an obstacle, or an unknown cell of a map."""
+    """The obstacle, or unknown cell of a map, that takes the room at a pose, in words that follow "is"."""
     if world.occupancy is not None and not world.occupancy.is_known(pose.x, pose.y):
         return "unknown in the map"
     return f"occupied by '{ObstacleDistance(world, body_heights(model)).nearest(pose.x, pose.y).name}'"
@@ -88,8 +88,9 @@ def _outwards(centre: Tuple[float, float], spacing: float, reach: float) -> Iter
 def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> List[Pose2D]:
     """Poses on a grid, nearest to its centre first, clear of obstacles and connected to it by free grid edges.
 
-    The centre is free_place of the given pose. If there are too few places with CLEARANCE, those where the footprint
-    has room count as well. They depend on the arguments only. ParameterError if there are fewer than `count`.
+    The centre is free_place of the given pose. If there are too few places with CLEARANCE, places where just the
+    footprint has room count as well. The places depend on the arguments only. ParameterError if there are fewer than
+    `count`.
     """
     section, room = CrossSection(world, HEIGHT), _Room(world, model)
     centre = _place(room, around)

@@ -1,4 +1,4 @@
-"""The circles of a cross-section that move, put by compiled code where they are at a time."""
+"""The moving circles of a cross-section; compiled code puts them where they are at a time."""
 
 import ctypes
 from typing import List, Sequence, Tuple

@@ -57,7 +57,7 @@ class ObstacleDistance:
         return found if found.distance <= REACH else self._nearest(x, y, np.arange(len(self._start)))
 
     def _nearest(self, x: float, y: float, rows: np.ndarray) -> Nearest:
-        """The nearest of all circles and the segments in some rows, among them all with points at this y."""
+        """The nearest of all circles and of the segments in some rows, which include all segments that cross this y."""
         owners = np.concatenate([self._owners[rows], self._owners[len(self._start) :]])
         if not len(owners):
             return Nearest(math.inf, "")
@@ -71,7 +71,7 @@ class ObstacleDistance:
         return Nearest(float(distances[best]), self._names[owners[best]])
 
     def _around(self, from_start: np.ndarray, along: np.ndarray, owners: np.ndarray) -> np.ndarray:
-        """Which solid outlines contain a point: those that a ray from it along x crosses an odd number of times.
+        """The solid outlines that contain a point: a ray from the point along x crosses them an odd number of times.
 
         from_start: (m, 2) [m] from the start of each segment to the point; along: to its end; owners: its outline
         """

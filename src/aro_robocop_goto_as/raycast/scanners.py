@@ -14,7 +14,7 @@ from .cross_section import NO_CIRCLES, CrossSection, outline
 
 
 def circles_at(model: RobotModel, height: float) -> np.ndarray:
-    """What a scanner at a height [m] sees of a robot: circles (k, [x, y, radius]) [m] in base_footprint.
+    """The shape of a robot for a scanner at a height [m]: circles (k, [x, y, radius]) [m] in base_footprint.
 
     Cylinders are exact, and upright. Boxes are approximated by a circle of equal area, independent of yaw. Spheres are
     wheels and casters, inside the outline of the base, and left out.
@@ -58,6 +58,6 @@ class Scanners:
         return self._sections[self._plane_of[robot]]
 
     def move(self, time: float) -> None:
-        """Put moving obstacles where they are at a time [s]; a new world's are at time zero."""
+        """Put moving obstacles where they are at a time [s]; those of a new world are where they are at time zero."""
         for section in self._sections:
             section.move(time)

@@ -1,4 +1,4 @@
-"""Which models there are, by the names of their files; imports nothing, as launch files ask before anything starts."""
+"""The models, by the names of their files; imports nothing, because launch files ask before anything starts."""
 
 import os
 

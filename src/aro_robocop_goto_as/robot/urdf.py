@@ -141,7 +141,7 @@ class _Urdf:
         raise self.error(f"link {link.get('name')!r}: expected a box, a cylinder or a sphere as its collision geometry")
 
     def wheel_radius(self, joint: Element) -> float:
-        """The radius [m] of the wheel's collision sphere, which is what rolls on the floor."""
+        """The radius [m] of the wheel's collision sphere, which rolls on the floor."""
         link = _end_of(joint, "child")
         sphere = self.link(link).find("collision/geometry/sphere")
         if sphere is None:
@@ -156,7 +156,7 @@ class _Urdf:
         return separation
 
     def for_physics(self) -> str:
-        """The tree rooted at BASE without massless links, to which pybullet would give a mass of one kilogram."""
+        """The tree rooted at BASE, without massless links: pybullet would give each of them a mass of one kilogram."""
         root = copy.deepcopy(self.root)
         massless = [link for link in root.findall("link") if link.find("inertial") is None]
         names = [link.get("name") for link in massless]

@@ -35,7 +35,7 @@ def to_quaternion(yaw: float) -> Quaternion:
 def from_quaternion(q: Quaternion, unset_is_level: bool = False) -> Tuple[float, float, float, float]:
     """A quaternion from another node, made one of length 1; FrameError where its length is not nearly that.
 
-    `unset_is_level`: all zeros, which the sender of a request or a marker left out, mean no rotation.
+    `unset_is_level`: all zeros mean no rotation, because the sender of a request or marker left the quaternion out.
     """
     values = (q.x, q.y, q.z, q.w)
     if unset_is_level and not any(values):
@@ -55,14 +55,14 @@ def require_near(where: str = "", **position: float) -> None:
 
 
 def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:
-    """A geometry_msgs/Pose projected onto the plane, FrameError if a robot can't be there; see from_quaternion."""
+    """A geometry_msgs/Pose projected onto the plane; FrameError if no robot can be there. See from_quaternion."""
     orientation = from_quaternion(pose.orientation, unset_is_level)
     require_near(x=pose.position.x, y=pose.position.y)
     return Pose2D(pose.position.x, pose.position.y, yaw_of(orientation))
 
 
 def from_pose_msg_3d(pose: Pose) -> Pose3D:
-    """A request's geometry_msgs/Pose in space, FrameError if nothing can be there; see from_quaternion."""
+    """A request's geometry_msgs/Pose in space; FrameError if nothing can be there. See from_quaternion."""
     orientation = from_quaternion(pose.orientation, unset_is_level=True)
     x, y, z = pose.position.x, pose.position.y, pose.position.z
     require_near(x=x, y=y, z=z)

@@ -25,7 +25,7 @@ Marked = Tuple[str, Shape, Pose3D]  # frame, shape, pose in that frame
 
 
 def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
-    """A pose in space with a unit quaternion, None if the numbers are no pose; all zeros mean level, as in RViz."""
+    """A pose in space with a unit quaternion; None if the numbers are no pose. All zeros mean level, as in RViz."""
     try:
         orientation = from_quaternion(q, unset_is_level=True)
     except FrameError:
@@ -58,7 +58,7 @@ class MarkerStore:
         self._markers: Dict[Key, Marked] = {}
 
     def apply(self, message: MarkerArray) -> None:
-        """Apply a message in the order of its markers; what can't be shown is left out."""
+        """Apply a message in the order of its markers; markers that can't be shown are left out."""
         for marker in message.markers:
             key = (marker.ns, marker.id)
             if marker.action == Marker.DELETEALL:

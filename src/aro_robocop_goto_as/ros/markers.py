@@ -57,7 +57,7 @@ def robot_ring(frame: str) -> Marker:
 
 
 def trail(points: Sequence[Vector3], frame: str) -> Marker:
-    """The line [m] along which a robot has driven; without points, the one that was drawn before is removed."""
+    """The line [m] along which a robot has driven; without points, the line that was drawn before is removed."""
     made = marker("trail", Marker.LINE_STRIP, frame, TRAIL_COLOR)
     made.action = Marker.ADD if len(points) > 1 else Marker.DELETE
     made.scale.x = LINE_WIDTH

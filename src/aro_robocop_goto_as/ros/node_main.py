@@ -32,7 +32,7 @@ T = TypeVar("T")
 def answer_help(about: str, arguments: str = "[_PARAMETER:=VALUE...] [TOPIC:=OTHER...]", others: bool = False) -> None:
     """End the program with three lines about a node if --help was given; needs no master.
 
-    others: whether it may have other options, which are refused otherwise
+    others: whether the node may have other options; otherwise they are refused
     """
     program, options = os.path.basename(sys.argv[0]), [word for word in sys.argv[1:] if word.startswith("-")]
     if {"-h", "--help"} & set(options):
@@ -57,7 +57,8 @@ def wait_for_master() -> None:
 def leave_name_to_another(node_name: str, always: bool = False) -> None:
     """End the program if a node of its name runs, which the master would end, and with it perhaps a whole system.
 
-    always: also if not roslaunch has started this one. By hand, a node takes the other one's place, as is usual in ROS.
+    always: also if roslaunch has not started this node. A node that is started by hand takes the other node's place,
+    as is usual in ROS.
     """
     given = rosgraph.names.load_mappings(sys.argv)
     if not always and "__log" not in given:  # which roslaunch gives to all of its nodes
@@ -107,7 +108,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
 
 
 def end_with_master() -> None:
-    """End the node, which nobody could find any more, when the ROS master's port is closed; looks from a thread."""
+    """End the node when the ROS master's port is closed, because nobody could find the node; watches from a thread."""
 
     def watch() -> None:
         uri = master.master_uri()
@@ -129,8 +130,8 @@ def load_params(cls: Type[T]) -> T:
 def raise_descriptor_limit() -> None:
     """Allow this process as many file descriptors as the system grants, up to MAX_DESCRIPTORS.
 
-    Each subscriber of each topic takes two. The usual limit of 1024 is there for programs that call select(), and too
-    low for a recorder, RViz and controllers of 50 robots; rospy accepts no more subscribers once it was reached.
+    Each subscriber of each topic takes two. The usual limit of 1024 exists for programs that call select(). It is too
+    low for a recorder, RViz and controllers of 50 robots, and once it was reached, rospy accepts no more subscribers.
     """
     now, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     granted = MAX_DESCRIPTORS if most == resource.RLIM_INFINITY else min(most, MAX_DESCRIPTORS)

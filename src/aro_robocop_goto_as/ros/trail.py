@@ -20,7 +20,7 @@ class Trail:
         self._newest: Optional[Tuple[float, Vector3]] = None  # time [s] and position
 
     def add(self, time: float, x: float, y: float) -> bool:
-        """Continue to a position [m] at a time [s]; start again if the robot was placed there or time was set back.
+        """Continue to a position [m] at a time [s]; start again if the robot was placed there, or if time was set back.
 
         Return whether the trail starts again.
         """

@@ -17,7 +17,7 @@ class BumperParams:
 
 
 class Bumpers(Sensor):
-    """touching: by robot, of those for which it was due last."""
+    """touching: whether each robot touches something; only robots whose bumper was due last are in it."""
 
     name = BUMPER
 

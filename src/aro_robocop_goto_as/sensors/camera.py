@@ -45,7 +45,7 @@ class CameraParams:
 
 
 class Cameras(Sensor):
-    """specs: of each robot, None for one without a camera; images: by robot, of those that were due last."""
+    """specs: of each robot, None for a robot without a camera; images: by robot, only of robots that were due last."""
 
     name = CAMERA
 

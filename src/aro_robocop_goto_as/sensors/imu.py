@@ -68,7 +68,7 @@ class Imus(Sensor):
         self._before: Dict[int, BodyState] = {}
 
     def before_step(self, robots: Robots) -> Calls:
-        """Keep these robots' states, with which their states after the step are compared."""
+        """Keep these robots' states, to compare them with their states after the step."""
         return [lambda: self._keep(robots)]
 
     def _keep(self, robots: Robots) -> None:

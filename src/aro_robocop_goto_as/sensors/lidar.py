@@ -62,7 +62,8 @@ class Lidar:
     def measuring(self, robots: Sequence[int], episode: Episode, ranges: np.ndarray) -> Callable[[], None]:
         """A function that turns exact distances into ranges each time it is called.
 
-        Both are in these robots' rows of `ranges` (n, samples) [m]. The noise depends on seed, step and robot.
+        Distances and ranges are in these robots' rows of `ranges` (n, samples) [m]. The noise depends on seed, step
+        and robot.
         As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
         if robots and not 0 <= min(robots) <= max(robots) < len(ranges):

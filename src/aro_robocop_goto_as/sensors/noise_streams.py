@@ -20,7 +20,7 @@ class Episode(ctypes.Structure):
 class NoiseStreams:
     """One generator, set to the beginning of a stream on the present step.
 
-    A new Philox for each would read entropy from the system, which costs more than the noise.
+    A new Philox for each stream would read entropy from the system, which costs more than the noise.
     """
 
     def __init__(self, episode: Episode) -> None:

@@ -45,7 +45,7 @@ class Odometers(Sensor):
     poses: (n, 3) odom_from_footprint at the latest update: x, y [m], yaw [rad]
     twists: (n, 2) mean velocity since the update before: v [m/s], w [rad/s]
     map_from_odom: (n, 3) x, y [m], yaw [rad]
-    update(): bring all of them to the fleet's present state
+    update(): bring all these arrays to the fleet's present state
     """
 
     name = ODOM

@@ -41,15 +41,15 @@ class Sensor:
         self.site, self.rate = site, rate
 
     def before_step(self, _robots: Robots) -> Calls:
-        """What to call just before the step on which these robots are measured."""
+        """The function to call just before a step on which these robots are measured."""
         return ()
 
     def measuring(self, _robots: Robots) -> Calls:
-        """What to call to measure these robots; asked for once for all steps that are alike."""
+        """The function that measures these robots; it is asked for once for all steps that are alike."""
         return ()
 
     def reset(self, _spawns: Sequence[Pose2D]) -> None:
         """Begin anew: the robots are at their spawn poses."""
 
     def close(self) -> None:
-        """Free what belongs to the present world."""
+        """Free the resources of the present world."""

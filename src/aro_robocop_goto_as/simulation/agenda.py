@@ -1,4 +1,4 @@
-"""What is due when, and the calls that measure it, prepared once for all steps that are alike."""
+"""What is due on which step, and the calls that measure it, prepared once for all steps that are alike."""
 
 from typing import Dict, Tuple
 

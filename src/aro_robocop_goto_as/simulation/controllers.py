@@ -1,4 +1,4 @@
-"""Velocity commands: applied at once, or in lockstep at the end of the control tick, for which time is held."""
+"""Velocity commands: applied at once, or in lockstep at the end of the control tick; until then, time is held."""
 
 from typing import Dict, Optional
 
@@ -26,7 +26,8 @@ class Controllers:
     def command(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick.
 
-        None: the command was refused. The earlier one stays in force; in lockstep this still counts as an answer.
+        None: the command was refused. The earlier command stays in force; in lockstep a refused one counts as an
+        answer, too.
         """
         if not self.in_lockstep:
             if twist is not None:

@@ -1,4 +1,4 @@
-"""What other threads ask of the thread that owns a simulation, run by that thread between two steps."""
+"""Functions that other threads hand to the owner of a simulation, which runs them between two steps."""
 
 import contextlib
 import queue

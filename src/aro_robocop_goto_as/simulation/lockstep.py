@@ -2,8 +2,9 @@
 
 A tick is the number of a control period. A node that answers ticks (`tick_answer`) names the tick of each answer. Any
 other node that is connected to cmd_vel has answered a tick when one of its commands has arrived since the tick before.
-A node that has answered two ticks in a row is expected to answer the next one, and so is a node that answers ticks from
-its first answer on. An expected node is waited for until the timeout, any other one for SILENCE_TIMEOUT only.
+A node that has answered two ticks in a row is expected to answer the next tick, and so is a node that answers ticks
+after its first answer. The simulator waits for an expected node until the timeout, and for any other node only for
+SILENCE_TIMEOUT.
 """
 
 from dataclasses import dataclass, field

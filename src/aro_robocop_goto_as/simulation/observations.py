@@ -46,7 +46,7 @@ class Observations(Sensors):
         return self.due.sensors.get(sensor, ())
 
     def reset(self, seed: int, spawns: Sequence[Pose2D]) -> None:
-        """Odometry to zero where the robots are, at their spawn poses; noise and moving obstacles to their start."""
+        """Set odometry to zero at the spawn poses, where robots are, and noise and moving obstacles to their start."""
         for sensor in self.by_name.values():
             sensor.reset(spawns)
         self.site.episode.seed, self.site.episode.step = seed, 0

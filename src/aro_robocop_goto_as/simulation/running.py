@@ -1,4 +1,4 @@
-"""A simulator while it runs: with its time, its controllers and what other threads ask for.
+"""A running simulator: with its time, its controllers and the jobs of other threads.
 
 Its owner, the ROS node, the grader or a test, has the loop, of which every part returns values:
 
@@ -56,7 +56,7 @@ class Simulation:
         self._changes.add(Change.STATUS)
 
     def reset(self, seed: Optional[int] = None) -> None:
-        """Robots to their spawn poses, odometry to zero, noise to its start; None keeps the seed."""
+        """Put robots at their spawn poses, odometry to zero, noise to its start; None keeps the seed."""
         self.simulator.reset(seed)
         self.time_control.pacer.restart(self.simulator.steps)
         self.controllers.restart()

@@ -15,7 +15,7 @@ def stamp_ns(step: int, physics_rate: int) -> int:
 def due(step: int, rate: int, physics_rate: int) -> bool:
     """Return whether something at `rate` [Hz] is due on this step, the first one at or after a multiple of its period.
 
-    If the rate divides physics_rate the period is exact; otherwise the mean rate is exact, and each is less than
+    If the rate divides physics_rate the period is exact. Otherwise the mean rate is exact, and each time is less than
     one step late.
     """
     return (step * rate) // physics_rate != ((step - 1) * rate) // physics_rate

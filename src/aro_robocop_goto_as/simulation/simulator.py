@@ -133,7 +133,7 @@ class Simulator:
         return self.engine.touching(robot)
 
     def newly_placed_in_contact(self) -> Sequence[int]:
-        """The robots placed since the last call that are in contact: physics pushes them out, or they are stuck."""
+        """Robots placed since the last call that are in contact: physics pushes them out, or they are stuck."""
         if not self._newly_placed:
             return []
         placed, self._newly_placed = self._newly_placed, set()
@@ -142,7 +142,7 @@ class Simulator:
     def occupancy(self) -> Occupancy:
         """The world as an occupancy grid: its own map, or a cut at the height of the first robot's scanner.
 
-        In that cut, what robots can reach from their spawns and from where they are is free.
+        In that cut, the area is free that robots can reach from their spawns and from their present places.
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
@@ -165,7 +165,7 @@ class Simulator:
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
         """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
 
-        What the wheels have travelled since the last odometry update belongs to the time before the jump.
+        The wheels' motion since the last odometry update belongs to the time before the jump.
         """
         self.engine.update_fleet()
         odom_from_footprint = self.observed.odometry.pose_now(robot)
@@ -193,7 +193,7 @@ class Simulator:
                 )
 
     def reset(self, seed: Optional[int] = None) -> None:
-        """Robots to their spawn poses, odometry to zero, noise to its start, with a new seed if one is given.
+        """Put robots at their spawn poses, odometry to zero, noise to its start, with a new seed if one is given.
 
         Simulated time continues.
         """

@@ -35,8 +35,8 @@ class Pacer:
     """Keeps simulated time at `factor` times the wall clock; factor 0 waits for rests only.
 
     A rest lets the process's other threads run, which accept subscribers and receive commands. CPython takes the
-    interpreter from a thread that has kept it for 5 ms. numpy gives it up often, for microseconds. The 5 ms then begin
-    anew each time, and the other threads, which wake up too slowly, can wait for minutes.
+    interpreter from a thread that has kept it for 5 ms. numpy often releases the interpreter for microseconds. Each
+    time, the 5 ms begin anew, and the other threads, which wake up too slowly, can wait for minutes.
     """
 
     def __init__(self, factor: float, rate: int, now: Callable[[], float]) -> None:

@@ -1,7 +1,7 @@
 """The newest transforms between frames.
 
-Not tf2's buffer: that refuses everything older than what it holds, so after a restart of the simulator, whose time
-begins at zero again, it would stay with the poses of the run before.
+This is not tf2's buffer, which refuses transforms older than those that it holds: after a restart of the simulator,
+whose time begins at zero again, it would keep the poses of the previous run.
 """
 
 from typing import Dict, List, Optional, Tuple

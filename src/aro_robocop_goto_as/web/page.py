@@ -63,7 +63,7 @@ class Cameras:
         server.on_client_connect(self._add)
 
     def show(self, places: Iterable[Vector3]) -> None:
-        """Turn to the origin and these places [m], unless that is what they show: a chosen view then stays."""
+        """Turn to the origin and these places [m], unless the cameras were turned to them: a chosen view then stays."""
         corners = corners_of(places)
         if not np.allclose(corners, self._corners):
             self._corners = corners
@@ -79,7 +79,7 @@ class Cameras:
         shown = self._turn(client.camera)
 
         def on_update(camera: Any) -> None:
-            """Turn again where a slow browser shows the first view later, "reset view" does, or the size is another."""
+            """Turn again after a slow browser's first view, after "reset view", or when the size has changed."""
             nonlocal shown
             if any(np.allclose(camera.position, known) for known in (shown, self._server.initial_camera.position)):
                 shown = self._turn(camera)

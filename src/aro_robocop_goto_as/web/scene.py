@@ -118,7 +118,7 @@ class _Drawn:
 
 
 class PageScene:
-    """What all browsers show. `api` is the scene of a viser server; calls from one thread only."""
+    """The scene that all browsers show. `api` is the scene of a viser server; only one thread may call the methods."""
 
     def __init__(self, api: Any) -> None:
         self._api = api

@@ -1,4 +1,4 @@
-"""The page's texts as HTML. Names and messages come from outside: what looks like markup in them is shown as text."""
+"""The page's texts as HTML. Names and messages come from outside: markup in them is shown as text."""
 
 import html
 import re
@@ -25,7 +25,7 @@ def position(x: float, y: float) -> str:
 
 
 def short(message: str) -> str:
-    """A message of this package's server in fewer words: without the goal's position and the limit; others as they are.
+    """A message of this package's server, without the goal's position and the limit; other messages unchanged.
 
     REACHED: 0.098 m from the goal x 0.42 y -0.38 in odom after 8.1 s -> REACHED: 0.10 m off, 8.1 s
     """

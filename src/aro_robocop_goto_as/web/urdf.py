@@ -19,7 +19,7 @@ MESHES = ("package://", "file://")  # where a description may take meshes from
 def read_links(text: str) -> Dict[str, Shape]:
     """The links by name, each a body of its visuals; a link without visuals is left out.
 
-    So are meshes that can't be found or read. RobotModelError if the description is not a URDF.
+    Meshes that can't be found or read are left out, too. RobotModelError if the description is not a URDF.
     """
     try:
         root = etree.fromstring(

@@ -1,4 +1,4 @@
-"""Whether a goal is outside of the walls that the robot is in."""
+"""Whether a goal is outside the walls around the robot."""
 
 from typing import Iterable, Tuple
 
@@ -19,7 +19,7 @@ MAX_CELLS = 1000  # per side; larger ones beyond it
 def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles: Iterable[Placed]) -> bool:
     """Return whether obstacles enclose the robot, and not the goal; both x, y [m]. Never where the world has no walls.
 
-    A door that stands open is no wall: through it a way leads from the robot to the goal, how long it may be.
+    An open door is no wall: a way leads through it from the robot to the goal, however long this way is.
     """
     world = World("", tuple(Obstacle("", pose, _geometry(shape)) for shape, pose in obstacles), Pose2D(), (), "")
     section = CrossSection(world, HEIGHT)

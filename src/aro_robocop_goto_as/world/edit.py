@@ -1,4 +1,4 @@
-"""Insert, remove and move models of a world; every edit returns a new World, with what robots stand on at z = 0."""
+"""Insert, remove and move models of a world; every edit returns a new World, with its ground at z = 0."""
 
 from dataclasses import replace
 

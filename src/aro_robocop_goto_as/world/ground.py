@@ -21,7 +21,7 @@ MIN_FILLED = 0.9  # of its rectangle: what the top of a mesh has to cover to be 
 
 
 class _Slab(NamedTuple):
-    """Something that robots can stand on.
+    """A slab or level plane that robots can stand on.
 
     top: its height [m]; world_from_slab: the pose of its centre; length, width [m]: its sides along that pose's x and y
     """
@@ -32,7 +32,7 @@ class _Slab(NamedTuple):
     width: float
 
     def covers(self, x: float, y: float) -> bool:
-        """Return whether it is below a point [m]."""
+        """Return whether the slab is below a point [m]."""
         point = compose(inverse(self.world_from_slab), Pose2D(x, y))
         return abs(point.x) <= self.length / 2.0 and abs(point.y) <= self.width / 2.0
 
@@ -64,8 +64,8 @@ def is_in_ground(obstacle: Obstacle) -> bool:
 def levelled(world: World) -> World:
     """A world moved up or down, so that the ground on which its robots stand is at z = 0.
 
-    The ground is what is large, level and low where robots start: the highest of the slabs and level planes there, or
-    the largest slab of a world that has nothing of the kind there. It is never below the z = 0 of the world's file,
+    The ground is large, level and low: the highest of the slabs and level planes where robots start, or, if there is
+    none, the largest slab of the world. It is never below the z = 0 of the world's file,
     where the simulator has a floor of its own. Slabs that are higher than the ground are obstacles.
     """
     slabs = [slab for slab in map(_slab, world.obstacles) if slab is not None and slab.top + world.ground <= MAX_TOP]

@@ -44,7 +44,7 @@ def find_world(name_or_path: str, directory: str) -> str:
 def load_world(path: str) -> World:
     """The world in an SDF file (1.4 and later, a <world> or a single <model>) or in the YAML file of a map_server map.
 
-    What robots stand on is at z = 0, see levelled.
+    The ground on which robots stand is at z = 0, see levelled.
 
     WorldError names the file, the line where there is one, what is wrong and what is supported.
     """

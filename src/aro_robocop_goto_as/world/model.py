@@ -79,7 +79,7 @@ class World:
     ignored: what may have an effect in Gazebo, such as "plugin 'lift' (line 4)"
     approximated: each element that differs from the file, such as "'hill/link/c' is left out: <heightmap> (line 4)"
     path: the file, as it was given to load_world
-    ground: height [m] in the file of what robots stand on, which is the z = 0 of all poses here
+    ground: height [m] in the file of the ground, which is z = 0 of all poses here
     models: world_from_model of each model [m]; the names of its obstacles begin with the model's name
     occupancy: the grid map that the world was made from, if any
     """

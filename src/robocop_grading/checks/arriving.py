@@ -42,7 +42,7 @@ def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Faile
 
 
 def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """A robot that drives on although it has come close enough for success."""
+    """Name the failure of a robot that drives on although it is close enough for success."""
     end = active_until(record, goal)
     way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
     for (before, far), (after, near) in zip(way, way[1:]):
@@ -59,7 +59,7 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
 
 
 def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> Tuple[Any, ...]:
-    """What the robot does meanwhile, and what the server has reported: a text's name and its values."""
+    """A text's name and values: what the robot does when success is late, and what the server has reported."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
@@ -84,7 +84,7 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
 
 
 def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
-    """A robot that turned by much more than it needed to, until it came to the goal."""
+    """Name the failure of a robot that turned by much more than needed on its way to the goal."""
     samples = samples_between(record, goal.time, active_until(record, goal))
     there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
     samples = samples[:there]
@@ -111,7 +111,7 @@ def already_there(record: Record, limits: Limits) -> Verdict:
 
 
 def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """A robot that takes long or moves although it is at the goal."""
+    """Name the failure of a robot that takes long or moves although it is at the goal."""
     end = active_until(record, goal)
     samples = samples_between(record, goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)

@@ -112,7 +112,7 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
 
 
 def _explained(records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to forward a click, with its meaning where only clicks of earlier scenarios became goals."""
+    """The failure to forward a click; if only clicks of earlier scenarios became goals, with what that means."""
     number = sum(len(record.goals) for record in records.values())
     if failure.cause != NOT_FORWARDED or not number or any(records[name].goals for name in names):
         return failure
@@ -193,7 +193,7 @@ def bridge_alive(record: Record, limits: Limits) -> Verdict:
 
 
 def _looks_up_too_early(record: Record) -> bool:
-    """Return whether tf2 refused a transform because the newest one was older than asked for."""
+    """Return whether tf2 refused a transform because the newest transform was older than the requested time."""
     return logged(record, TOO_EARLY)
 
 
@@ -233,7 +233,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
 
 
 def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
-    """What to say of a bridge that works with goals that are accepted at once, and not with PENDING ones."""
+    """Advice for a bridge that works with goals that are accepted at once, but not with PENDING goals."""
     record, found = records.get("pending"), []
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []

@@ -1,4 +1,4 @@
-"""What a bridge reports of its goal's state: how often, whether it says anything, and whether that is true."""
+"""How a bridge reports its goal's state: how often, whether reports name a state, and whether the state is true."""
 
 import re
 from typing import List, NamedTuple, Optional, Set
@@ -43,7 +43,7 @@ def _began(lines: List[Line]) -> List[float]:
 
 
 def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
-    """Too few reports while a goal is active, or untrue ones."""
+    """Name the failure: too few reports while a goal is active, or untrue reports."""
     start = record.marks["watching"]
     lines = [line for line in record.lines if start + 0.2 < line.time < record.marks.get("watched", float("inf"))]
     count = len(_began([line for line in lines if not _says_nothing(line)]))
@@ -60,7 +60,7 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
 
 
 class Report(NamedTuple):
-    """A report of a goal's state: when [s], the states that it names, whether by numbers, and the true one."""
+    """A report of a goal's state: when [s], the states that it names, whether by numbers, and the true state."""
 
     time: float
     states: Set[int]
@@ -69,9 +69,10 @@ class Report(NamedTuple):
 
     @property
     def is_true(self) -> bool:
-        """Return whether it names the true state. Of a goal that has succeeded, only what contradicts that is untrue.
+        """Return whether the report names the true state.
 
-        Numbers may then be those of another enumeration than actionlib's.
+        When the goal has succeeded, a report is untrue only if it contradicts the success. Its numbers may then come
+        from another enumeration than actionlib's.
         """
         if self.true != SUCCEEDED:
             return self.true in self.states
@@ -101,7 +102,7 @@ def _is_client_state(reports: List[Report]) -> bool:
 
 
 def _untrue(record: Record) -> Optional[Failed]:
-    """A bridge that reports other states than the true ones; reports in other words than actionlib's are not judged."""
+    """Name the failure of a bridge that reports wrong states; only reports in actionlib's words are judged."""
     reports = _stated(record)
     several = [report for report in reports if len(report.states) > 1]
     if len(several) > 1 and len(several) > MOSTLY * len(reports):

@@ -1,4 +1,4 @@
-"""Whether a failure follows from that of another check: decided by what happened, and by what the server reported."""
+"""Whether a failure follows from another check's failure: decided by what happened, and by what the server reported."""
 
 from typing import Mapping, Pattern
 
@@ -37,7 +37,7 @@ def logged_cause(record: Record, end: float) -> str:
 
 
 def end_of(record: Record, failure: Failed) -> float:
-    """Until when [s] what happened may be the reason of a failure: that of its goal, or its own time."""
+    """The time [s] until which an event can be a failure's reason: when its goal ended, or its own time if later."""
     end = active_until(record, failure.goal) if failure.goal else failure.time
     return max(failure.time, end)
 
@@ -53,13 +53,13 @@ def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 
 def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
-    """The first topic with such a name that the node has waited for in vain since its start; empty if there is none."""
+    """The first topic with such a name that the node subscribes to and nobody publishes; empty if there is none."""
     topics = [topic for record in records.values() for topic in record.unpublished]
     return next(filter(name.search, topics), "")
 
 
 def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
-    """That something is old because the callback of a topic with such a name is too slow; empty if none is."""
+    """A sentence: data is old because the callback of a topic with such a name is too slow; empty if no callback is."""
     delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
     return text("late", what, *reversed(max(delays))) if delays else ""
 
@@ -92,14 +92,14 @@ def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 
 def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Return whether no position_error that the server reported told it that it had reached the goal."""
+    """Return whether the server never reported a position_error that means that the goal is reached."""
     own = feedback_of(record, failure.goal) if failure.goal else []
     end = end_of(record, failure)
     return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Return whether the robot was commanded as the handout wants for the angle_error that the server reported itself.
+    """Return whether the commands are right for the angle_error that the server itself reported.
 
     If that angle is wrong, the motion is wrong because of it.
     """

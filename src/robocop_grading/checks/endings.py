@@ -64,7 +64,7 @@ def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Ver
 
 
 def narrow_obstacle(record: Record) -> str:
-    """What a server that reacts to a wall has done wrong if the obstacle is narrow; nothing for a wide one."""
+    """What a server that reacts to walls has done wrong at a narrow obstacle; nothing for a wide obstacle."""
     across = [outline[1::2] for outline in record.obstacles[:1]]
     if not across or max(across[0]) - min(across[0]) > NARROW:
         return ""
@@ -184,7 +184,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
 
 
 def keeps_moving(record: Record, result: Result, until: float) -> str:
-    """Why a robot does not stop after a result until a time [s]: the last command, or further ones."""
+    """Why a robot does not stop between a result and a time [s]: the last command, or further commands."""
     commands = [it for it in record.commands if result.time + AT_ONCE < it.time <= until]
     later = any((it.v, it.w) != (0.0, 0.0) for it in commands)
     return text("commanded_later" if later else "keeps_moving", status_name(result.status))

@@ -67,14 +67,14 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
 
 
 def _arrival(record: Record, goal: Goal) -> float:
-    """When [s] the robot came to the goal, or the recording ended: what the server does there is not its loop."""
+    """When [s] the robot came to the goal, or the recording ended: from then on, the server may have left its loop."""
     samples = samples_between(record, goal.time, math.inf)
     there = (sample.time for sample in samples if errors_at(sample, goal)[POSITION] < GOAL_RADIUS)
     return next(there, samples[-1].time if samples else goal.time)
 
 
 def _compared(index: int, record: Record) -> List[Pair]:
-    """The feedback by which an error is judged, with what it may be based on."""
+    """The feedback messages by which an error is judged, each with the samples that it may be based on."""
     goals = {goal.id: goal for goal in record.goals}
     starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
     pairs = []
@@ -92,7 +92,7 @@ def _deviation(index: int, pair: Pair) -> float:
 
 
 def _wrong(index: int, pairs: Sequence[Pair], tolerance: float) -> List[Pair]:
-    """The pairs whose error exceeds a tolerance, if there are more than a few of them, or some in a row."""
+    """The pairs whose error exceeds a tolerance, if there are more than a few such pairs, or some in a row."""
     deviations = [_deviation(index, pair) for pair in pairs]
     wrong = [pair for pair, deviation in zip(pairs, deviations) if deviation > tolerance]
     is_much = len(wrong) > MAX_WRONG * len(pairs) or longest(deviations, pairs, tolerance) >= MAX_WRONG_TIME
@@ -150,7 +150,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:
-    """Feedback that was true an iteration ago."""
+    """Name the failure of feedback that was true an iteration ago."""
     differences = [_differences(record, goal, index) for goal in record.goals]
     rows = np.concatenate([np.zeros((0, len(AGES))), *differences])
     if len(rows) < MOVING:
@@ -164,7 +164,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
 
 
 def _is_shifted(record: Record, index: int) -> bool:
-    """Return whether an error is also wrong while it does not change: then it is not an old one."""
+    """Return whether an error is wrong even while the true error does not change: then it is not merely old."""
     differences = []
     for pair in _compared(index, record):
         truths = [errors_at(sample, pair.goal)[index] for sample in pair.samples]

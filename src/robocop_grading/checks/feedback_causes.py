@@ -1,4 +1,4 @@
-"""Which mistake explains wrong values of the feedback: hypotheses that predict what a server would report with it."""
+"""Which mistake explains wrong feedback: each hypothesis predicts what a server with one mistake would report."""
 
 import math
 import re
@@ -13,21 +13,21 @@ from ..texts import text
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
-MAX_WRONG_TIME = 0.45  # [s] no more values in a row may not fit
+MAX_WRONG_TIME = 0.45  # [s] longest row of values that may not fit
 MAX_UNEXPLAINED = 0.3  # share of all wrong values
 MAX_PAIRS = 100  # of a scenario that are compared
-LARGE = 7.0  # [m], [rad] values beyond it are squares or degrees, of which tolerances are ten times as large
-FAR = 1.0  # [m], [rad] that a miss counts at most
-SCALED = 0.2  # [m], [rad] true errors that are larger tell by which factor others differ from them
+LARGE = 7.0  # [m], [rad] larger values are squared or in degrees; the tolerances are then ten times as large
+FAR = 1.0  # [m], [rad] a larger miss counts as this
+SCALED = 0.2  # [m], [rad] smaller true errors are not used to estimate a factor
 MAX_SPREAD = 0.1  # of such a factor
-OFFSET = 0.05  # [m], [rad] a smaller constant difference is none
+OFFSET = 0.05  # [m], [rad] a smaller constant difference counts as no difference
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNITS = ("m", "rad")
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
 class Pair(NamedTuple):
-    """A feedback message, the samples that it may be based on, its goal, and where the robot was when that was sent."""
+    """A feedback message, the samples that it may be based on, its goal, and the sample when the goal was sent."""
 
     feedback: Feedback
     samples: List[Sample]
@@ -145,9 +145,10 @@ OTHERWISE = ("position_error_wrong", "angle_error_wrong")
 
 
 def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[str]]:
-    """All causes that fit in every scenario, the wrong values as well as the right ones, in words and by their names.
+    """All causes that fit the wrong and the right values of every scenario, in words and by their names.
 
-    If none does, what is wrong. `scenarios` are the pairs of each scenario, with the wrong ones among them.
+    If no cause fits, the text says what is wrong. `scenarios`: the pairs of each scenario, and the wrong pairs among
+    them.
     """
     values = [pair.feedback.errors[index] for pairs in scenarios for pair in pairs]
     if not all(map(math.isfinite, values)):
@@ -205,7 +206,7 @@ def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:
 
 
 def longest(misses: Sequence[float], pairs: Sequence[Pair], tolerance: float) -> float:
-    """How long [s] the longest row of values is that do not fit."""
+    """The duration [s] of the longest uninterrupted row of values that do not fit."""
     longest_row, began = 0.0, math.inf
     for miss, pair in zip(misses, pairs):
         began = min(began, pair.feedback.time) if miss > tolerance else math.inf
@@ -214,7 +215,7 @@ def longest(misses: Sequence[float], pairs: Sequence[Pair], tolerance: float) ->
 
 
 def misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], scale: float = 1.0) -> List[float]:
-    """How far each value is from what is predicted for any of the samples that it may be based on; infinity for NaN."""
+    """The distance of each value from the predictions for the samples that it may be based on; infinity for NaN."""
     found = []
     for pair in pairs:
         value = pair.feedback.errors[index]

@@ -17,7 +17,7 @@ OWN_DEATH = After(
 
 
 def closest(name: str, others: Sequence[str]) -> str:
-    """The one of some names that is most like a name; empty if none is like it."""
+    """The name in `names` that is most similar to a name; empty if no name is similar."""
     return next(iter(difflib.get_close_matches(name, others, n=1, cutoff=0.5)), "")
 
 

@@ -88,7 +88,7 @@ def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str
 
 
 def _approach(record: Record, goal: Goal) -> Optional[Failed]:
-    """A robot that drives towards an obstacle that is too near from the start."""
+    """Name the failure of a robot that drives towards an obstacle that is too near from the start."""
     before = [sample.ahead for sample in samples_between(record, goal.time - 0.15, goal.time)]
     after = samples_between(record, goal.time, active_until(record, goal))
     nearest = min((sample.ahead for sample in after), default=math.inf)

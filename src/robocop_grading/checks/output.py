@@ -1,4 +1,4 @@
-"""What the node's output and log say: actionlib's complaints, exceptions, the last error."""
+"""Reads the node's output and log: complaints of actionlib, exceptions, the last error."""
 
 import math
 import os
@@ -35,7 +35,7 @@ TRACEBACK = 40  # lines before the error in which its place is looked for
 
 
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
-    """Return whether a line of the node's output matches that it printed until then [s]."""
+    """Return whether a line that the node printed before a time [s] matches."""
     return any(pattern.search(line.text) for line in record.lines if line.time <= until + DELAY)
 
 
@@ -67,7 +67,7 @@ def last_error(record: Record, until: float = math.inf) -> str:
 
 
 def first_error(lines: Sequence[str]) -> str:
-    """Type and message of the first exception in lines that begin with it; the first line if it has no traceback."""
+    """Type and message of the exception with which these lines begin; the first line if they have no traceback."""
     texts = [text for line in lines for text in line.splitlines() if text.strip()]
     ends = [texts[number].strip() for number in _ends(texts)]
     begins_with_one = any("Traceback" in text for text in texts[:2])

@@ -75,7 +75,7 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
 
 
 def _begins_other(record: Record, goal: Goal, requested: float, end: float) -> bool:
-    """Return whether the robot rests, or the server tells of another goal, from soon after a request on [s]."""
+    """Return whether, soon after a request [s], the robot stands still or the server tells of another goal."""
     others = [it for it in record.feedback if it.id != goal.id and requested < it.time < requested + SILENT]
     waiting = samples_between(record, requested + SILENT, end - ENDS)
     return bool(others) or all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)

@@ -8,7 +8,7 @@ from ..texts import text
 
 
 def wrong_type(record: Record, *topics: str) -> str:
-    """What is wrong with the type of the first of these topics that has another one; empty if none has."""
+    """What is wrong with the first of these topics that has another type; empty if all types are right."""
     for topic, found, expected in record.other_types:
         if topic in topics:
             action = re.sub("(Goal|Result|Feedback)$", "", found)

@@ -77,7 +77,7 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
 
 
 def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
-    """A robot that drives off when the goal comes, and then turns as it should."""
+    """Name the failure of a robot that drives off when the goal comes, and then turns as it should."""
     first = next((command for command in record.commands if command.time >= goal.time - 1e-6), None)
     driving = [abs(it.command.v) > limits.driving for it in situations]
     at_first = driving.index(False) if False in driving else len(driving)
@@ -88,7 +88,7 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
 
 
 def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
-    """Since when [s] the robot has once headed for the goal; infinity if it has not."""
+    """The first time [s] at which the robot faced the goal; infinity if it never did."""
     errors = ((sample.time, errors_at(sample, goal)[1]) for sample in samples_between(record, goal.time, math.inf))
     return next((time for time, angle in errors if abs(angle) < limits.turn_beyond), math.inf)
 
@@ -120,7 +120,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
 
 
 def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """A robot that did not head for the goal and got no command to turn."""
+    """Name the failure of a robot that did not face the goal and got no command to turn."""
     end = active_until(record, goal)
     start = samples_between(record, goal.time, goal.time)
     if not start or end - goal.time < 1.0:
@@ -154,7 +154,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
-    """A robot that drives backward, or does not move although it faces the goal."""
+    """Name the failure of a robot that drives backward, or does not move although it faces the goal."""
     backward = [it for it in driving if it.command.v < 0.0]
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
@@ -168,7 +168,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
 
 
 def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
-    """A robot that drives along a curve; gentle corrections towards the goal are allowed."""
+    """Name the failure of a robot that drives along a curve; gentle corrections towards the goal are allowed."""
     curves = [
         it
         for it in driving

@@ -26,8 +26,8 @@ class NotReached:
 class Failed:
     """The contract was broken: expected, seen, simulated time [s], likely cause.
 
-    `kind` names the way in which it was broken, and `goal` the goal, where other failures may follow from this one or
-    this one from others.
+    `kind` names the way in which the contract was broken, and `goal` the goal. Both are given if other failures may
+    follow from this failure, or this failure from others.
     """
 
     expected: str
@@ -46,9 +46,10 @@ When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and
 
 @dataclass(frozen=True)
 class After:
-    """A check that another one depends on.
+    """An earlier check that a check depends on.
 
-    If it has failed, too, the other one's failure follows from it: if `when` holds, or for every one of this kind.
+    If the earlier check has failed, too, the later failure follows from it if the later failure is of this `kind`
+    (any kind if empty) and `when` holds.
     """
 
     check: str
@@ -56,7 +57,7 @@ class After:
     kind: str = ""
 
     def explains(self, record: Record, failure: Failed, earlier: Failed) -> bool:
-        """Return whether the failure follows from the earlier one, of this check."""
+        """Return whether a failure follows from the earlier failure of this check."""
         return self.kind in ("", failure.kind) and self.when(record, failure, earlier)
 
 
@@ -64,8 +65,9 @@ class After:
 class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
-    Its failure follows from the first one in `after` that applies. If it is not reached, the first one in `needs` that
-    has failed is the reason. `explain` names the causes of a failure that fit all scenarios which the check examines.
+    A failure of the check follows from the first check in `after` that applies. If the check is not reached, the
+    first failed check in `needs` is the reason. `explain` names the causes of a failure that fit all scenarios which
+    the check examines.
     """
 
     judge: Judge
@@ -79,7 +81,7 @@ class Check:
 
     @property
     def contract(self) -> str:
-        """What it tests: the first line of its function's docstring."""
+        """The contract that the check tests: the first line of its function's docstring."""
         return (self.judge.__doc__ or "").strip().splitlines()[0]
 
 

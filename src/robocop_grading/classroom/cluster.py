@@ -1,4 +1,4 @@
-"""dask's workers, local ones or those of an existing scheduler, each of which does one task at a time."""
+"""dask's workers, on this machine or of an existing scheduler; each worker does one task at a time."""
 
 import contextlib
 import logging
@@ -21,8 +21,10 @@ WITHOUT_PROFILER = {"distributed.worker.profile.enabled": False}
 
 @contextlib.contextmanager
 def connected(scheduler: str, workers: int) -> Iterator[Client]:
-    """A client of the scheduler at an address, with the keys of dask's own configuration; without an address, of so
-    many processes on this machine. GradingSetupError if that is not possible.
+    """A client of the scheduler at an address, with the keys of dask's own configuration.
+
+    Without an address, a client of new `workers` on this machine. GradingSetupError if that is not
+    possible.
     """
     # Interrupted, these report what they did not finish.
     logging.getLogger("asyncio").setLevel(logging.CRITICAL)

@@ -13,10 +13,10 @@ EXPORTED = ("submission_metadata.yml",)  # written by Gradescope itself into wha
 
 
 def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[Dict[str, str], List[str]]:
-    """The digests of hand-ins by their names, sorted; what can't be read has an empty one.
+    """The digests of hand-ins by their names, sorted; a hand-in that can't be read has an empty digest.
 
-    A hand-in is whatever is not hidden, except files that are `reserved` or made by the platform, whose names are the
-    second value. GradingSetupError if there is no hand-in.
+    Every entry that is not hidden is a hand-in, except files that are `reserved` or made by the platform. The second
+    value has the names of these files. GradingSetupError if there is no hand-in.
     """
     if not folder.is_dir():
         raise GradingSetupError(f"{folder}: expected a folder with {EXPECTED} for each hand-in")
@@ -40,7 +40,7 @@ def _digest(path: Path) -> str:
 
 
 def unpacked(path: Path) -> unpacking.Unpacked:
-    """What was handed in; SubmissionError if that can't be graded, or read."""
+    """The files of a hand-in; SubmissionError if the hand-in can't be graded, or read."""
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
     if path.is_symlink() or not (path.is_dir() or is_file):
         kind = "a link" if path.is_symlink() else f"a {path.suffix} file" if path.suffix else "a file without a suffix"

@@ -65,23 +65,23 @@ class Class:
 
     @property
     def figures(self) -> Summary:
-        """How many are judged so far, and their points."""
+        """How many hand-ins are judged so far, and their points."""
         return summary(list(self.done.values()), self.plan, len(self.problems))
 
     @property
     def pace(self) -> str:
-        """How fast it goes on, and how long it takes still, in words."""
+        """The rate of grading and the time left, in words."""
         done = len(self.done) - self._before + len(self.problems)
         return pace(done, len(self.waiting) - len(self.problems), time.monotonic() - self._started)
 
     def summary_lines(self) -> List[str]:
-        """The figures for the terminal, and who is not gradable for which reason."""
+        """The figures for the terminal, and the hand-ins that are not gradable, with the reasons."""
         reasons = {name: " | ".join(it.problems) for name, it in sorted(self.done.items()) if not it.is_judged}
         reasons.update(self.problems)
         return self.figures.lines() + [one_line(f"not gradable: {it}: {why}")[:MAX_LINE] for it, why in reasons.items()]
 
     def add(self, name: str, problem: str) -> str:
-        """Note that a hand-in has a result, or the reason why it has none; a line about it for the terminal."""
+        """Note that a hand-in has a result, or the reason why it has none; return a line about it for the terminal."""
         if problem:
             self.problems[name] = problem
             return one_line(f"{name}: {problem}")
@@ -96,9 +96,9 @@ class Class:
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
     def add_stored(self) -> None:
-        """Add the results that workers have stored, but could not tell of any more.
+        """Add the results that workers have stored but could not report.
 
-        Of those that are graded again, an older result is stored, too.
+        A hand-in that is graded again may still have its older result, which is not added.
         """
         for name, digest in list(self.waiting.items()):
             if name not in self._again and self.results.has(name, digest):
@@ -195,7 +195,7 @@ def main() -> None:
 
 
 def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
-    """The names of the hand-ins to be graded again, all if none is given; GradingSetupError for one that is unknown."""
+    """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
     names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
     for name in {*names} - {*hand_ins}:
         close = difflib.get_close_matches(name, hand_ins, 1)
@@ -205,7 +205,7 @@ def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str
 
 
 def class_seed(given: Optional[int], results: Path) -> int:
-    """The given seed, else the one of the results so far, else a random one; 0 is a seed, too."""
+    """The given seed, else the seed of the results so far, else a random seed; 0 is a seed, too."""
     seeds = (given, seed_of(results), random.randint(1, MAX_SEED))
     return next(seed for seed in seeds if seed is not None)
 

@@ -50,7 +50,7 @@ class Result:
 
     @property
     def is_judged(self) -> bool:
-        """Return whether anything of it was judged; otherwise its problems say why not."""
+        """Return whether any part of the hand-in was judged; otherwise its problems say why not."""
         return bool(self.checks)
 
     @property
@@ -64,7 +64,7 @@ class Result:
         return total(check.points for check in self.checks if check.extra)
 
     def points_of(self, part: str) -> Optional[float]:
-        """Points of the server or the bridge, without extra ones; None if it was not handed in."""
+        """Points of the server or the bridge, without extra points; None if that part was not handed in."""
         checks = [check for check in self.checks if check.part == part]
         return total(check.points for check in checks if not check.extra) if checks else None
 
@@ -135,7 +135,7 @@ def write_atomically(path: Path, text: str) -> None:
 
 
 def summary(results: Sequence[Result], plan: Plan, problems: int) -> Summary:
-    """The class in a few figures; so many more hand-ins had problems for which they have no result."""
+    """The class in a few figures; `problems` is the number of hand-ins that have a problem instead of a result."""
     judged = [result.points for result in results if result.is_judged]
     return Summary(judged, len(results) - len(judged) + problems, plan.points)
 

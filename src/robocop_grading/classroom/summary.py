@@ -52,7 +52,7 @@ class Summary:
 
 
 def pace(done: int, remaining: int, seconds: float) -> str:
-    """How fast hand-ins are graded, and for how long still, after so many in so many seconds [s, wall]."""
+    """The rate of grading and the time left, in words, after a number of hand-ins in a time [s, wall]."""
     if not done or not remaining or seconds <= 0.0:
         return ""
     minutes = math.ceil(remaining * seconds / done / 60.0)

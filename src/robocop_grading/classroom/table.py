@@ -49,11 +49,11 @@ def _without_points(name: str, problem: str, plan: Plan) -> List[Any]:
 
 
 def one_line(text: str) -> str:
-    """A file's name or a message on one line, without what is not UTF-8 or controls a terminal."""
+    """A file's name or a message on one line, without characters that are not UTF-8 or that control a terminal."""
     return printable(text.encode("utf-8", "replace").decode())
 
 
 def _plain(text: str) -> str:
-    """The text as one cell, with whatever separator the file is read: nothing in it controls, separates or computes."""
+    """The text as one cell: no character in it controls a terminal, separates cells, or begins a formula."""
     text = one_line(text)[:MAX_CELL].replace(";", ",")
     return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text

@@ -23,7 +23,7 @@ MAX_PROBLEM = 4_000  # characters
 
 
 def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
-    """Grade one hand-in; its mistakes go into its report, and what is not its fault is raised."""
+    """Grade one hand-in; its mistakes go into its report, and an error that is not its fault is raised."""
     started, (state, share) = time.monotonic(), places()
     sandbox = open_sandbox(unsafe, [state / "venv", state / "compat"])
     digest = ""

@@ -1,1 +1,1 @@
-"""Other people's files: archives and folders that nobody trusts, and folders for what is temporary."""
+"""Other people's files: archives and folders that are not trusted; and temporary folders."""

@@ -64,7 +64,7 @@ class Contents:
         return entry
 
     def read(self, source: "IO[bytes]") -> bytes:
-        """The content of a file for which there is room."""
+        """Read a file's content, if there is room for it."""
         with source:
             content = source.read(MAX_BYTES - self._bytes + 1)
         if len(content) > MAX_BYTES - self._bytes:
@@ -78,7 +78,7 @@ def is_archive(name: str) -> bool:
 
 
 def is_left_out(path: PurePosixPath) -> bool:
-    """Return whether a path leads to something that was generated, or that only its owner's desktop uses."""
+    """Return whether a path belongs to a generated file, or to a file that only its owner's desktop uses."""
     return bool(LEFT_OUT.intersection(path.parts)) or path.name.startswith(APPLE_DOUBLE)
 
 

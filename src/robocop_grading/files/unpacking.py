@@ -90,7 +90,7 @@ def _add_from_disk(path: Path, contents: Contents) -> None:
 
 
 def _unpack_nested(contents: Contents) -> None:
-    """Replace archives by folders of their names, as long as there is nothing to grade outside of them."""
+    """Replace archives by folders with their names, until there is something to grade outside of archives."""
     for _ in range(MAX_NESTED):
         archives = [path for path in _files(contents.entries) if is_archive(path)]
         if _has_something_to_grade(contents.entries):
@@ -111,7 +111,7 @@ def _has_something_to_grade(entries: Dict[str, Entry]) -> bool:
 
 
 def _notes(entries: Dict[str, Entry]) -> List[str]:
-    """What to say about archives that were not unpacked; SubmissionError if there is nothing that could be graded."""
+    """Notes about archives that were not unpacked; SubmissionError if there is nothing to grade."""
     files = _files(entries)
     reason = "what is graded is outside of it" if _has_something_to_grade(entries) else "more than three in one another"
     notes = [f"{path} was not unpacked: {reason}" for path in files if is_archive(path)]

@@ -49,7 +49,7 @@ Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
 
 
 class Plot(NamedTuple):
-    """What draws a record into axes below each other, and how large they are."""
+    """The functions that draw a record into axes below each other, and the size of the axes."""
 
     draw: Callable[[Sequence[Axes], Record, Sequence[float]], None]
     height: float  # [inch]
@@ -102,7 +102,7 @@ def _label(axes: Axes, words: str, at: Tuple[float, float], offset: Tuple[float,
 
 
 def _finish(all_axes: Sequence[Axes], at: Sequence[float]) -> None:
-    """Mark simulated times [s], and say what the common axis is."""
+    """Mark simulated times [s], and label the common axis."""
     for axes in all_axes:
         for moment in at:
             axes.axvline(moment, color=RED, linestyle=":", linewidth=1.6)

@@ -1,4 +1,4 @@
-"""Writes a grade as report.html, summary.md and report.json, and what the hosts of courses read."""
+"""Writes a grade as report.html, summary.md and report.json, and as the files that the hosts of courses read."""
 
 import dataclasses
 import json
@@ -38,7 +38,7 @@ def make_report_folder(folder: Path) -> Path:
 
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
-    """Write all files to an existing folder, which already has the bags; `kept`: they will not be moved elsewhere."""
+    """Write all files to an existing folder that already has the bags; `kept`: the folder will not be moved."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
@@ -163,12 +163,12 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: b
 
 
 def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
-    """A plot of a scenario with these moments marked [s]; nothing for one that has nothing to show, as the start."""
+    """A plot of a scenario with these moments marked [s]; nothing for a scenario without samples, such as the start."""
     return svg(name, record, moments) if record.goals or record.clicks or record.commands else ""
 
 
 def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
-    """Each check that failed beside the plot that illustrates it; checks that passed share one panel a plot."""
+    """The panels: each failed check beside its plot; passed checks with the same plot share a panel."""
     shown = set()
     for check in checks:
         plot, passed = CHECKS[check.name].plot, check.outcome is Outcome.PASSED
@@ -189,7 +189,7 @@ def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str,
 
 
 def _start(check: CheckResult, record: Record) -> str:
-    """The time of the scenario's bag [s] a little before a check failed; nothing for one that passed."""
+    """The time [s] in the scenario's bag a little before a check failed; nothing for a check that passed."""
     if check.failure is None or not record.samples:
         return ""
     return f"{max(0.0, check.failure.time - record.samples[0].time - LEAD):.1f}"

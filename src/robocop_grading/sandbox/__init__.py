@@ -1,1 +1,1 @@
-"""What a hand-in may read, write and use up while it is built and run."""
+"""Limits what a hand-in can read, write and use up while it is built and run."""

@@ -1,7 +1,8 @@
 """bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
 
-The session runs in its own network namespace, loopback only. The node runs in another one, with its own processes and
-files, as a user who owns nothing: it sees neither the grader's processes, records and points nor other submissions.
+The session runs in its own network namespace, loopback only. The node runs in a second network namespace, with its
+own processes and files, as a user who owns nothing: the node sees neither the grader's processes, records and points
+nor other submissions.
 A build runs the submission's code, so it is done in the sandbox too. limits.py has the limits.
 """
 
@@ -53,7 +54,7 @@ class Sandbox:
     def build_command(
         self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
     ) -> List[str]:
-        """Command line of a build: as node_command(), but it writes to `folder`, whose owner is user()."""
+        """Command line of a build: like node_command(), but it can write to `folder`, whose owner is user()."""
         return self._inside(command, environment, reads, folder, _mounts("--bind", [folder]))
 
     def _inside(
@@ -105,7 +106,7 @@ def group() -> int:
 
 
 def change_owner(folder: Path, owner: int) -> None:
-    """Give a folder and its content to a user, without following links. Only root can do it, and only root has to."""
+    """Give a folder and its content to a user, without following links. Only root can do this, and only root has to."""
     if os.geteuid() == 0:
         # A build may have made more nested folders than Python can walk through.
         subprocess.run(["/bin/chown", "-hRP", "--", f"{owner}:{owner}", str(folder)], check=True, capture_output=True)
@@ -125,9 +126,10 @@ def _restrictions(environment: Mapping[str, str]) -> List[str]:
 
 
 def _hidden(folder: Path) -> List[str]:
-    """Options that hide what not everybody may read in a folder that is shown, such as /etc/shadow.
+    """Options that hide files that not everybody may read in folders that are shown, such as /etc/shadow.
 
-    When root starts the sandbox, the kernel denies it anyway; another user may be in a group that may read it.
+    When root starts the sandbox, the kernel denies access anyway. Another user may be in a group that may read such a
+    file.
     """
     options: List[str] = []
     for entry in sorted(os.scandir(folder), key=lambda it: it.name):
@@ -166,7 +168,7 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
 
 
 def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
-    """The sandbox, or None if `unsafe`. GradingError where bubblewrap can't run, NoTimeError if that takes too long."""
+    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, NoTimeError if a trial takes too long."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"

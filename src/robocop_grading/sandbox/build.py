@@ -31,9 +31,10 @@ def public(environment: Mapping[str, str]) -> Environment:
 
 
 def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path]) -> Run:
-    """Runs commands that may write to `folder` only.
+    """Return a function that runs commands which may write to `folder` only.
 
-    GradingError when one exceeds its limit of processor time, memory or disk, or is not done in time.
+    The function raises GradingError if a command exceeds its limit of processor time, memory or disk, or is not done
+    in time.
     """
     if sandbox is None:
         return run_plain

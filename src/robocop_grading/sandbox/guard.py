@@ -1,6 +1,6 @@
-"""Looks at a process tree: kills it when it exceeds a limit, and notes for how long nothing of it runs.
+"""Watches a process tree: kills the tree when it exceeds a limit, and notes for how long none of its threads runs.
 
-The kernel's limits are per process; this one is for all of them together. What the kernel keeps for their sockets,
+The kernel's limits are per process; these limits are for all processes together. The kernel's memory for sockets,
 pipes and entries of folders belongs to no process, so it is not counted.
 """
 
@@ -25,7 +25,7 @@ MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
 COUNTERS = Path("/proc/vmstat")
 BUBBLEWRAP = "bwrap"  # the name of its processes: the one that is started, and init inside
-RUNS, BLOCKED = "R", "D"  # states of a thread that has or wants the processor, and that waits for a disk; see proc(5)
+RUNS, BLOCKED = "R", "D"  # states of a thread that is runnable, and of one that waits for a disk; see proc(5)
 
 
 class Guard:
@@ -40,15 +40,15 @@ class Guard:
         processes: float = MAX_PROCESSES,
         used: float = 0.0,
     ) -> None:
-        """`memory` [bytes], `processor_time` [s], `processes`: limits of all processes; a build's folder has its own.
+        """Limits of all processes together: `memory` [bytes], `processor_time` [s], `processes`.
 
-        With a `folder`, what a command of the build leaves running is ended: others wait for the end of its output.
-        `used`: processor time [s] that others have used, and that counts, too.
+        With the `folder` of a build, processes that a command leaves running are ended: the caller waits for the end
+        of the command's output. `used`: processor time [s] of earlier processes, which counts, too.
         """
         self.reason = ""  # why they were killed, if they were
-        # [s, wall] in which none of them ran or wanted to, which no load of the machine makes longer,
+        # [s, wall] in which no thread was runnable; load of the machine does not make this time longer
         self.still = 0.0
-        self.idle = 0.0  # and none waited for a disk
+        self.idle = 0.0  # [s, wall] in which no thread was runnable or waited for a disk
         self.used = used
         self._processor_time, self._most = processor_time, processes
         self._pid, self._folder, self._memory = pid, folder, memory
@@ -125,12 +125,12 @@ def _processor_time(process: "psutil.Process") -> float:
 
 
 def _resident(process: "psutil.Process") -> float:
-    """Bytes of memory that a process uses; a page that others use, too, counts for each of them."""
+    """Bytes of memory that a process uses; a page that n processes use counts fully for each of them."""
     return float(process.memory_info().rss)
 
 
 def _proportional(process: "psutil.Process") -> float:
-    """Bytes of memory, where a page that n processes use counts one n-th for each; the kernel takes long for it."""
+    """Bytes of memory; a page that n processes use counts one n-th for each. The kernel takes long to find this."""
     try:
         return float(process.memory_full_info().pss)
     except psutil.AccessDenied:

@@ -1,10 +1,10 @@
-"""What a hand-in may take while it is built and run. The kernel limits what one process takes, guard.py the rest."""
+"""The limits of a hand-in while it is built and run. The kernel limits each process, guard.py all of them together."""
 
 MB = 1024**2
 
 # -- one process --
 MAX_ADDRESS_SPACE = 4096 * MB  # bytes; numpy alone reserves more than one GB
-MAX_FILES = 256  # open ones: what waits in its pipes and sockets is nobody's memory
+MAX_FILES = 256  # open files; data that waits in pipes and sockets counts as no process's memory
 MAX_FILE_SIZE = 64 * MB  # bytes
 MAX_CPU_TIME = 200  # [s], also of all processes together: of a part's nodes, one after the other
 CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an external SIGKILL, to the kernel's SIGKILL
@@ -17,8 +17,8 @@ MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which ta
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
-MAX_IDLE = 20.0  # [s, wall] in which a node does nothing, until one answer is not waited for any more
-MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, also if it waits for a disk; usual are a few seconds
+MAX_IDLE = 20.0  # [s, wall] in which a node may do nothing during one answer
+MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, with waits for a disk; a few seconds are usual
 
 # -- a build --
 MAX_SOURCE = 64 * MB  # bytes of a package

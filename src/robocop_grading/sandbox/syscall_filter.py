@@ -1,14 +1,15 @@
 """Run as a program: start bubblewrap with a list of the system calls that a submission may use.
 
-The guard counts the memory that processes have mapped. Much else keeps memory that no process is blamed for, such as
-System V IPC, io_uring, keys, a tmpfs in a user namespace, or a memfd that waits in a socket; and each kernel has new
-calls. So what is not listed here fails with ENOSYS, as on a kernel that is older than the call, and programs use what
-they use there. libseccomp knows the numbers of each architecture; calls of another one, such as 32-bit calls on
+The guard counts the memory that processes have mapped. Other calls can take memory that counts as no process's, such
+as System V IPC, io_uring, keys, a tmpfs in a user namespace, or a memfd that waits in a socket; and each kernel has
+new calls. So a call that is not listed here fails with ENOSYS, as on a kernel that is older than the call, and
+programs fall back as they do on such a kernel. libseccomp knows the numbers of each architecture; calls of another
+one, such as 32-bit calls on
 x86-64, kill the process.
 
 Usage: python syscall_filter.py bwrap ARGUMENT...
 
-bwrap's option --ro-bind-data has a text here in place of a descriptor.
+In ARGUMENT..., bwrap's option --ro-bind-data is followed by a text in place of a descriptor.
 
 It imports nothing of this package, because the environment of bubblewrap is bare.
 """
@@ -145,7 +146,7 @@ def _write(text: str, file: Any) -> None:
 
 
 def main() -> None:
-    """Become bubblewrap, and what the kernel ends first if memory runs out: not the grader."""
+    """Become bubblewrap, and a process that the kernel kills before the grader if memory runs out."""
     with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:
         file.write("1000")
     program, *arguments = sys.argv[1:]

@@ -41,8 +41,8 @@ FRAMES = ("base_footprint", "map")
 class BridgeRun(Run):
     """One submission's bridge.
 
-    Its goals are accepted at once, as by the handout's server. In the last scenario, which gives no points, they stay
-    PENDING: how long they do with a real server depends on that server.
+    The bridge's goals are accepted at once, as the handout's server does. In the last scenario, which gives no
+    points, the goals stay PENDING: how long a goal stays PENDING depends on the real server.
     """
 
     def __init__(self, job: Job, stage: Stage) -> None:
@@ -55,7 +55,7 @@ class BridgeRun(Run):
         self._ticks = 0
 
     def scenarios(self) -> None:
-        """Run the scenarios up to the last one that is examined: each begins where another one has ended."""
+        """Run the scenarios up to the last one that a check examines: each begins where the previous one ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
             self.announce(name)
@@ -85,7 +85,7 @@ class BridgeRun(Run):
                 self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
 
     def _note_if_cancelled(self, goal_id: GoalID) -> None:
-        """Cancel requests are handled first of what has arrived."""
+        """Record a goal as PREEMPTED if a cancel request has come for it: at a tick, requests are handled first."""
         stamp = goal_id.stamp.to_sec()
         if any(cancel.id == goal_id.id or 0.0 < stamp <= cancel.stamp for cancel in self.parts["cancels"]):
             self.add("statuses", rec.Status(self.stage.now, goal_id.id, rec.PREEMPTED))
@@ -93,8 +93,8 @@ class BridgeRun(Run):
     def _on_cancel(self, message: GoalID) -> None:
         """Preempt the goals that a cancel request is for.
 
-        A request for all goals spares those of the same tick: a client that cancels all and then sends a goal uses two
-        connections, and cannot know which message arrives first.
+        A request for all goals spares the goals of the same tick: a client that cancels all goals and then sends a
+        goal uses two connections, and cannot know which message arrives first.
         """
         self.add("cancels", rec.Cancel(self.stage.now, message.id, message.stamp.to_sec()))
         if self.server is None:
@@ -118,7 +118,7 @@ class BridgeRun(Run):
     # -- clicks --
 
     def _send_click(self, frame: str, x: float, y: float) -> None:
-        """A 2D Nav Goal; then let time pass until a goal has come, for REACTION_TIME at most."""
+        """Send a 2D Nav Goal; then let time pass until a goal has come, for REACTION_TIME at most."""
         robot, to_map = self.stage.odom_from_footprint(), inverse(self.stage.sim.map_from_odom())
         odom = compose({"base_footprint": robot, "map": to_map, "odom": Pose2D()}[frame], Pose2D(x, y))
         self.add("clicks", rec.Click(self.stage.now, frame, x, y, odom.x, odom.y))
@@ -144,7 +144,7 @@ class BridgeRun(Run):
             self.stage.digest()
 
     def tick(self) -> None:
-        """One control tick, after which the server tells of its goals if that is due."""
+        """Run one control tick; then publish the server's goals if their status is due."""
         super().tick()
         self._ticks += 1
         if self.server is not None and self._ticks % STATUS_TICKS == 0:
@@ -154,7 +154,7 @@ class BridgeRun(Run):
     # -- scenarios, in this order --
 
     def _no_server(self) -> None:
-        """The bridge starts and gets a click while there is no server."""
+        """Start the bridge and send it a click while there is no server."""
         self.begin("no_server", 0)
         self.launch()
         self.wait_for(lambda: self.topics.reaches(CLICKS) or self.topics.hears(f"{ACTION}/cancel"), START_TIMEOUT)
@@ -165,7 +165,7 @@ class BridgeRun(Run):
         self.finish("no_server")
 
     def _click(self) -> None:
-        """The server is there; a click, then time passes while the goal is active, and when it has succeeded."""
+        """Send a click while there is a server; let time pass while the goal is active, and after it has succeeded."""
         self.begin("click", 0)
         self._serve()
         self.wait_for(self._has_client, CONNECT_TIMEOUT)
@@ -202,7 +202,7 @@ class BridgeRun(Run):
         self.reports.clear()
 
     def _replace(self) -> None:
-        """A click, and a second one while the first one's goal is active."""
+        """Send a click, and a second click while the first goal is active."""
         self.begin("replace", 0)
         self._send_click("odom", *BEFORE)
         self.settle(2.0)
@@ -211,9 +211,9 @@ class BridgeRun(Run):
         self.finish("replace")
 
     def _frame(self) -> None:
-        """Clicks in other frames, after the robot has moved, where map differs from odom.
+        """Send clicks in other frames, after the robot has moved, where map differs from odom.
 
-        The first one is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
+        The first click is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
         """
         self._finish_goals()
         self.begin("frame", 1)
@@ -230,7 +230,7 @@ class BridgeRun(Run):
         self.finish("frame")
 
     def _pending(self) -> None:
-        """A click and a second one, whose goals are not accepted yet; for advice, without points."""
+        """Send two clicks whose goals are not accepted yet; for advice, without points."""
         self._finish_goals()
         self.accepts = False
         self.begin("pending", 0)
@@ -244,6 +244,6 @@ class BridgeRun(Run):
 
 
 def _text(text: str, message: Any) -> str:
-    """A line about a published report: a state's number, or the words that the message has."""
+    """A line about a published report: a state's number, or the words in the message."""
     content = getattr(message, "status", getattr(message, "data", message))
     return f"{text}: {content}"[: rec.MAX_TEXT]

@@ -16,7 +16,7 @@ NOT_READ = "the node does not read the answers of the services that it calls"
 
 
 class Channel:
-    """Takes bytes when `read` and `write` are called, which is when it is ready."""
+    """Transfers bytes only in `read` and `write`, which are called when the socket is ready."""
 
     def __init__(self, end: socket.socket) -> None:
         end.setblocking(False)
@@ -28,19 +28,19 @@ class Channel:
         return self._socket.fileno()
 
     def send(self, kind: int, body: bytes) -> None:
-        """Send a frame, later what the socket has no room for. GraderLostError if the node reads nothing."""
+        """Send a frame, or later what the socket has no room for; GraderLostError if the node reads nothing."""
         self.unsent += wire.frame(kind, body)
         self.write()
         if len(self.unsent) > MAX_UNSENT:
             raise GraderLostError(NOT_READ)
 
     def write(self) -> None:
-        """Send what has not been sent."""
+        """Send the bytes that have not been sent yet."""
         with contextlib.suppress(OSError):  # it is full, or the node has ended
             del self.unsent[: self._socket.send(self.unsent)]
 
     def read(self) -> bool:
-        """Take what has arrived; return whether something has."""
+        """Take the bytes that have arrived; return whether there were any."""
         data = b""
         with contextlib.suppress(OSError):
             data = self._socket.recv(READ)
@@ -49,7 +49,7 @@ class Channel:
         return bool(data)
 
     def frames(self) -> Iterator[Tuple[int, bytes]]:
-        """What has been read: kinds and bodies. GraderLostError for a frame that is too long."""
+        """The frames that have been read: kinds and bodies. GraderLostError for a frame that is too long."""
         while len(self._unread) >= wire.HEAD.size:
             size, kind = wire.HEAD.unpack_from(self._unread)
             end = wire.HEAD.size + size
@@ -62,6 +62,6 @@ class Channel:
             yield kind, body
 
     def close(self) -> None:
-        """Nothing else is sent or read."""
+        """Close the socket: nothing else is sent or read."""
         self.is_open = False
         self._socket.close()

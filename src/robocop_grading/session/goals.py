@@ -1,4 +1,4 @@
-"""The goals that a bridge has sent, as an action server tells of them; what becomes of them is decided elsewhere."""
+"""The goals that a bridge has sent, published as an action server would; callers decide what becomes of the goals."""
 
 from typing import Any, Callable, Dict
 
@@ -42,12 +42,12 @@ class Goals:
         self._publish(f"{ACTION}/status", array)
 
     def identified(self, goal_id: GoalID) -> GoalID:
-        """A goal's id with what its sender has left out, as actionlib's server completes it."""
+        """A goal's id; missing parts are completed as actionlib's server does."""
         self._made += not goal_id.id
         return GoalID(goal_id.stamp or self._stamp(), goal_id.id or f"{ACTION}-{self._made}")
 
     def add(self, goal: GoToPositionActionGoal) -> bool:
-        """A goal has come; return whether it is PENDING now. Others are known, or cancelled already."""
+        """Add a goal that has come; return whether it is PENDING now. A known or already cancelled goal is not."""
         name, stamp = goal.goal_id.id, goal.goal_id.stamp
         known = self._statuses.get(name)
         if known is not None:
@@ -61,11 +61,11 @@ class Goals:
         return True
 
     def running(self) -> Dict[str, GoalID]:
-        """Those that have not ended, by id."""
+        """The goals that have not ended, by id."""
         return {name: status.goal_id for name, status in self._statuses.items() if name not in self._ended}
 
     def accept(self, name: str) -> None:
-        """It is ACTIVE."""
+        """Make a goal ACTIVE."""
         self._statuses[name].status, self._statuses[name].text = GoalStatus.ACTIVE, ACCEPTED
         self.tell()
         feedback = GoToPositionActionFeedback(
@@ -75,7 +75,7 @@ class Goals:
         self._publish(f"{ACTION}/feedback", feedback)
 
     def request_cancel(self, request: GoalID) -> None:
-        """A cancel request has come: note it of each goal that it is for, also of one that is still to come."""
+        """Note a cancel request for each of its goals, also for a goal that is still to come."""
         everything = not request.id and not request.stamp
         for status in list(self._statuses.values()):
             before = bool(request.stamp) and status.goal_id.stamp <= request.stamp
@@ -88,12 +88,12 @@ class Goals:
         self._last_cancel = max(self._last_cancel, request.stamp)
 
     def cancel(self, name: str, result: GoToPositionResult) -> None:
-        """It ends as cancelled: RECALLED if it was not accepted, else PREEMPTED."""
+        """End a goal as cancelled: RECALLED if it was not accepted, else PREEMPTED."""
         status = self._statuses[name].status
         self._end(name, CANCELLED[REQUESTED.get(status, status)], result)
 
     def succeed(self, name: str) -> None:
-        """It ends as SUCCEEDED."""
+        """End a goal as SUCCEEDED."""
         self._end(name, GoalStatus.SUCCEEDED, GoToPositionResult(True, "there"))
 
     def _end(self, name: str, status: int, result: GoToPositionResult) -> None:

@@ -1,4 +1,4 @@
-"""The hand-in's node as a child process, which lives in simulated time: turn by turn, as long as the grader lets it."""
+"""The hand-in's node as a child process: at each GO it lives until the simulated time that the grader names."""
 
 import itertools
 import pickle
@@ -23,7 +23,7 @@ from .services import Services
 from .topics import Topics
 
 NEVER = 1 << 62  # [ns]
-MAX_LAST_READS = 1000  # of what an ended node has sent; its child may go on
+MAX_LAST_READS = 1000  # reads after a node has ended; a child of it may go on sending
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
 CHILD = "rospy in a child process"
 ROS_PARAMETERS = {
@@ -37,14 +37,15 @@ class Spent(NamedTuple):
     """What the nodes of a part have taken so far."""
 
     processor_time: float = 0.0  # [s]
-    still: float = 0.0  # [s, wall] in which none of their threads ran or wanted to, while the grader waited for them
-    has_stopped_answering: bool = False  # one of them
+    still: float = 0.0  # [s, wall] in which no thread was runnable, while the grader waited for an answer
+    has_stopped_answering: bool = False  # one of these nodes
 
 
 class Node:
     """One node; each line of its output is passed to `on_line`, what it publishes to `topics`.
 
-    It lives until its process ends, however that comes, and is over when all that it has sent and printed is handled.
+    The node lives until its process ends for any reason. It is over when everything that it sent and printed is
+    handled.
     """
 
     def __init__(
@@ -57,7 +58,7 @@ class Node:
         clock_ns: int,
         spent: Spent,
     ) -> None:
-        """`spent`: by the part's nodes before it."""
+        """`spent`: what the part's earlier nodes have used."""
         mine, theirs = socket.socketpair()
         self._process = child.start(
             [f"{theirs.fileno()},{clock_ns}" if word == CHANNEL else word for word in job.command],
@@ -81,20 +82,20 @@ class Node:
         self._output = Output(self._process.stdout, on_line)
 
     def is_over(self) -> bool:
-        """Return whether the node has ended; all that it has sent is handled then."""
+        """Return whether the node has ended; if so, everything that it has sent is handled first."""
         if not self._is_over and self._has_ended():
             self._finish()
         return self._is_over
 
     def death(self, now: float) -> rec.Death:
-        """How it has ended, once it is over, at a simulated time [s]."""
+        """How the node ended, once it is over; `now` is the simulated time [s]."""
         status, reason = self._process.wait(), self._guard.reason or self._given_up
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"
         return rec.Death(now, status, reason)
 
     def spent(self) -> Spent:
-        """What this node and those before it have taken."""
+        """What this node and the part's earlier nodes have used."""
         return Spent(self._guard.used, self._still, self._is_last or bool(self._given_up))
 
     def end(self) -> None:
@@ -106,11 +107,11 @@ class Node:
         self._channel.close()
 
     def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object]) -> None:
-        """Let the node live until a simulated time [ns]; when this returns, all that it did until then is handled.
+        """Let the node live until a simulated time [ns], and handle everything that it does until then.
 
-        `clock_ns`: the time on /clock, which its loops see when they have handled all messages. `meanwhile` is called
-        once, while the node works. GraderLostError if it answers what no agent says, or is the
-        second one that stops answering.
+        `clock_ns`: the time on /clock, which the node's loops see when all messages are handled. `meanwhile` is
+        called once, while the node works. GraderLostError if the node's answer is one that no agent gives, or if
+        this is the part's second node that stops answering.
         """
         new, messages = self._topics.take()
         if self._is_over:
@@ -125,7 +126,7 @@ class Node:
         self._output.pass_on()
 
     def _live(self, until_ns: int) -> None:
-        """Handle what the node sends, until it says that it has lived for so long or has ended."""
+        """Handle what the node sends, until it says DONE for this time, or has ended."""
         idle, still, silent = self._guard.idle, self._guard.still, 0.0
         for looks in itertools.count(1):
             has_more = self._has_more()
@@ -147,7 +148,7 @@ class Node:
         self._still += silent
 
     def _has_lived(self, until_ns: int) -> bool:
-        """Handle what has come; return whether the node says that it has lived for so long."""
+        """Handle the frames that have come; return whether the node said DONE for this time."""
         for kind, body in self._channel.frames():
             if kind == wire.DONE and len(body) == wire.TIMES.size:
                 done_ns, next_ns = wire.TIMES.unpack(body)
@@ -189,7 +190,7 @@ class Node:
         return self._process.poll() is not None
 
     def _finish(self) -> None:
-        """The node has ended: what it has sent before counts."""
+        """Note that the node has ended, and handle everything that it sent before its end."""
         self._is_over, self.next_ns = True, NEVER
         for _ in range(MAX_LAST_READS):
             for kind, body in self._channel.frames():

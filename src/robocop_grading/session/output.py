@@ -1,4 +1,4 @@
-"""What a node prints, line by line, up to a limit; read by whoever waits for the node, without a thread."""
+"""A node's output, line by line, up to a limit. It is read without a thread, by the loop that waits for the node."""
 
 import contextlib
 import fcntl
@@ -27,7 +27,7 @@ class Output:
         return self._stream.fileno()
 
     def read(self) -> None:
-        """Take what has been printed so far."""
+        """Read what the node has printed so far."""
         try:
             data = os.read(self.fileno(), PIPE) if self.is_open else b""
         except BlockingIOError:  # nothing
@@ -47,7 +47,7 @@ class Output:
                 self._on_line(line[start : start + MAX_LINE].decode(errors="replace"))
 
     def close(self) -> None:
-        """Pass on what there is; nothing else will be read."""
+        """Pass on all lines that were read, and read no more."""
         self.pass_on()
         self.is_open = False
         self.pass_on()

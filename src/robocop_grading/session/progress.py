@@ -1,6 +1,6 @@
-"""Lines to the process that grades, on the standard output that it reads: nothing else of this process writes there.
+"""Sends lines to the process that grades, which reads this process's standard output.
 
-Libraries print there, too.
+Libraries print there, too, so their output goes to standard error instead.
 """
 
 import os
@@ -10,7 +10,7 @@ _descriptor = -1
 
 
 def start() -> None:
-    """From now on, what is printed goes to standard error, and tell() to what standard output was."""
+    """From now on, print() writes to standard error, and tell() writes to the former standard output."""
     global _descriptor
     sys.stdout.flush()
     _descriptor = os.dup(1)

@@ -1,4 +1,4 @@
-"""One node's run through the scenarios of its part: the ticks, and a record of everything that arrives from it."""
+"""One node's run through the scenarios of its part: the ticks, and a record of everything that the node sends."""
 
 from collections import defaultdict
 from typing import Any, Callable, DefaultDict, Dict, List, Set
@@ -27,7 +27,7 @@ MAX_LINES = 20_000  # in one record, as a traceback comes at once
 
 
 class Run:
-    """A job while it is done: the current scenario's record so far, and which goals are known and have ended."""
+    """A job in progress: the current scenario's record so far, the known goals, and the goals that have ended."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
@@ -43,7 +43,7 @@ class Run:
         self.topics.listen("/rosout", Log, self._on_log)
 
     def scenarios(self) -> None:
-        """Run those that the plan's checks examine."""
+        """Run the scenarios that the plan's checks examine."""
         raise NotImplementedError
 
     def announce(self, name: str) -> None:
@@ -78,14 +78,14 @@ class Run:
         return record
 
     def add(self, part: str, entry: Any) -> None:
-        """Record an entry; of a flood of them only the first ones at each tick."""
+        """Record an entry; if there are very many at one tick, only the first MAX_ENTRIES are recorded."""
         if len(self.parts[part]) - self._before[part] < MAX_ENTRIES:
             self.parts[part].append(entry)
 
     def names(self, suffix: str) -> Dict[str, Any]:
-        """What a record says of the node's action servers or clients, and of topics that it waits for in vain.
+        """Fields of a record: the node's action servers or clients, and topics that the node waits for in vain.
 
-        `suffix`: of a topic that they publish, such as /result.
+        `suffix`: the end of the name of a topic that these servers or clients publish, such as /result.
         """
         kind = f"Action{suffix[1:].capitalize()}"
         found: Dict[str, NodeTopic] = {
@@ -139,7 +139,7 @@ class Run:
             self.tick()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
-        """Let time pass until a condition holds, the node is dead or `timeout` [s] is over; whether it holds."""
+        """Let time pass until a condition holds, the node is dead or `timeout` [s] is over; return whether it holds."""
         for _ in range(round(timeout / TICK)):
             if condition() or self.is_dead():
                 break

@@ -1,4 +1,4 @@
-"""A scenario's bag: what the submission was sent and answered, and what else a replay shows."""
+"""A scenario's bag: the messages to and from the submission, and other messages that a replay shows."""
 
 import io
 from pathlib import Path
@@ -26,7 +26,7 @@ LASTING = ("/tf_static", "/robocop_sim/world", "/joint_states", f"{ACTION}/goal"
 
 
 class _NoIndex(Dict[int, Any]):
-    """In place of rosbag's index by time, which only readers use; keeping it sorted is a third of the writing."""
+    """Replaces rosbag's index by time, which only readers use: keeping it sorted is a third of the writing."""
 
     def __setitem__(self, _connection: int, _entries: Any) -> None:
         pass
@@ -48,7 +48,7 @@ class _File(io.BytesIO):
 
 
 class ScenarioBag:
-    """Written by the thread that owns the simulator. While none is open, what is written is dropped."""
+    """The bag of the current scenario; only the simulator's owner writes. Without an open bag, messages are dropped."""
 
     def __init__(self, sim: Simulator, world_frame: str) -> None:
         self._sim, self._world_frame = sim, world_frame
@@ -88,7 +88,7 @@ class ScenarioBag:
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))
 
     def write_step(self, stamp_ns: int, messages: Sequence[StepMessage]) -> None:
-        """Measurements as the submission gets them, and the truth; what a replay does not show is left out."""
+        """Write the submission's measurements, and the truth; without messages that a replay does not show."""
         for topic, kind, data in messages:
             if topic not in ("/imu", "/bumper", "/joint_states"):
                 raw = kind._type, data[wire.LENGTH.size :], kind._md5sum, kind  # as rosbag.Bag.write() takes it

@@ -75,10 +75,10 @@ class ServerRun(Run):
     # -- one scenario --
 
     def _scenario(self, index: int, scenario: Scenario) -> None:
-        """Run its script to the end, or until it can't continue.
+        """Run a scenario's script to its end, or until it can't continue.
 
-        If a goal ends otherwise than it should or does not end, with a node that has served other scenarios, the
-        scenario is repeated with a new node. Which of the two records counts is decided when all are there.
+        The scenario is repeated with a new node if a goal ended otherwise than it should or did not end, and the node
+        had served other scenarios. attempts.py decides which of the two records counts, when all records are there.
         """
         used = self._used
         record = self._play(index, scenario, scenario.name)

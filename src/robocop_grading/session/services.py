@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 class _AtOnce(Jobs):
-    """Jobs of the owner of the simulation itself, which answers the node's requests."""
+    """Runs jobs at once: the simulation's owner itself answers the node's requests."""
 
     def call(self, function: Callable[[], T]) -> T:
         """Run a function."""
@@ -23,7 +23,7 @@ class _AtOnce(Jobs):
 
 
 class Services:
-    """What the node can call."""
+    """The services that the node can call."""
 
     def __init__(self, simulation: Simulation) -> None:
         simulation.jobs = _AtOnce(Clock())
@@ -37,7 +37,7 @@ class Services:
         self._offered[name] = kind, answer
 
     def headers(self) -> List[Dict[str, str]]:
-        """What their connections begin with."""
+        """The headers with which connections to the services begin."""
         return [header(kind, service=name) for name, (kind, _) in self._offered.items()]
 
     def call(self, name: str, request: bytes) -> bytes:

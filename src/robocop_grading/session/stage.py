@@ -1,4 +1,4 @@
-"""The simulation that a submission meets: one robot, its topics, and what the submission sends back."""
+"""The simulation for a submission: one robot, its topics, and the messages that the submission sends back."""
 
 import math
 from functools import partial
@@ -95,7 +95,7 @@ class Stage:
         self._publish_frames()
 
     def command(self, twist: Twist2D) -> None:
-        """Set the robot's velocity command; one that is not finite leaves the previous one in force."""
+        """Set the robot's velocity command; a command that is not finite leaves the previous command in force."""
         if math.isfinite(twist.v) and math.isfinite(twist.w):
             self._commanded = twist
             if self._pushed is None:
@@ -110,7 +110,7 @@ class Stage:
     # -- time --
 
     def tick(self) -> Sample:
-        """Advance by one control tick and publish what is due; returns the true state at its end."""
+        """Advance by one control tick and publish what is due; return the true state at the tick's end."""
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
             until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
@@ -172,7 +172,7 @@ class Stage:
         )
 
     def _links(self) -> List[TransformStamped]:
-        """What robot_state_publisher sends of the robot's links in the lab, except of its wheels."""
+        """The transforms that robot_state_publisher sends in the lab for the robot's links, except the wheels."""
         frames, model = PARAMS.frames, self.sim.robots[0].model
         return [
             convert.to_transform_3d(self.robot.footprint_frame, BASE_LINK, model.footprint_from_base, self.stamp),
@@ -181,7 +181,7 @@ class Stage:
         ]
 
     def keep(self, topic: str, message: Any) -> None:
-        """Into the scenario's bag."""
+        """Write a message into the scenario's bag."""
         self.bag.write(topic, message)
 
     def odom_from_footprint(self) -> Pose2D:

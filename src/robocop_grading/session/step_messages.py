@@ -25,7 +25,7 @@ class StepMessage(NamedTuple):
 
 
 class StepMessages:
-    """What the simulator publishes of one robot; for the bag also /ground_truth_odom and /clock."""
+    """The messages that the simulator publishes for one robot; for the bag also /ground_truth_odom and /clock."""
 
     def __init__(self, simulator: Simulator, topics: StepTopics) -> None:
         truth, frame = simulator.observed.fleet, simulator.params.frames.world_frame
@@ -36,7 +36,7 @@ class StepMessages:
         self._batches: Dict[Due, Tuple[List[Tuple[str, Any, PackedMessage]], Batch]] = {}
 
     def of(self, seen: Observations) -> List[StepMessage]:
-        """What is due of a step's observations."""
+        """The messages that are due on a step, from its observations."""
         due = seen.due
         if due not in self._batches:
             packed = [(topic.name, topic.data_class, message) for topic, message in self._topics.packed(due)]

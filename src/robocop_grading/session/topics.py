@@ -1,6 +1,7 @@
-"""The topics that the grader shares with a hand-in's node: what it sends, what it hears, and who is connected.
+"""The topics between the grader and a hand-in's node: messages sent, messages received, and connections.
 
-Messages are as on TCPROS: each with its length, and after one that could not be serialized the stream has rubbish.
+Messages are as on TCPROS, each with its length. If the node could not serialize a message, the stream has rubbish
+after it.
 """
 
 import io
@@ -17,7 +18,7 @@ from .. import record as rec
 from ..agent import wire
 
 NAME = "/robocop_sim"  # of the grader's node
-MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, of one turn; a flood beyond is dropped
+MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, in one turn; further ones are dropped
 MAX_LISTED = 100  # entries of a message's list
 MAX_TOPICS, MAX_NAME = 1000, 200  # of a node, and characters of a name
 MAX_BYTES = 16 * 1024**2  # of a topic's stream that are no whole message
@@ -56,7 +57,7 @@ class _Heard(_Topic):
     stream: bytearray = field(default_factory=bytearray)  # what has come of a message
 
     def bodies(self, data: bytes) -> Iterator[bytes]:
-        """Its messages that are whole now."""
+        """The messages that are complete now that this data has come."""
         self.stream += data
         start = 0
         while len(self.stream) - start >= wire.LENGTH.size:
@@ -85,19 +86,19 @@ def trimmed(message: Any) -> Any:
 
 
 def header(kind: Any, **more: str) -> Dict[str, str]:
-    """What a connection begins with."""
+    """The header with which a connection begins."""
     text = {"message_definition": kind._full_text} if hasattr(kind, "_full_text") else {}
     return {"callerid": NAME, "type": kind._type, "md5sum": kind._md5sum, **text, **more}
 
 
 class Topics:
-    """All of them. What has arrived is handled in the order of the topics' names, whichever was sent first."""
+    """All topics. Messages that have arrived are handled in the order of their topics' names, not of sending."""
 
     def __init__(self) -> None:
         self.published: Dict[str, NodeTopic] = {}  # by the node
         self.subscribed: Dict[str, NodeTopic] = {}  # likewise
         self.programs: Set[str] = set()  # of ROS that the node has started, which find no master
-        self.delays: Dict[str, float] = {}  # [s] by topic, of messages until the node read them, at most
+        self.delays: Dict[str, float] = {}  # [s] by topic: the longest time until the node read a message
         self._sent: Dict[str, _Sent] = {}  # by name
         self._heard: Dict[str, _Heard] = {}  # likewise
         self._outgoing: List[wire.Message] = []
@@ -113,7 +114,7 @@ class Topics:
         self._new.append(self._sent[name].header)
 
     def listen(self, name: str, kind: Any, handler: Handler, of: Callable[[Any], Any] = trimmed) -> None:
-        """Have `handler` called with what arrives on a topic; `of` reduces a message to what is kept of it."""
+        """Have `handler` called with each message on a topic; `of` reduces a message to the parts that are kept."""
         self._heard[name] = _Heard(kind, header(kind, topic=name), handler, of)
         self._new.append(self._heard[name].header)
 
@@ -122,7 +123,7 @@ class Topics:
         return name in self._heard
 
     def ignore(self, name: str) -> None:
-        """Listen to it no longer."""
+        """Stop listening to a topic."""
         del self._heard[name]
 
     def publish(self, name: str, message: Any) -> None:
@@ -169,7 +170,7 @@ class Topics:
     # -- the wire's end --
 
     def begin(self) -> List[Dict[str, str]]:
-        """A new node is started: the headers of all topics."""
+        """Forget the previous node, because a new one is started; return the headers of all topics."""
         self.published, self.subscribed, self.programs, self._new = {}, {}, set(), []
         self.delays = {}
         for heard in self._heard.values():
@@ -184,7 +185,7 @@ class Topics:
         return new, outgoing
 
     def tell(self, body: bytes) -> None:
-        """The node has told of its topics. GraderLostError if it can't be read."""
+        """Take the node's list of its topics; GraderLostError if the list can't be read."""
         try:
             told: Mapping[str, Any] = json.loads(body)
             self.published, self.subscribed = (
@@ -200,7 +201,7 @@ class Topics:
             raise GraderLostError("the node's topics can't be read") from error
 
     def receive(self, name: str, data: bytes) -> None:
-        """A part of the stream of the node's messages on a topic."""
+        """Take a part of the stream of the node's messages on a topic."""
         heard = self._heard.get(name)
         if heard is None:
             return

@@ -32,6 +32,7 @@ def shell(script, alive, **options):
     "script",
     [
         "sleep 600 & echo ready; wait",
+        "(sleep 600 &); echo ready; sleep 600",
         "trap '' TERM; sleep 600 & echo ready; sleep 600; sleep 600",
         "setsid sh -c 'sleep 600 & echo ready; wait' & wait",
         "setsid sh -c 'trap \"\" TERM; echo ready; sleep 600' & wait",

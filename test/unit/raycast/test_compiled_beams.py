@@ -6,6 +6,7 @@ test_simulator.py.
 
 import math
 from typing import List, Tuple
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.raycast import grid_index
 from aro_robocop_goto_as.raycast.beams import Fan, ScanPlane, Scene
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.grid_index import Tiles
@@ -67,13 +69,17 @@ def test_beam_aimed_at_the_end_of_a_segment_hits_it(
     assert fan.cast(np.array([pose]), cut_of(np.array(segment), np.zeros((0, 3))))[0, beam] == pytest.approx(away)
 
 
-@given(fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([1.0, 8.0]))
+@given(
+    fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([(1.0, 1 << 20), (8.0, 1 << 20), (8.0, 9)])
+)
 def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
-    fan: Fan, walls: List[object], posts: List[object], pose: Pose, max_range: float, scale: float
+    fan: Fan, walls: List[object], posts: List[object], pose: Pose, max_range: float, size: Tuple[float, int]
 ) -> None:
+    scale, max_tiles = size
     cut = cut_of(scale * np.array(walls, float), scale * np.array(posts, float))
     every = fan.cast(np.array([pose]), cut, reach=max_range)
-    cut.tiles = Tiles(cut.segments)
+    with mock.patch.object(grid_index, "MAX_TILES", max_tiles):
+        cut.tiles = Tiles(cut.segments)
     assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 
 

@@ -1,6 +1,7 @@
 """Limits and commands of base controllers, and base_controller.c against its definition."""
 
 import math
+from typing import Callable
 
 import pytest
 from support import model_named
@@ -9,6 +10,7 @@ from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.base_controller import Limits, clamped, limits_from
 from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 
 @pytest.mark.parametrize("bad", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf), Twist2D(-math.inf, math.nan)])
@@ -23,3 +25,17 @@ def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them
     assert limits_from(SimParams().limits, turtlebot2) == (1.5, 6.6, 1.0, 2.0, 0.6)
     given = SimParams.of(max_linear_velocity=0.1, cmd_vel_timeout=0.0).limits
     assert limits_from(given, burger) == (0.1, 2.84, 2.5, 3.2, 0.0)
+
+
+def test_command_is_approached_within_its_acceleration_and_dropped_after_its_timeout(
+    simulator: Callable[..., Simulator],
+) -> None:
+    sim = simulator("empty", drive="kinematic", max_linear_acceleration=1.2, cmd_vel_timeout=0.5)
+    sim.command(Twist2D(0.2))
+    speeds = []
+    for _ in range(sim.rate):
+        sim.step({})
+        speeds.append(float(sim.fleet.velocities[0, 0]))
+    assert speeds[:3] == pytest.approx([0.005, 0.010, 0.015])
+    assert speeds[45:115] == [0.2] * 70 and max(speeds[125:]) < 0.2
+    assert speeds[165:] == [0.0] * 75

@@ -29,6 +29,11 @@ def _site(fleet: Fleet) -> Any:
     return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
 
 
+def _measure(odometers: Odometers) -> None:
+    for call in odometers.measuring([0]):
+        call()
+
+
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
 def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: float, updates: int) -> None:
     fleet = _fleet()
@@ -52,24 +57,29 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
         (OdometryParams(encoder_tick=0.3), 0.9 * 0.033, 0.0),
     ],
 )
-def test_each_error_of_odometry_has_its_size(params: OdometryParams, x: float, yaw: float) -> None:
+def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
+    params: OdometryParams, x: float, yaw: float
+) -> None:
     fleet = _fleet()
     odometers = Odometers(params, _site(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
-    for measure in odometers.measuring([0]):
-        measure()
+    _measure(odometers)
     chord = x * np.sinc(yaw / (2.0 * math.pi))
     assert odometers.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
+    fleet.wheel_angles[0] = 9.0, 9.0
+    odometers.reset([Pose2D()])
+    _measure(odometers)
+    assert odometers.poses[0] == pytest.approx((0.0, 0.0, 0.0))
 
 
 def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
     fleet = _fleet()
     odometers = Odometers(OdometryParams(odom_slip=0.1), _site(fleet))
+    _measure(odometers)
     fleet.wheel_angles[0] = 1.0, 1.0
     assert odometers.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
     assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
-    for measure in odometers.measuring([0]):
-        measure()
+    _measure(odometers)
     assert odometers.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)
 
 

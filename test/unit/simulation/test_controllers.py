@@ -196,4 +196,4 @@ def test_reset_while_time_is_held_waits_for_nobody_at_this_tick() -> None:
     owner.on_tick = answer
     owner.run()
     assert owner.simulation.controllers.lockstep.misses == 0
-    assert waited(owner) < 0.5
+    assert waited(owner) == pytest.approx(0.01 + 2 * 0.1)

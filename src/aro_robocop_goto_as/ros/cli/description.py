@@ -22,7 +22,7 @@ _Loader.add_multi_constructor("!", lambda loader, suffix, node: None)
 def main(arguments: Optional[List[str]] = None) -> None:
     """Print the URDF. Arguments: the package's folder, `model`, `robots`, parameter files; '' for none.
 
-    Called by roslaunch: exit status 1 and a reason for what the simulator would refuse after everything has started.
+    roslaunch calls it. Exit status 1, with the reason, for values that the simulator would refuse later.
     """
     package, model, robots, *paths = sys.argv[1:] if arguments is None else arguments
     values: Dict[str, Any] = {}

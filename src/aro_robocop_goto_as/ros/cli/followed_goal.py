@@ -1,4 +1,4 @@
-"""A goal that is sent from the command line and followed to its end, with its progress on the screen."""
+"""Sends a goal from the command line and follows the goal to its end, with its progress on the screen."""
 
 import argparse
 import math
@@ -128,7 +128,7 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
 
 
 def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
-    """Tell of a goal outside of the walls when the simulator, if there is one, has published its world."""
+    """Warn of a goal outside the walls, once the simulator, if there is one, has published its world."""
 
     seen = threading.Event()  # the whole world comes first, then what moves
 

@@ -1,6 +1,7 @@
 """robocop goto: send one goal from the command line, show its progress, report the result as exit status.
 
-Where no ROS system runs, it starts one on a free port, which ends with all its processes when the goal has.
+If no ROS system runs, it starts a system on a free port. That system ends with all its processes when the goal has
+ended.
 """
 
 import argparse
@@ -95,7 +96,7 @@ def _import_go_to() -> Callable[..., int]:
 
 @contextlib.contextmanager
 def _own_system(arguments: List[str], log: Path) -> "Iterator[child.Child[Any]]":
-    """Launch the system with a master of its own; yields its process, which starts. Output goes to `log`.
+    """Launch a system with its own master, and yield the launcher's process at once. Output goes to `log`.
 
     Sets ROS_MASTER_URI of this process. The system ends with the block, also when a signal ends the block.
     """

@@ -1,4 +1,4 @@
-"""What is refused of a launch file's arguments before anything is started, as NAME:=VALUE on the command line."""
+"""Refuses impossible arguments of a launch file, NAME:=VALUE on the command line, before anything is started."""
 
 import contextlib
 import datetime
@@ -23,7 +23,7 @@ _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def check(given: Mapping[str, str]) -> None:
-    """RobocopError for values that the simulator would refuse, and for files that the parameter server can't have.
+    """RobocopError for values that the simulator would refuse, and for files that the parameter server can't store.
 
     A world is found, but not read. The simulator checks what its parameter files say.
     """
@@ -63,9 +63,9 @@ def _require_profile(name: str) -> None:
 
 
 def require_parameters(value: Any, where: str) -> None:
-    """ParameterError, naming the key, for what the parameter server can't have: no value, a date, a large integer.
+    """ParameterError, naming the key, for values that the parameter server can't store: none, a date, a large integer.
 
-    roslaunch prints a traceback of its XML-RPC library.
+    For such a value, roslaunch only prints a traceback of its XML-RPC library.
     """
     if isinstance(value, dict):
         for key, entry in value.items():

@@ -61,7 +61,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
 
 
 def observe(frame: str, wait: float, server: bool) -> Observed:
-    """What the system on ROS_MASTER_URI has, waiting up to `wait` [s] for the simulator to publish its world."""
+    """Observe the system on ROS_MASTER_URI; wait up to `wait` [s] until the simulator has published its world."""
     screen = x_display.screen_size() or Observed.screen
     if not rosgraph.is_master_online():
         return Observed(frame, server=server, screen=screen)
@@ -123,7 +123,7 @@ def _start(robot: str) -> Tuple[float, float]:
 
 
 def _written(text: str) -> str:
-    """Write the configuration to the folder of this run's logs; its path, one for each namespace."""
+    """Write the configuration to the folder of this run's logs; return its path, one for each namespace."""
     run_id = rospy.get_param("/run_id", "") if rosgraph.is_master_online() else ""
     folder = Path(rospkg.get_log_dir(), run_id)
     folder.mkdir(parents=True, exist_ok=True)

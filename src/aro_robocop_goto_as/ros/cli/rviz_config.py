@@ -1,4 +1,4 @@
-"""RViz's configuration, rviz/robocop.rviz, adapted to what is observed of the running system."""
+"""Adapts RViz's configuration, rviz/robocop.rviz, to the running system as it was observed."""
 
 import math
 from dataclasses import dataclass, field

@@ -11,9 +11,9 @@ from .. import graph
 
 
 def is_up(client: actionlib.SimpleActionClient) -> bool:
-    """Return whether the client is connected to its server, without waiting; False at time zero, which is no time yet.
+    """Return whether the client is connected to its server, without waiting; False while ROS time is still zero.
 
-    The timeout is over at once, and so also on a paused simulator, where ROS time never reaches a later one.
+    The timeout is over at once, also while the simulator is paused and ROS time would never reach a later time.
     """
     return bool(rospy.get_rostime()) and client.wait_for_server(rospy.Duration(nsecs=-1))
 

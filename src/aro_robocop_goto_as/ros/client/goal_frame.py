@@ -39,10 +39,10 @@ class GoalTransformer:
     def resolve(self, pose: PoseStamped) -> Point:
         """The pose's position in goal_frame at the pose's stamp.
 
-        Waits up to `timeout` [s, wall] for the transform at the goal's stamp, then uses the latest one, by the odometry
-        if that connects the frames, or by TF. Where TF does not connect them but the odometry does, uses that without
-        waiting. FrameError if the frames are not connected, and for a position that is not finite or beyond
-        MAX_COORDINATE, before or after the transform.
+        Waits up to `timeout` [s, wall] for the transform at the goal's stamp. Then it uses the latest odometry if the
+        odometry connects the frames, otherwise the latest transform of TF. If only the odometry connects the frames,
+        it is used without waiting. FrameError if the frames are not connected, and for a position that is not finite
+        or beyond MAX_COORDINATE, before or after the transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)

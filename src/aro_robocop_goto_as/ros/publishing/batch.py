@@ -1,7 +1,7 @@
 """Messages of one step, filled and sent together: one call of batch.c writes them all to their subscribers' sockets.
 
-rospy takes a lock, tests the connection's state, and releases and takes the interpreter's lock, for each message and
-each subscriber.
+For each message and each subscriber, rospy would take a lock, test the connection's state, and release and take the
+interpreter's lock.
 """
 
 import ctypes
@@ -53,8 +53,8 @@ def _library() -> ctypes.PyDLL:
 class Batch:
     """Messages that are sent together, again and again, to the present subscribers of their topics.
 
-    One thread sends, and no other one publishes on these topics. Only rospy does, to new subscribers of a latched
-    topic; at most one of the topics is latched.
+    One thread sends, and no other thread publishes on these topics, except rospy, which sends to new subscribers of a
+    latched topic; at most one of the topics is latched.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Batch:
                 self._finish()
 
     def _finish(self) -> None:
-        """Send the rest of what was not sent whole; a subscriber that is gone is disconnected."""
+        """Send the rest of messages that were sent in part; a subscriber that is gone is disconnected."""
         lost: Set[int] = set()  # ids of connections
         may_wait = True
         for (topic, message, link), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):

@@ -29,7 +29,7 @@ def string_size(text: str) -> int:
 
 
 class Field(NamedTuple):
-    """A part of a message that changes: what it is made of, and where it is."""
+    """A part of a message that changes: the source of its numbers, and its place in the message."""
 
     kind: int
     offset: int  # bytes, from the message's length on
@@ -48,7 +48,7 @@ class Field(NamedTuple):
 
 
 class PackedMessage:
-    """The bytes of a message as they are sent: its length, then its fields. Latched, it is the message sent last."""
+    """The bytes of a message as they are sent: its length, then its fields. If latched, the last message."""
 
     def __init__(self, template: genpy.Message, fields: Sequence[Field] = ()) -> None:
         serialized = BytesIO()

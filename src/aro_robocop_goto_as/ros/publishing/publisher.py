@@ -46,7 +46,7 @@ class DirectPublisher(rospy.Publisher):
             self.links = tuple(link for link in found if link is not None)
 
     def resume(self) -> None:
-        """Send the latched message to subscribers that stood still, have missed it and read again."""
+        """Send the latched message to subscribers that stood still, missed the message, and read again."""
         for link in self.links:
             if link.stands_still:
                 with suppress(OSError):  # the connection is lost: the next message's sender, or rospy, notices it
@@ -54,7 +54,7 @@ class DirectPublisher(rospy.Publisher):
 
 
 def resume() -> None:
-    """Serve subscribers that stood still and read again, on topics that are published seldom; batches serve their own.
+    """Serve subscribers that stood still and read again, on topics that are published seldom; batches do so themselves.
 
     The thread that publishes calls it now and then.
     """

@@ -1,4 +1,4 @@
-"""What publishing uses of private parts of rospy, each with the reason."""
+"""The private parts of rospy that publishing uses, each with the reason."""
 
 import contextlib
 import socket
@@ -24,8 +24,9 @@ def connections_of(publisher: rospy.Publisher) -> List[Tuple[Any, socket.socket]
 def disconnect(publisher: rospy.Publisher, connection: Any) -> None:
     """Disconnect a subscriber, unless that has happened already.
 
-    After a connection's own close(), rospy fails to stop watching its socket, as that is closed. While a duplicate is
-    open, the system reports the old descriptor's number, and rospy disconnects the next subscriber that gets it.
+    After a connection's own close(), rospy fails to stop watching the socket, because the socket is closed. While a
+    duplicate of the socket is open, the system reports the old descriptor's number, and rospy disconnects the next
+    subscriber that gets this number.
     """
     topic = publisher.impl
     if topic is not None:

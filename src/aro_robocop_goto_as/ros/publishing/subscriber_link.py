@@ -1,4 +1,4 @@
-"""A subscriber's connection, as its publisher sees it: waited for while it reads, kept while it stands still.
+"""A subscriber's connection: its publisher waits for the subscriber while it reads, and skips it while it stands still.
 
 A node may stand still for any time, in a debugger or after Ctrl-Z. It gets the rest of a message when it reads again.
 """
@@ -48,9 +48,10 @@ class SubscriberLink:
             count_sent(self.connection, 1, len(data))
 
     def finish(self, message: memoryview, taken: int, may_wait: bool) -> bool:
-        """Send what is left of a message of which `taken` bytes were sent, or -errno; return whether all was sent.
+        """Send the rest of a message of which `taken` bytes were sent (or -errno); return whether all bytes were sent.
 
-        OSError if the connection is lost. Unless it may wait, a subscriber that takes nothing at once is skipped.
+        OSError if the connection is lost. A subscriber that takes nothing at once is skipped, unless this call may
+        wait.
         """
         if taken < 0 and taken not in WOULD_BLOCK:
             raise OSError(-taken, "send")

@@ -1,4 +1,4 @@
-"""One goal from its acceptance to its end: the handout's rule, and what else can end a goal."""
+"""One goal from its acceptance to its end: the handout's rule, and all other reasons why a goal can end."""
 
 import time
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Ending:
 
 
 class GoalExecution:
-    """What a goal remembers from one control period to the next. Times are ROS times [s] unless marked wall."""
+    """The state of a goal from one control period to the next. Times are ROS times [s] unless marked wall."""
 
     def __init__(self, message: GoToPositionGoal, inputs: Inputs) -> None:
         x, y, _ = (float(value) for value in ros_numpy.numpify(message.position))

@@ -1,4 +1,4 @@
-"""The server's inputs: the newest odometry and scan -> pose and clearance ahead, or which of the two is missing."""
+"""The server's inputs: the newest odometry and scan -> pose and clearance ahead, or the reason why one is missing."""
 
 import math
 import threading
@@ -73,7 +73,8 @@ class Inputs:
     def wait_for_tick(self, tick_ns: int) -> None:
         """Wait for the messages that a simulator in lockstep published before it let the clock reach this tick.
 
-        A topic's period tells whether one is due; until two messages have told the period, none is.
+        A topic's period tells whether a message is due; until two messages have come, the period is unknown and no
+        message is due.
         """
 
         def complete() -> bool:
@@ -87,7 +88,7 @@ class Inputs:
     def missing(self, now: float, started: float, accepted: float) -> Optional[Tuple[Outcome, str]]:
         """Outcome and reason when odometry or valid scans have been missing for data_timeout since the goal's start.
 
-        A topic without any message since the goal was accepted, at the wall time `accepted`, may just be connecting.
+        A topic without any message since the goal was accepted, at the wall time `accepted`, may still be connecting.
         """
         for name, outcome, newest, valid in (
             ("odom", Outcome.NO_ODOM, self.odom, self.odom),

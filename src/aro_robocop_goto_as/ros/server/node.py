@@ -60,7 +60,7 @@ class GotoNode:
     # -- one goal --
 
     def execute(self, goal: GoToPositionGoal) -> None:
-        """Drive to a goal, then to one that has come meanwhile: actionlib looks for it only 0.1 s [wall] later."""
+        """Drive to a goal, then to a goal that came meanwhile: actionlib would look for it only 0.1 s [wall] later."""
         with self.executing:
             self.go_to(goal)
             while self.server.is_new_goal_available():
@@ -154,7 +154,7 @@ class GotoNode:
         return f"; {topic} is also published by {' and '.join(others)}" if others else ""
 
     def is_in_lockstep(self) -> bool:
-        """Return whether the node that publishes odometry receives the answers; others, as rosbag, may do so too."""
+        """Return whether the node that publishes odometry receives the answers; others, such as rosbag, don't count."""
         odom = self.inputs.odom
         return odom is not None and is_connected_to(self.ticks.answers, sender(odom.message))
 

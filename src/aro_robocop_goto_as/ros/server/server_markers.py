@@ -1,4 +1,4 @@
-"""What RViz shows of the server: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
+"""The server's markers for RViz: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
 
 import textwrap
 from typing import Optional, Sequence

@@ -1,4 +1,4 @@
-"""The ticks of the control loop: whole multiples of its period of ROS time, as at 10 Hz 0.1 s, 0.2 s, ..."""
+"""The ticks of the control loop: whole multiples of its period in ROS time, at 10 Hz for instance 0.1 s, 0.2 s, ..."""
 
 import contextlib
 import threading
@@ -57,7 +57,7 @@ class Ticks:
         self.wake()
 
     def _warn_of_two_clocks(self) -> None:
-        """Warn once if two nodes publish /clock: time jumps between theirs."""
+        """Warn once if two nodes publish /clock: time jumps between their times."""
         if self._has_warned:
             return
         with contextlib.suppress(OSError, rosgraph.MasterException):
@@ -68,7 +68,7 @@ class Ticks:
                 rospy.logwarn(text, " and ".join(sorted(nodes)))
 
     def wake(self) -> None:
-        """Have whoever waits look for an interruption."""
+        """Wake the thread that waits, so that it looks for an interruption."""
         with self._changed:
             self._changed.notify_all()
 
@@ -77,7 +77,7 @@ class Ticks:
         return self._tick(convert.to_ns(rospy.get_rostime()))
 
     def _tick(self, time_ns: int, later: int = 0) -> int:
-        """The time of the newest tick at a time [ns], or of one that is `later`; rounded down as the simulator does."""
+        """The time of the newest tick at a time [ns], or of a `later` tick; rounded down as the simulator does."""
         number = ((time_ns + 1) * self._ticks - 1) // self._span_ns + later
         return number * self._span_ns // self._ticks
 

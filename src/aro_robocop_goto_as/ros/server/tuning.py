@@ -16,7 +16,7 @@ NAMES = tuple(GotoConfig.defaults)
 class Tuning:
     """`params` are the newest valid parameters; its users read them here each time, and keep no copy.
 
-    A request replaces the whole frozen object, so that takes no lock.
+    A request replaces the whole frozen object, so no lock is needed.
     """
 
     def __init__(self, p: GotoParams) -> None:

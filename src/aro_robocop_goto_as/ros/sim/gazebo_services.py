@@ -107,7 +107,7 @@ class GazeboServices:
         return {"sim_time": self._simulator.time, "model_names": names, "status_message": text}
 
     def _in_world(self, pose: Pose, reference: str) -> Pose3D:
-        """A pose in the simulator's world, of one that is relative to a model or to Gazebo's world."""
+        """A pose in the simulator's world, from a pose that is relative to a model or to Gazebo's world."""
         _, origin, _ = self._model(reference)
         target = compose3(origin, convert.from_pose_msg_3d(pose))
         return raised(target, -self._simulator.world.ground)

@@ -1,7 +1,7 @@
-"""What Gazebo publishes of its world: /gazebo/model_states, /gazebo/link_states; and its IMU's service imu_service.
+"""Gazebo's topics about its world, /gazebo/model_states and /gazebo/link_states; and its IMU's service imu_service.
 
-The message types are gazebo_msgs', made here from their definitions where that package is not built: to subscribers,
-types of the same name and md5sum are the same.
+The message types are those of gazebo_msgs. If that package is not built, they are made here from their definitions:
+to subscribers, types of the same name and md5sum are the same.
 """
 
 import math
@@ -112,7 +112,7 @@ def relative(moving: State, frame: State) -> Tuple[Pose, Twist]:
 
 
 def models(simulator: Simulator) -> List[State]:
-    """As Gazebo has them: the world's models, which stand still here, the robots, then what was spawned since."""
+    """The models in Gazebo's order: the world's, which stand still here, the robots, and models spawned since."""
     robots = [
         (name, raised(lifted(state.world_from_footprint), simulator.world.ground), _world_twist(state))
         for name, _, state in _robots(simulator)
@@ -134,7 +134,7 @@ def links(simulator: Simulator) -> List[State]:
 
 
 def _with_scenery(simulator: Simulator, robots: List[State], suffix: str) -> List[State]:
-    """The states of robots between those of the world's models and of what was spawned."""
+    """The states of robots, between the states of the world's models and of spawned models."""
     standing, world = convert.to_twist_msg(STANDSTILL), simulator.world
     first, last = (
         [

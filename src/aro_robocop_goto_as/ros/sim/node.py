@@ -122,7 +122,7 @@ class SimNode:
             resume()
 
     def _publish(self, changes: AbstractSet[Change]) -> None:
-        """Publish anew what has changed other than by a step."""
+        """Publish again the topics whose content has changed other than by a step."""
         if not changes:  # in nearly all rounds of the loop
             return
         if Change.FRAMES in changes:

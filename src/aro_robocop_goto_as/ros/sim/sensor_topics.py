@@ -1,7 +1,7 @@
 """One robot's topics: for each sensor its name, type and message.
 
-A packed message has what is constant in it, and where the numbers of each step go. batch.c stamps and sends it; rospy
-sends the others.
+A packed message holds its constant bytes, and the places for the numbers of each step. batch.c stamps and sends
+packed messages; rospy sends the others.
 """
 
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple

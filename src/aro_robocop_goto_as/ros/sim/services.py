@@ -33,7 +33,7 @@ def serve(
     begin: str = "",
     offer: Offer = rospy.Service,
 ) -> None:
-    """Offer a service; what is refused is answered with success false and the reason.
+    """Offer a service; a refused request is answered with success false and the reason.
 
     answer: request -> the fields of the response except success; text: the field for a refusal's reason, which starts
     with `begin`

@@ -99,7 +99,7 @@ class StatusTopics:
             rospy.logwarn(text, self._name(controller), self._simulation.controllers.lockstep.timeout)
 
     def _name(self, controller: ControllerId) -> str:
-        """How messages name a controller: by its node, and among several robots also by the one that it commands."""
+        """A controller's name in messages: its node, and among several robots also the robot that it commands."""
         robots = self._simulation.simulator.robots
         return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
 

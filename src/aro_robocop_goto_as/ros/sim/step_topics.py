@@ -23,7 +23,7 @@ from .sensor_topics import TOPICS, SensorTopics, packed_clock, packed_transforms
 
 
 class StepTopics:
-    """What is sent on steps on which the same is due is put together once, until the subscribers change."""
+    """Puts the messages together once for all steps on which the same is due, until the subscribers change."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
@@ -109,7 +109,7 @@ class StepTopics:
         return [self.robots[index] for index in due.sensors.get(sensor, ())]
 
     def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
-        """What publishes the measurements that are not packed, and the batch of all others."""
+        """The functions that publish measurements without a packed message, and the batch of all packed messages."""
         rospys = [sensor for sensor in (*TOPICS, CAMERA) if sensor not in TOPICS or TOPICS[sensor].packed is None]
         unpacked = [partial(robot.publish, sensor) for sensor in rospys for robot in self._due(due, sensor)]
         return unpacked, Batch(self.packed(due), [(self.clock, self._clock_message)] if due.clock else [])

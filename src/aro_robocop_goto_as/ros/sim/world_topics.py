@@ -55,7 +55,7 @@ class PackedMap(GetMapResponse):
 
 
 class _Whole(MarkerArray):
-    """The whole world at the time at which it is sent, also to a subscriber that comes later."""
+    """A message with the whole world as it is when the message is sent, also to a subscriber that comes later."""
 
     def __init__(self, markers: Callable[[], List[Marker]]) -> None:
         super().__init__()
@@ -86,7 +86,7 @@ class WorldTopics:
             self._metadata = publisher("/map_metadata", MapMetaData, latch=True)
 
     def publish(self) -> None:
-        """The whole world, which replaces what was published before."""
+        """Publish the whole world, which replaces the markers that were published before."""
         if self._has_map:
             self._publish_map()
         self._markers.publish(_Whole(lambda: [CLEAR, *self._obstacles(), *robot_markers(self._robots)]))

@@ -47,7 +47,7 @@ class Ended:
 
 
 class GoalHistory:
-    """Goals and results by their actionlib ids."""
+    """The goals and their results, by actionlib ids."""
 
     def __init__(self) -> None:
         self._goals: Dict[str, Tuple[float, float]] = {}
@@ -62,7 +62,8 @@ class GoalHistory:
     def position(self, goal_id: str) -> Optional[Tuple[float, float]]:
         """A goal's position [m] in the server's frame, if it was seen and is not too old.
 
-        A goal without an id, as of `rostopic pub`, gets one from its server: the first that is asked for and unknown.
+        A goal without an id, such as a goal of `rostopic pub`, gets its id from the server: the first unknown id that
+        is asked for belongs to this goal.
         """
         if goal_id not in self._goals and "" in self._goals:
             self._goals[goal_id] = self._goals.pop("")
@@ -84,7 +85,7 @@ class Goals(Part):
         self._cancel = gui.add_button("Cancel goal", icon="x", visible=live)
         self._cancel.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
-        self._robot = ""  # the one that the next four are about
+        self._robot = ""  # the robot to which the four fields below belong
         self._status: Optional[rospy.Subscriber] = None  # of its server
         self._executing: Optional[bool] = None  # as its newest status says; None before the first one
         self._newest: Optional[GoalStatus] = None  # of the newest goal; actionlib's servers report it for five seconds

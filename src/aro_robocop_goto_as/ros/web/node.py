@@ -42,7 +42,7 @@ ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS maste
 def load_params(arguments: Sequence[str]) -> WebParams:
     """Arguments NAME:=VALUE -> parameters; ParameterError for what is wrong.
 
-    Those of ROS are left out: __name:=x, and remappings of absolute names, such as /tf:=/x/tf.
+    Arguments for ROS are left out: __name:=x, and remappings of absolute names, such as /tf:=/x/tf.
     """
     raw: Dict[str, Any] = {"web_host": access.default_host()}
     for argument in arguments:
@@ -120,7 +120,7 @@ class WebNode:
                 self._visitors.clear()
 
     def _connect(self, visited: bool) -> None:
-        """Subscribe to what is to be shown, if it is. Only this needs the ROS master, and may wait for it."""
+        """Subscribe to the shown topics, if anybody looks. Only this needs the ROS master, and may wait for it."""
         state = self._state.now
         wanted = state.selected if visited else None
         if wanted is None:

@@ -1,4 +1,4 @@
-"""What the parts of the page have in common. Each part has its topics, its elements of the panel and its shapes."""
+"""The base of the parts of the page. Each part has its topics, its elements of the panel and its shapes."""
 
 import time
 from collections import deque
@@ -29,11 +29,11 @@ class Context:
     fixed_frame: str  # that the scene is drawn in where it is known
 
     def locate(self, frame: str) -> Optional[Pose3D]:
-        """The pose of a frame in the one that the scene is drawn in."""
+        """The pose of a frame in the frame of the scene."""
         return self.frames.lookup(self.state.now.root, frame.lstrip("/"))
 
     def place(self, robot: str, x: float, y: float) -> str:
-        """A position in a robot's odom [m] in words: in the fixed frame, or where that is unknown in odom, it says."""
+        """A position in a robot's odom [m] in words: in the fixed frame, otherwise in odom, and the text says so."""
         odom = self.frame_of(robot, "odom")
         fixed_from_odom = self.frames.lookup(self.fixed_frame, odom)
         if fixed_from_odom is None:
@@ -54,7 +54,7 @@ class Inbox:
         self._subscriptions: List[Tuple[rospy.Subscriber, Deque[Tuple[float, Any]], Handler]] = []
 
     def subscribe(self, topic: str, kind: Any, handler: Handler, keep: Optional[int] = 1) -> rospy.Subscriber:
-        """Subscribe, and let the last `keep` messages wait, or all."""
+        """Subscribe, and keep the last `keep` messages waiting, or all messages."""
         waiting: Deque[Tuple[float, Any]] = deque(maxlen=keep)
         subscriber = rospy.Subscriber(
             topic, kind, lambda message: waiting.append((time.monotonic(), message)), queue_size=keep
@@ -86,19 +86,19 @@ class Part:
         self.context = context
 
     def subscribe(self, inbox: Inbox) -> None:
-        """Subscribe to topics of the system, when a browser opens the page."""
+        """Subscribe to topics of the system; called when a browser opens the page."""
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        """Forget the previous robot, and subscribe to the topics of the one that is selected now."""
+        """Forget the previous robot, and subscribe to the topics of the newly selected robot."""
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
-        """Ask the ROS master for what is needed, and subscribe to what is received also without a browser.
+        """Ask the ROS master as needed, and subscribe to topics that are received also without a browser.
 
         Called once a second. The inbox is never closed.
         """
 
     def show(self, state: PageState) -> None:
-        """Show what was received in panel and scene."""
+        """Show the received messages in panel and scene."""
 
     def end(self) -> None:
         """Do what has to be done before topics are closed."""

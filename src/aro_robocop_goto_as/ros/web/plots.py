@@ -34,7 +34,7 @@ AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1,
 
 @dataclass(frozen=True)
 class Plotted:
-    """A topic of a robot, and what is plotted of it."""
+    """A topic of a robot, and the figures of its messages that are plotted."""
 
     texts: Tuple[str, str, str]  # title, labels of the figures
     topic: str

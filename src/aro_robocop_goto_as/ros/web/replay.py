@@ -1,4 +1,4 @@
-"""What a page that shows a recording has besides: pause, and the recorded time. `rosbag play` publishes it."""
+"""Pause and recorded time, on a page that shows a recording; `rosbag play` publishes the recording."""
 
 import contextlib
 import threading
@@ -42,7 +42,7 @@ class Replay(Part):
 
 
 def _pause(paused: bool) -> None:
-    """Pause the recording or go on, in a thread, as the player may still be starting."""
+    """Pause the recording or go on, in a thread, because the player may still be starting."""
 
     def call() -> None:
         with contextlib.suppress(rospy.ROSException, rospy.ServiceException):  # it has ended

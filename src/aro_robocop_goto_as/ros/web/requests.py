@@ -13,9 +13,9 @@ SERVICE_TIMEOUT, CONNECT_TIMEOUT = 2.0, 2.0  # [s, wall] for a service to appear
 
 
 class Requests:
-    """Carries out one request after the other; the state says what the last one failed with.
+    """Carries out one request after the other; the state says why the last request failed.
 
-    Requests are ignored where nobody may send them.
+    Requests are ignored if visitors may not send any.
     """
 
     def __init__(self, state: SharedState) -> None:

@@ -38,7 +38,7 @@ class Robots(Part):
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:
-        """The same as a transform, for where nobody publishes that one, as in the original lab."""
+        """Store odometry as a transform, in case nobody publishes this transform, as in the original lab."""
         parent, child = message.header.frame_id.lstrip("/"), message.child_frame_id.lstrip("/")
         pose = to_pose(message.pose.pose.position, message.pose.pose.orientation)
         if pose is not None and child not in self._moved:
@@ -53,7 +53,7 @@ class Robots(Part):
                 self._moved.add(child)
 
     def show(self, state: PageState) -> None:
-        """Draw all robots. Where nobody publishes the fixed frame, as without localization, odom takes its place."""
+        """Draw all robots. If nobody publishes the fixed frame, as without localization, odom takes its place."""
         context = self.context
         known = context.frames.knows(context.fixed_frame)
         context.state.change(root=context.fixed_frame if known else context.frame_of(state.selected, "odom"))

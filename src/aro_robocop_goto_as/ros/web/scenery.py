@@ -1,4 +1,4 @@
-"""What is around the robots: the simulator's and the server's markers, the scan and the map."""
+"""The surroundings of the robots: the simulator's and the server's markers, the scan and the map."""
 
 from dataclasses import replace
 from typing import Any, Optional

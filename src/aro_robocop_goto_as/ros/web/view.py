@@ -78,7 +78,7 @@ class View(Part):
 
 
 def frames(poses: Mapping[str, Pose3D]) -> Group:
-    """The axes of frames; those that are near each other have their names beside the first of them."""
+    """The axes of frames; if frames are near each other, all their names are beside the first of them."""
     first: Dict[str, List[str]] = {}
     for name, pose in poses.items():
         near = (other for other in first if math.dist(pose.position, poses[other].position) < CROWDED)

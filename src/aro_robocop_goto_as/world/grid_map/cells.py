@@ -22,9 +22,10 @@ def read_cells(spec: MapSpec) -> np.ndarray:
 def _cells(pixels: np.ndarray, spec: MapSpec) -> np.ndarray:
     """Cell values (...) int8 of pixels (..., channels) uint8, as in map_server's image_loader.
 
-    In mode trinary all channels are averaged, alpha included. Else the last of several is left out. In mode scale a
-    pixel between the thresholds that is not opaque is unknown, as wiki.ros.org/map_server documents it. The last of
-    three channels counts as alpha as well in map_server; there, such a pixel is unknown if it is 0.
+    In mode trinary all channels are averaged, alpha included. In other modes the last of several channels is left
+    out. In mode scale a pixel between the thresholds that is not opaque is unknown, as wiki.ros.org/map_server
+    documents. In map_server, the last of three channels counts as alpha as well; there, such a pixel is unknown if
+    this channel is 0.
     """
     shaded = spec.mode != "trinary" and pixels.shape[-1] > 1
     greys = (pixels[..., :-1] if shaded else pixels).mean(axis=-1)

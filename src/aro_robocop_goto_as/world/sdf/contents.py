@@ -1,4 +1,4 @@
-"""What has been read of an SDF file so far: obstacles, models, and reports of what is left out or different."""
+"""The contents of an SDF file read so far: obstacles, models, and reports of elements that are left out or differ."""
 
 import os
 import re
@@ -32,7 +32,7 @@ _OF_SIMULATOR = re.compile(r"(lib)?((gz-sim|ignition-gazebo)\d?-.*system|gazebo_
 
 @dataclass(frozen=True)
 class Parent:
-    """What an element inherits from the models and links around it.
+    """The properties that an element inherits from the models and links around it.
 
     pose: world_from_parent
     names: of the models and links, the outermost first
@@ -47,7 +47,7 @@ class Parent:
 
 
 class Contents:
-    """Of one world, with the files that it includes."""
+    """The contents of one world, with the files that it includes."""
 
     def __init__(self, path: str) -> None:
         self.path = path

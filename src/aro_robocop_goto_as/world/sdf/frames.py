@@ -32,7 +32,7 @@ def placed(element: Element, world_from_parent: Pose3D) -> Pose3D:
 
 
 def _in_scope(element: Element, chain: Chain) -> Pose3D:
-    """Pose of a child of a world or a model in that one's frame."""
+    """The pose of a child of a world or a model, in the frame of that world or model."""
     if element in chain:
         raise xml.error(element, f"the pose of <{element.tag} name='{_name(element)}'> is relative to itself")
     if len(chain) >= MAX_CHAIN:

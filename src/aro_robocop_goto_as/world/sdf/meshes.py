@@ -58,7 +58,7 @@ def _text(content: bytes) -> str:
 def _stl(content: bytes) -> Tuple[str, Any]:
     """Kind and contents of an .stl file: binary if it is long enough for the number of facets in its header.
 
-    What follows the facets is skipped, as in Gazebo. Many binary files also begin with "solid".
+    Bytes after the facets are skipped, as in Gazebo. Many binary files begin with "solid", too.
     """
     end = _STL_HEADER + _STL_FACET * int.from_bytes(content[80:84], "little")
     if _STL_HEADER <= end <= len(content):
@@ -67,9 +67,10 @@ def _stl(content: bytes) -> Tuple[str, Any]:
 
 
 def _plain_obj(text: str) -> str:
-    """An .obj file as trimesh reads it right: vertices and faces without comments, tabs, normals and textures.
+    """An .obj file in a form that trimesh reads right: vertices and faces without comments, tabs, normals and textures.
 
-    A face may count its vertices from the last one before it; trimesh would count from the last one of the file.
+    A face may count its vertices back from the last vertex before the face; trimesh would count from the file's last
+    vertex.
     """
     text = re.sub(r"\\\r?\n|/\S*", " ", text)  # a line that is continued; what a corner has beside its vertex
     lines, vertices = [], 0

@@ -1,4 +1,4 @@
-"""Read the worlds and models of SDF files; only their collisions are kept, as these are what robots can touch."""
+"""Read the worlds and models of SDF files; only their collisions are kept, because robots can touch nothing else."""
 
 import os
 from dataclasses import replace

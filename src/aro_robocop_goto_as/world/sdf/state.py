@@ -17,8 +17,8 @@ SavedPoses = Dict[str, Pose3D]  # of models and links, by name, in the world
 def state_poses(world: Element, report: Report) -> SavedPoses:
     """The poses in a world's <state> elements, which override those of its models and links, as in Gazebo.
 
-    Names are `model`, `model/link`, `model/nested`. Scales are reported and left out: Gazebo saves them in addition to
-    shapes that are already scaled. So is what a state adds or removes.
+    Names are `model`, `model/link`, `model/nested`. Scales are reported and left out: Gazebo saves them in addition
+    to shapes that are already scaled. Models that a state adds or removes are also reported and left out.
     """
     poses: SavedPoses = {}
     for state in world.iterchildren("state"):

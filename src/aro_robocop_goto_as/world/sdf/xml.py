@@ -26,7 +26,7 @@ def error(element: Element, message: str) -> WorldError:
 
 
 class NotSimulatedError(WorldError):
-    """What an element asks for is not simulated, so the element is left out; the message begins with what it is."""
+    """An element, mesh or URI is not simulated, so its element is left out; the message begins with its name."""
 
 
 @contextmanager
@@ -115,7 +115,7 @@ def name_of(element: Element) -> str:
 def boolean(element: Element, tag: str) -> Optional[bool]:
     """The value (true, false, 1 or 0) of the last child with this tag, or None if there is no such child.
 
-    Gazebo accepts several, and the last one counts.
+    Gazebo accepts several children, and the last one counts.
     """
     value = None
     for child in element.iterchildren(tag):

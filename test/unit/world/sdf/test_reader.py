@@ -24,7 +24,7 @@ def nested(count):
 READ = {  # case: (body from line 3 on, {obstacle: its position [m]}, what is said of the rest)
     "what Gazebo writes into every world": (BEFORE_THE_WORLD, {}, ()),
     "models of Gazebo that need no file": (
-        "<include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>",
+        "<include><uri>model://ground_plane</uri></include><include><uri>model://sun/model.sdf</uri></include>",
         {"ground_plane/link/collision": (0, 0, 0)},
         (),
     ),

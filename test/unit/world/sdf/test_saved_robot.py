@@ -40,6 +40,12 @@ SAVED = {  # case: (body from line 3 on, names of the obstacles, [x, y] where a 
         (1.8, 0.0),
         [f"the robot 'a' is left out{START} (line 3)"],
     ),
+    "no robot but a desk with a link of a robot's name": (
+        f"<model name='desk'><static>0</static><pose>5 0 0 0 0 0</pose><link name='base_link'/>{BOX}</model>",
+        ["desk/l/c"],
+        (0.0, 0.0),
+        [],
+    ),
     "as a part of the scenery": (
         f"<model name='shop'><static>1</static><pose>5 5 0 0 0 0</pose><model name='burger'>{BOX}</model></model>",
         ["shop/burger/l/c"],
