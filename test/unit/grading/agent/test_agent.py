@@ -335,18 +335,32 @@ for wait in (lambda: time.sleep(1000.0), lambda: threading.Event().wait(1000.0))
     assert printed(tmp_path, text) == ["interrupted", "interrupted"]
 
 
-# Its main thread sleeps by rospy's clock, and a thread of its own handles what is sent to the port that it prints.
-SLEEPS_BY_THE_CLOCK = """
-import socket, sys, threading, rospy
+BY_THE_CLOCK = """
+import rospy
 rospy.rostime._set_rostime(rospy.Time(0, 1))
 rospy.rostime.set_rostime_initialized(True)
+"""
+
+
+def ticked(folder, text, ticks, later=STEP):
+    """What a program prints that lives by rospy's clock for these ticks of 0.1 s, and a while after each."""
+    with Program(folder, BY_THE_CLOCK + text) as program:
+        program.go_on(STEP)
+        for tick in range(1, ticks + 1):
+            program.go_on(tick * 10**8 + later, clock=tick * 10**8)
+        program.process.kill()
+        return program.process.stdout.read()
+
+
+# Its main thread sleeps by rospy's clock, and a thread of its own handles what is sent to the port that it prints.
+SLEEPS_BY_THE_CLOCK = """
+import socket, sys, threading
 server, data = socket.create_server(('127.0.0.1', 0)), None
 def read():
     global data
     connection, _ = server.accept()
     received = connection.recv(5)
     for _ in range(10**6): pass
-    {}
     data = received
 threading.Thread(target=read, daemon=True).start()
 print(server.getsockname()[1], flush=True)
@@ -357,7 +371,7 @@ time.sleep(60)
 
 
 def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
-    with Program(tmp_path, SLEEPS_BY_THE_CLOCK.format("")) as program:
+    with Program(tmp_path, BY_THE_CLOCK + SLEEPS_BY_THE_CLOCK) as program:
         assert program.go_on(STEP, clock=0).done == STEP
         port = int(program.process.stdout.readline())
         program.go_on(2 * STEP, clock=4 * 10**8)
@@ -368,9 +382,7 @@ def test_rospy_wakes_up_by_the_clock_when_all_messages_are_handled(tmp_path):
 
 
 SLEEPERS = """
-import rospy, threading
-rospy.rostime._set_rostime(rospy.Time(0, 1))
-rospy.rostime.set_rostime_initialized(True)
+import threading
 def sleep(seconds):
     try:
         for _ in range(2):
@@ -391,18 +403,11 @@ WOKEN = ["0.2 0.1", "0.3 0.1", "0.4 0.25", "0.7 0.25", "0.8 700000000", "1.1 ROS
 
 
 def test_sleep_by_the_clock_ends_at_the_first_tick_after_it_or_after_a_shutdown(tmp_path):
-    with Program(tmp_path, SLEEPERS) as program:
-        program.go_on(STEP)
-        for tick in range(1, 13):
-            program.go_on(tick * 10**8 + STEP, clock=tick * 10**8)
-        program.process.kill()
-        assert program.process.stdout.read().splitlines() == WOKEN
+    assert ticked(tmp_path, SLEEPERS, 12).splitlines() == WOKEN
 
 
 TOGETHER = """
-import rospy, threading
-rospy.rostime._set_rostime(rospy.Time(0, 1))
-rospy.rostime.set_rostime_initialized(True)
+import threading
 def sleep(name):
     for _ in range(20):
         rospy.sleep(0.1)
@@ -415,18 +420,10 @@ for name in "ABC":
 
 
 def test_threads_whose_sleeps_end_at_the_same_tick_wake_up_one_after_another(tmp_path):
-    with Program(tmp_path, TOGETHER) as program:
-        program.go_on(STEP)
-        for tick in range(1, 24):
-            program.go_on(tick * 10**8 + 2 * STEP, clock=tick * 10**8)
-        program.process.kill()
-        assert program.process.stdout.read() == 20 * "ABC"
+    assert ticked(tmp_path, TOGETHER, 23, later=2 * STEP) == 20 * "ABC"
 
 
 HOLDS_THE_CONDITION = """
-import rospy
-rospy.rostime._set_rostime(rospy.Time(0, 1))
-rospy.rostime.set_rostime_initialized(True)
 with rospy.rostime.get_rostime_cond():
     time.sleep(0.3)
     print(rospy.get_time(), flush=True)
@@ -434,11 +431,7 @@ with rospy.rostime.get_rostime_cond():
 
 
 def test_thread_that_waits_while_it_holds_the_clocks_condition_does_not_stop_time(tmp_path):
-    with Program(tmp_path, HOLDS_THE_CONDITION) as program:
-        for tick in range(1, 6):
-            program.go_on(tick * 10**8, clock=tick * 10**8)
-        program.process.kill()
-        assert program.process.stdout.read() == "0.3\n"
+    assert ticked(tmp_path, HOLDS_THE_CONDITION, 5, later=0) == "0.3\n"
 
 
 def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):
