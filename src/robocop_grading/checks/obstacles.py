@@ -13,7 +13,7 @@ from ..record import (
     Goal,
     Record,
     active_until,
-    errors_at,
+    feedback_of,
     results_of,
     samples_between,
 )
@@ -81,8 +81,8 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
 
 def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str:
     """Why a goal was aborted at a time [s], when the obstacle was nearer [m] than it should have been."""
-    there = samples_between(record, goal.time, end)
-    if there and abs(errors_at(there[-1], goal)[1]) > HEADING_TOLERANCE:
+    own = [it for it in feedback_of(record, goal) if it.time <= end]
+    if own and abs(own[-1].angle_error) > HEADING_TOLERANCE:  # it was about to turn
         return text("aborted_while_turning", STOP_DISTANCE, clearance)
     return text("aborted_near", STOP_DISTANCE)
 
