@@ -52,8 +52,6 @@ class CmdVelWithoutTimeout(unittest.TestCase):
             ),
             "a warning",
         )
-        times = [m.header.stamp.to_sec() for m in self.log.messages if "velocity command refused" in m.msg]
-        self.assertTrue(all(after - before > 4.9 for before, after in zip(times, times[1:])), times)  # it is throttled
 
 
 if __name__ == "__main__":
