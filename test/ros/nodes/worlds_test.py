@@ -41,10 +41,9 @@ class Worlds(unittest.TestCase):
         rospy.wait_for_service(service, DEADLINE)
         return rospy.ServiceProxy(service, kind)(*arguments)
 
-    def wait_for_range(self, expected, degrees=0):
-        """The next scan with this range [m] at an angle; those on their way may be from before a change."""
-        what = f"{expected} m at {degrees} degrees"
-        return self.scan.wait_for(lambda m: abs(m.ranges[degrees] - expected) < 0.06, what, len(self.scan))
+    def wait_for_range(self, expected):
+        """The next scan with this range [m] ahead; those on their way may be from before a change."""
+        self.scan.wait_for(lambda m: abs(m.ranges[0] - expected) < 0.06, f"{expected} m ahead", len(self.scan))
 
     def test_map_is_latched_and_that_of_its_metadata_and_of_static_map(self):
         for namespace in ("", "/other"):
@@ -56,6 +55,9 @@ class Worlds(unittest.TestCase):
             self.assertEqual(answer.info, grid.info)
             self.assertEqual((answer.data, answer.header.frame_id), (grid.data, "map"))
             self.assertEqual(set(ros_numpy.numpify(grid).data.ravel()), {-1, 0, 100})
+        info = Recorder("/map", OccupancyGrid).newest().info
+        self.assertEqual((info.width, info.height, info.resolution), (16, 12, 0.5))
+        self.assertEqual((info.origin.position.x, info.origin.position.y), (-4.0, -3.0))
 
     def test_random_world_is_saved_in_ros_home(self):
         with open(os.path.join(rospkg.get_ros_home(), "random_7.sdf"), encoding="utf-8") as file:
@@ -90,7 +92,7 @@ class Worlds(unittest.TestCase):
         self.wait_for_range(1.832)
         start = len(self.markers)
         self.assertTrue(self.call("delete_model", DeleteModel, "crate").success)
-        self.wait_for_range(3.932)
+        self.wait_for_range(3.532)
         self.markers.wait_for(lambda m: [x.action for x in m.markers] == [Marker.DELETEALL], "nothing in RViz", start)
 
     def test_late_subscriber_gets_the_whole_world_while_an_obstacle_moves(self):
