@@ -14,27 +14,40 @@ READY = r"empty[\s\S]*server\s+ready"
 AWAY = 0.5  # [m]
 
 
-@pytest.fixture
-def web(tmp_path):
-    web = Web(tmp_path, "world:=empty", "robots:=2")
+@pytest.fixture(scope="module")
+def web(tmp_path_factory):
+    web = Web(tmp_path_factory.mktemp("web_robots"), "world:=empty", "robots:=2")
     with web.ros:
         web.start()
         yield web
 
 
-def test_the_robot_that_is_chosen_is_driven_and_gets_the_goal_and_the_other_one_rests(web):
+@pytest.fixture
+def tab(web):
     with chromium() as browser:
         tab = Tab(browser, web.url)
         tab.wait_for_text(READY)
-        with tab.held("Left (J)"):
-            wait_for(lambda: web.turn(FIRST) > 0.5, f"{FIRST} turns left")
-            assert web.stands(SECOND)
-        wait_for(lambda: web.stands(FIRST), f"{FIRST} stands")
         tab.choose(FIRST, SECOND)
-        (first_x, first_y), (x, y) = web.position(FIRST), web.position(SECOND)
-        share = AWAY / math.hypot(x - first_x, y - first_y)
-        goal = x + share * (x - first_x), y + share * (y - first_y)  # straight away from the other robot
-        tab.click_floor(*goal)
-        tab.wait_for_text(rf"{SECOND}[^\n]*REACHED")
-        assert math.dist(web.position(SECOND), goal) < REACHED
-        assert math.dist(web.position(FIRST), (first_x, first_y)) < 0.01
+        yield tab
+
+
+def test_the_robot_that_is_chosen_is_driven_and_no_other(web, tab):
+    with tab.held("Right (L)"):
+        wait_for(lambda: web.turn(SECOND) < -0.5, f"{SECOND} turns right")
+        assert web.stands(FIRST)
+    wait_for(lambda: web.stands(SECOND), f"{SECOND} stands")
+    tab.choose(SECOND, FIRST)
+    with tab.held("Left (J)"):
+        wait_for(lambda: web.turn(FIRST) > 0.5, f"{FIRST} turns left")
+        assert web.stands(SECOND)
+    wait_for(lambda: web.stands(FIRST), f"{FIRST} stands")
+
+
+def test_a_click_sends_the_goal_to_the_robot_that_is_chosen_and_the_history_names_it(web, tab):
+    (first_x, first_y), (x, y) = web.position(FIRST), web.position(SECOND)
+    share = AWAY / math.hypot(x - first_x, y - first_y)
+    goal = x + share * (x - first_x), y + share * (y - first_y)  # straight away from the other robot
+    tab.click_floor(*goal)
+    tab.wait_for_text(rf"{SECOND}[^\n]*REACHED")
+    assert math.dist(web.position(SECOND), goal) < REACHED
+    assert math.dist(web.position(FIRST), (first_x, first_y)) < 0.01
