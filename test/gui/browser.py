@@ -129,12 +129,12 @@ class Tab:
         """Click on a point of the floor [m], which nothing on the screen may cover."""
         self.page.mouse.click(*self.pixel(x, y))
 
-    def tap(self, column, row, seconds=0.05):
-        """Touch a pixel with a finger, for so long."""
+    def tap(self, column, row):
+        """Touch a pixel with a finger."""
         session = self.page.context.new_cdp_session(self.page)
         touch = "Input.dispatchTouchEvent"
         session.send(touch, {"type": "touchStart", "touchPoints": [{"x": column, "y": row}]})
-        self.page.wait_for_timeout(1000.0 * seconds)
+        self.page.wait_for_timeout(50.0)
         session.send(touch, {"type": "touchEnd", "touchPoints": []})
 
     def turn(self, size):

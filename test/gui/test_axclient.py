@@ -39,30 +39,20 @@ def test_goal_sent_from_axclient_is_reached(tmp_path):
     with Desktop(tmp_path, "800x600x24") as desktop, Ros(tmp_path, desktop, "rviz:=false") as ros:
         results = Recorder(ros, SERVER, "/robocop_goto_as/result")
         wait_for(results.connected, "results recorded")
-        axclient = ros.start(
-            "axclient",
+        program = (
             "rosrun",
             "actionlib_tools",
             "axclient.py",
             "/robocop_goto_as",
             "aro_robocop_goto_as/GoToPositionAction",
-            signals=(),
-        )  # only SIGKILL ends it
+        )
+        axclient = ros.start("axclient", *program, signals=())  # only SIGKILL ends it
         window = wait_for(lambda: desktop.window("GUI Client$"), "axclient's window")
         text, button = wait_for(lambda: layout(desktop.pixels(window)), "axclient connected to the server")
 
         x, y, width, _ = desktop.geometry(window)
-        desktop.input(
-            "mousemove",
-            x + width // 2,
-            y + text,
-            "click",
-            1,
-            "key",
-            "ctrl+a",
-            "type",
-            "position: {{x: {}, y: {}, z: 0.0}}".format(*GOAL),
-        )
+        goal = "position: {{x: {}, y: {}, z: 0.0}}".format(*GOAL)
+        desktop.input("mousemove", x + width // 2, y + text, "click", 1, "key", "ctrl+a", "type", goal)
         desktop.input("mousemove", x + width // 2, y + button, "click", 1)
 
         result = wait_for(results.messages, "the goal's result")[0]

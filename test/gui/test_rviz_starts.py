@@ -5,21 +5,12 @@ import pytest
 from desktop import Desktop, Master, Ros
 from waiting import wait_for
 
-from aro_robocop_goto_as.names import absolute
 from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
 
 pytestmark = pytest.mark.slow
 TITLE = " - RViz$"
 ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel
 BODIES = ((0.35, 0.78, 0.98), (0.98, 0.80, 0.25), (0.60, 0.86, 0.35))  # of three robots, in any light
-CASES = pytest.mark.parametrize(
-    "arguments, namespace, parts",
-    [
-        (["moving:=true"], "", {"walls", "robot"}),
-        (["robots:=3"], "robot_1", {"walls", "robot_1", "robot_2", "robot_3"}),
-    ],
-    ids=["moving", "robots"],
-)
 
 
 def shown(view):
@@ -50,27 +41,21 @@ def complete(desktop, parts):
     return shown(desktop.pixels(canvas)) >= parts and not problems(desktop.pixels(window)[:, :left])
 
 
-def environment_of(namespace):
-    return ["env", f"ROS_NAMESPACE=/{namespace}"]
-
-
-@CASES
-def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path, arguments, namespace, parts):
+def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path):
     config = tmp_path / "robocop.rviz"
-    config.write_text(adapted(Observed(robot=namespace)))
+    config.write_text(adapted(Observed(robot="")))
     with Desktop(tmp_path) as desktop, Master(tmp_path, desktop) as ros:
-        ros.start("rviz", *environment_of(namespace), "rviz", "-d", config)
+        ros.start("rviz", "rviz", "-d", config)
         wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
-        ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", *arguments)
-        wait_for(lambda: complete(desktop, parts), f"{parts}")
+        ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", "moving:=true")
+        wait_for(lambda: complete(desktop, {"walls", "robot"}), "walls and robot")
 
 
-@CASES
-def test_rviz_that_is_opened_late_shows_everything(tmp_path, arguments, namespace, parts):
-    with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", *arguments) as ros:
-        wait_for(lambda: ros.subscriber(absolute(namespace, "scan"), "/"), "the server")
+def test_rviz_that_is_opened_late_shows_everything_of_several_robots(tmp_path):
+    with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", "robots:=3") as ros:
+        wait_for(lambda: ros.subscriber("/robot_1/scan", "/"), "the server")
         rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
-        ros.start("rviz", *environment_of(namespace), *rviz)
-        wait_for(lambda: complete(desktop, parts), f"{parts}")
+        ros.start("rviz", "env", "ROS_NAMESPACE=/robot_1", *rviz)
+        wait_for(lambda: complete(desktop, {"walls", "robot_1", "robot_2", "robot_3"}), "walls and three robots")
         desktop.quit_by_menu(desktop.window(TITLE))
         wait_for(lambda: desktop.window(TITLE) is None, "RViz closed")

@@ -69,28 +69,6 @@ def expect_a_click_to_drive_the_robot(web, tab):
     wait_for(lambda: math.dist(web.position(), goal) < REACHED, f"the robot has driven to {goal}; {tab.text()}")
 
 
-def test_the_page_goes_on_when_the_server_is_killed_and_started_again(parts, tab):
-    parts.kill(SERVER)
-    tab.wait_for_text("server.*(lost|not|no )")
-    parts.start_server(bridge=False)
-    tab.wait_for_text(READY)
-    expect_a_click_to_drive_the_robot(parts, tab)
-
-
-def test_a_goal_that_waits_for_its_server_is_shown_and_a_cancelled_one_is_not_driven_to(parts, tab):
-    parts.kill(SERVER)
-    tab.wait_for_text("server.*(lost|not|no )")
-    place = parts.position()
-    tab.click_floor(*((-0.5, 0.0) if place[0] > -0.25 else (0.0, 0.0)))
-    tab.wait_for_text(r"goal\s+waits for its server: x -?0\.\d\d y")
-    tab.click("Cancel goal")
-    wait_for(lambda: "waits for its server" not in tab.text(), "the goal is cancelled")
-    parts.start_server(bridge=False)
-    tab.wait_for_text(READY)
-    assert parts.stands() and math.dist(parts.position(), place) < 0.01
-    expect_a_click_to_drive_the_robot(parts, tab)
-
-
 def test_the_page_reports_a_killed_simulator_and_shows_the_next_one(parts, tab):
     parts.kill(SIMULATOR)
     tab.wait_for_text(SILENT)
@@ -108,12 +86,6 @@ def test_the_browser_connects_again_by_itself_when_the_page_is_killed_and_starte
     parts.page = parts.start()
     sockets = tab.sockets
     wait_for(lambda: tab.page.evaluate("1") and tab.sockets > sockets, "the browser connects again")
-    tab.wait_for_text(READY)
-    expect_a_click_to_drive_the_robot(parts, tab)
-
-
-def test_a_reloaded_page_drives_the_robot(parts, tab):
-    tab.page.reload()
     tab.wait_for_text(READY)
     expect_a_click_to_drive_the_robot(parts, tab)
 

@@ -1,7 +1,5 @@
 """./robocop replay in a real Chromium: a recording of a robot that drives straight ahead, with its pause."""
 
-from dataclasses import dataclass
-
 import pytest
 import rosbag
 import rospy
@@ -51,20 +49,7 @@ class Replay(Ros):
         return ["roslaunch", "-p", self.port, "aro_robocop_goto_as", "replay.launch", "rviz:=false", *self.arguments]
 
 
-@dataclass(frozen=True)
-class Shown:
-    """The page that shows the recording."""
-
-    ros: Ros
-    tab: Tab
-
-    def x(self):
-        """Where the robot is according to /odom [m], which a newcomer gets from one second before."""
-        return self.ros.latest("/odom")["pose"]["pose"]["position"]["x"]
-
-
-@pytest.fixture
-def shown(tmp_path):
+def test_a_recording_is_played_from_a_moment_paused_and_ends_with_its_goal(tmp_path):
     write_bag(tmp_path / "server-drive.bag")
     port = free_port()
     arguments = [f"bag:={tmp_path / 'server-drive.bag'}", f"web_port:={port}", "rate:=0.15", f"start:={BEGIN}"]
@@ -72,17 +57,16 @@ def shown(tmp_path):
         wait_for(lambda: ros.subscriber("/robocop_goto_as/result", "/replay"), "the page's node is registered")
         tab = Tab(browser, f"http://localhost:{port}")
         tab.wait_for_text("recorded time")
-        yield Shown(ros, tab)
+
+        def x():
+            return ros.latest("/odom")["pose"]["pose"]["position"]["x"]  # which a newcomer gets from one second before
+
+        wait_for(lambda: x() >= BEGIN * SPEED, "it begins at the moment that was asked for, with the first browser")
+        tab.click("Pause")
+        wait_for(lambda: ros.latest("/clock") == ros.latest("/clock"), "the recorded clock stands")
+        tab.open("Goals")
+        assert "REACHED" not in tab.text(), "it stands before its end"
+        assert not tab.button("Cancel goal").is_visible()
+        tab.click("Play")
+        tab.wait_for_text("✓ REACHED, recorded")
         assert tab.errors == []
-
-
-def test_a_recording_is_played_from_a_moment_paused_and_ends_with_its_goal(shown):
-    tab = shown.tab
-    wait_for(lambda: shown.x() >= BEGIN * SPEED, "it begins at the moment that was asked for, with the first browser")
-    tab.click("Pause")
-    wait_for(lambda: shown.ros.latest("/clock") == shown.ros.latest("/clock"), "the recorded clock stands")
-    tab.open("Goals")
-    assert "REACHED" not in tab.text(), "it stands before its end"
-    assert not tab.button("Cancel goal").is_visible()
-    tab.click("Play")
-    tab.wait_for_text("✓ REACHED, recorded")

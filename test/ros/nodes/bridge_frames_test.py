@@ -9,7 +9,6 @@ from harness import SystemTest, distance, run, wait_for
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
-SPAWN = Pose2D(-0.7, 0.0)  # of the default world
 LAST_STAMP = rospy.Time(2**32 - 1, 0)
 NEAR = 0.12  # [m] the handout's tolerance of 0.1 m, and the drift of odometry
 
@@ -24,26 +23,15 @@ class BridgeFrames(SystemTest):
         super().setUp()
         self.clicks.status.clear()
 
-    def sent(self, count=1):
-        """Wait until the bridge has sent `count` goals; their positions."""
-        wait_for(lambda: len(self.goals.sent) >= count, f"{count} goals from the bridge")
-        self.assertEqual(len(self.goals.sent), count)
-        return [m.goal.position for m in self.goals.sent.messages]
-
-    def assert_refused(self, *texts):
-        """The click was refused with these texts and not sent, and the next click is served."""
-        refusal = self.clicks.wait_for_status("goal refused")
-        for text in texts:
-            self.assertIn(text, refusal)
-        self.assertEqual(self.goals.sent.messages, [])
-        self.assertLess(distance(self.robot.pose(), SPAWN), 0.001)
-        self.clicks.click(0.05, 0.0, "odom")
-        self.sent()
-        self.goals.of_others()[0].result("REACHED")
+    def sent(self):
+        """Wait until the bridge has sent a goal; its position."""
+        wait_for(lambda: self.goals.sent.messages, "a goal from the bridge")
+        (message,) = self.goals.sent.messages
+        return message.goal.position
 
     def test_goal_in_map_is_reached_there(self):
         self.clicks.click(-0.4, 0.2, "map")
-        sent = self.sent()[0]
+        sent = self.sent()
         self.assertAlmostEqual(sent.x, 0.3, places=6)
         self.assertAlmostEqual(sent.y, 0.2, places=6)
         self.goals.of_others()[0].result("REACHED")
@@ -70,25 +58,26 @@ class BridgeFrames(SystemTest):
         self.assertAlmostEqual(sent.x, past.pose.pose.position.x + 0.1, delta=0.001)
         self.goals.of_others()[0].result("REACHED")
 
-    def test_goal_without_a_frame_is_in_map_with_a_warning(self):
-        self.clicks.click(-0.6, 0.0, "")
-        self.assertAlmostEqual(self.sent()[0].x, 0.1, places=6)
-        self.goals.log.wait_for(lambda m: "assuming the default 'map'" in m.msg, "a warning")
+    def test_goal_without_a_frame_or_stamped_after_all_transforms_is_sent_with_a_warning(self):
+        for click, x, warning in (
+            ((0.1, 0.0, "base_footprint", LAST_STAMP), 0.1, "using the latest one"),
+            ((-0.6, 0.0, ""), 0.1, "assuming the default 'map'"),
+        ):
+            self.clicks.click(*click)
+            self.assertAlmostEqual(self.sent().x, x, delta=0.001)
+            self.goals.log.wait_for(lambda m, text=warning: text in m.msg, "a warning")
+            self.goals.of_others()[0].result("REACHED")
+            self.goals.clear()
+
+    def test_goal_in_an_unknown_frame_or_of_nan_is_refused_with_the_reason_and_the_next_one_is_served(self):
+        for click, words in (((0.5, 0.0, "kitchen"), "'kitchen' to 'odom'"), ((math.nan, 0.0, "map"), "finite")):
+            self.clicks.status.clear()
+            self.clicks.click(*click)
+            self.assertIn(words, self.clicks.wait_for_status("goal refused"))
+        self.assertEqual(self.goals.sent.messages, [])
+        self.clicks.click(0.05, 0.0, "odom")
+        self.sent()
         self.goals.of_others()[0].result("REACHED")
-
-    def test_goal_stamped_after_all_transforms_uses_the_latest_one_with_a_warning(self):
-        self.clicks.click(0.1, 0.0, "base_footprint", LAST_STAMP)
-        self.assertAlmostEqual(self.sent()[0].x, 0.1, delta=0.001)
-        self.goals.log.wait_for(lambda m: "using the latest one" in m.msg, "a warning")
-        self.goals.of_others()[0].result("REACHED")
-
-    def test_goal_in_an_unknown_frame_is_refused_with_the_names_of_both_frames(self):
-        self.clicks.click(0.5, 0.0, "kitchen")
-        self.assert_refused("'kitchen'", "'odom'")
-
-    def test_goal_of_nan_is_refused(self):
-        self.clicks.click(math.nan, 0.0, "map")
-        self.assert_refused("nan", "finite")
 
 
 if __name__ == "__main__":

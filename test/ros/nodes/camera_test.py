@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Images, calibration and points of a camera are of one step and match each other, TF and the world."""
+"""Images, calibration and points of a camera are of one step and match each other."""
 
 import io
 import unittest
@@ -7,21 +7,16 @@ import unittest
 import numpy as np
 import ros_numpy
 import rospy
-import tf2_ros
-from harness import Recorder, run, wait_for
+from harness import Recorder, run
 from PIL import Image as Picture
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 
 FRAME = "red/camera_rgb_optical_frame"
-WALL = 1.85  # [m] x of the inner face of stage_1's wall
 
 
 class Camera(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.buffer = tf2_ros.Buffer()
-        cls.listener = tf2_ros.TransformListener(cls.buffer)
-        wait_for(lambda: cls.buffer.can_transform("world", FRAME, rospy.Time()), f"{FRAME} in world on /tf")
         topics = {
             "rgb/image_raw": Image,
             "rgb/image_raw/compressed": CompressedImage,
@@ -42,21 +37,15 @@ class Camera(unittest.TestCase):
         self.assertEqual({header.frame_id for header in headers}, {FRAME})
         self.assertEqual(len({header.stamp for header in headers}), 1)
 
-    def test_colours_are_in_the_order_of_the_encoding(self):
+    def test_colours_are_in_the_order_of_the_encoding_also_in_the_compressed_image(self):
         image = self.of_one_step["rgb/image_raw"]
         self.assertEqual((image.encoding, image.width, image.height, image.step), ("rgb8", 160, 120, 480))
         rgb = ros_numpy.numpify(image).astype(int)
         red, blue = rgb[..., 0], rgb[..., 2]
         self.assertGreater((blue - red)[:40].mean(), 20)  # sky or wall, which are bluish
         self.assertLess((blue - red)[-10:].mean(), 5)  # floor
-
-    def test_compressed_image_is_the_same_image_as_jpeg(self):
-        compressed = self.of_one_step["rgb/image_raw/compressed"]
-        self.assertEqual(compressed.format, "rgb8; jpeg compressed bgr8")
-        picture = Picture.open(io.BytesIO(compressed.data))
-        self.assertEqual(picture.format, "JPEG")
-        image = ros_numpy.numpify(self.of_one_step["rgb/image_raw"]).astype(int)
-        self.assertLess(np.abs(np.asarray(picture.convert("RGB")).astype(int) - image).mean(), 5.0)
+        picture = Picture.open(io.BytesIO(self.of_one_step["rgb/image_raw/compressed"].data)).convert("RGB")
+        self.assertLess(np.abs(np.asarray(picture).astype(int) - rgb).mean(), 5.0)
 
     def test_points_match_depth_colour_and_calibration(self):
         depth = ros_numpy.numpify(self.of_one_step["depth/image_raw"])
@@ -77,17 +66,6 @@ class Camera(unittest.TestCase):
         packed = points["rgb"].view(np.uint32)
         rgb = ros_numpy.numpify(self.of_one_step["rgb/image_raw"])
         np.testing.assert_array_equal(np.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], axis=-1), rgb)
-
-    def test_depth_straight_ahead_is_the_distance_of_the_wall_by_tf(self):
-        stamp = self.of_one_step["depth/image_raw"].header.stamp
-        wait_for(lambda: self.buffer.can_transform("world", FRAME, stamp), "the transform at that stamp")
-        at = self.buffer.lookup_transform("world", FRAME, stamp).transform
-        rotation = np.array([at.rotation.x, at.rotation.y, at.rotation.z, at.rotation.w])
-        np.testing.assert_allclose(
-            rotation / rotation[3], [-1, 1, -1, 1], atol=1e-3
-        )  # x to the right, y down, z forward
-        depth = ros_numpy.numpify(self.of_one_step["depth/image_raw"])
-        self.assertAlmostEqual(float(depth[59:61, 79:81].mean()), WALL - at.translation.x, delta=0.005)
 
     def test_robot_without_a_camera_has_no_camera_topics(self):
         names = [name for name, _ in rospy.get_published_topics()]

@@ -36,7 +36,7 @@ class CmdVelWithoutTimeout(unittest.TestCase):
         bad = ((math.nan, 0.0), (0.0, math.nan), (math.inf, 0.0), (0.0, -math.inf))
         self.commands.once(0.1)
         self.robot.wait_until_it_drives(0.09)
-        for v, w in bad * 5:
+        for v, w in bad:
             self.commands.once(v, w)
             for m in self.robot.truth.next(2):
                 self.assertAlmostEqual(m.twist.twist.linear.x, 0.1, delta=0.02)
@@ -52,8 +52,6 @@ class CmdVelWithoutTimeout(unittest.TestCase):
             ),
             "a warning",
         )
-        times = [m.header.stamp.to_sec() for m in self.log.messages if "velocity command refused" in m.msg]
-        self.assertTrue(all(after - before > 4.9 for before, after in zip(times, times[1:])), times)  # it is throttled
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 So a test knows at which simulated time the server did something, however busy the machine is.
 """
 
-import contextlib
 import io
 import math
 import xmlrpc.client
@@ -21,7 +20,6 @@ from aro_robocop_goto_as.ros.convert import to_quaternion
 
 PERIOD_NS = 100000000  # of the server's control loop
 PERIOD = 0.1  # [s]
-PATIENCE = 0.2  # [s, wall] for an answer before more time passes; twice the period, so half of real time
 RANGE_MIN, RANGE_MAX = 0.12, 10.0  # [m]
 BEAMS = 360
 INCREMENT = 2.0 * math.pi / BEAMS
@@ -98,17 +96,6 @@ class FakeRobot:
             self._publish_scan()
         self._publish(self._clock, Clock(self.now))
         wait_for(lambda: rospy.get_rostime() == self.now, "the clock")
-
-    def pass_time_until(self, condition, what):
-        """Let control periods pass until a condition holds, slowly enough for a server on a busy machine."""
-
-        def one_more_period():
-            self.pass_time(PERIOD)
-            with contextlib.suppress(AssertionError):
-                wait_for(condition, what, PATIENCE)
-            return condition()
-
-        wait_for(one_more_period, what)
 
     # -- goals --
 

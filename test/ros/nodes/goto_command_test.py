@@ -24,12 +24,6 @@ class GotoCommand(SystemTest):
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: obstacle ")
 
-    def test_a_goal_outside_of_the_walls_is_sent_with_a_word_that_it_is(self):
-        with Process(script("robocop_goto.py"), -9.0, 0.0) as command:
-            self.assertEqual(command.wait_for_exit(), 1, command.output)
-        self.assertIn("the goal is outside of the walls", command.output)
-        self.assertRegex(command.output, r"(?m)^ABORTED: OBSTACLE: obstacle ")
-
     def test_an_unknown_frame_is_reported_with_the_one_that_may_be_meant_and_nothing_is_sent(self):
         with Process(script("robocop_goto.py"), "0.5", "0.0", "--frame", "base_footprnt") as command:
             self.assertEqual(command.wait_for_exit(), 1, command.output)

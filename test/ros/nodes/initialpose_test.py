@@ -63,15 +63,11 @@ class Initialpose(SystemTest):
         self.send(Pose2D(0.2, 0.0), "odom")
         self.wait_until_it_is_at(compose(SPAWN, Pose2D(0.2, 0.0)))
 
-    def test_pose_in_another_frame_or_a_pillar_or_of_nan_is_refused_and_the_robot_does_not_move(self):
+    def test_pose_in_another_frame_is_refused_and_the_robot_does_not_move(self):
         here = self.robot.pose()
-        for pose, frame, text in (
-            (Pose2D(1.0, 0.0), "base_scan", "its frame is 'base_scan'; expected 'map'"),
-            (Pose2D(0.4, 0.5), "map", "x 0.400 y 0.500 is 0.000 m from '"),  # within a pillar
-            (Pose2D(math.nan, 0.0), "map", "expected finite numbers"),
-        ):
-            self.send(pose, frame)
-            self.goals.log.wait_for(lambda m, text=text: "initialpose refused" in m.msg and text in m.msg, "a refusal")
+        self.send(Pose2D(1.0, 0.0), "base_scan")
+        refusal = "its frame is 'base_scan'; expected 'map'"
+        self.goals.log.wait_for(lambda m: "initialpose refused" in m.msg and refusal in m.msg, "a refusal")
         self.assertLess(distance(self.robot.pose(), here), 0.001)
 
 

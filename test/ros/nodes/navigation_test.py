@@ -9,9 +9,8 @@ import ros_numpy
 import rospy
 import tf2_ros
 from aro_robocop_goto_as.msg import SimStatus
-from clicks import Clicks
 from geometry_msgs.msg import Transform, TransformStamped, Twist, Vector3
-from harness import DEADLINE, SIMULATOR, Goals, Recorder, Robot, distance, run, wait_for, wait_for_subscriber
+from harness import DEADLINE, SIMULATOR, Recorder, Robot, distance, run, wait_for, wait_for_subscriber
 from nav_msgs.srv import GetMap
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Header
@@ -91,15 +90,6 @@ class Navigation(unittest.TestCase):
         end = self.robot.wait_until_it_stands()
         self.assertLess(distance(end, Pose2D(*WAY[-1])), REACHED + DRIFT)
         self.assert_scan_matches_map()
-
-    def test_click_in_map_is_driven_to_by_the_transform_of_another_node(self):
-        goals, clicks = Goals(), Clicks()
-        at = self.robot.pose()
-        target = Pose2D(at.x + 0.4 * math.cos(at.yaw + math.pi), at.y + 0.4 * math.sin(at.yaw + math.pi))
-        clicks.click(target.x, target.y, "map")
-        (goal,) = wait_for(goals.of_others, "the bridge's goal")
-        goal.result("REACHED")
-        self.assertLess(distance(self.robot.wait_until_it_stands(), target), REACHED + DRIFT)
 
 
 if __name__ == "__main__":

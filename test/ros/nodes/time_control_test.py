@@ -1,23 +1,13 @@
 #!/usr/bin/env python3
-"""Control of simulated time: real-time factor, steps, seeds and poses."""
+"""Control of simulated time: real-time factor, steps and poses."""
 
 import rospy
 from aro_robocop_goto_as.msg import SimStatus
-from aro_robocop_goto_as.srv import Reset, SetPose, SetPoseRequest, Step
+from aro_robocop_goto_as.srv import SetPose, SetPoseRequest, Step
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
-from harness import (
-    SIMULATOR,
-    Recorder,
-    SystemTest,
-    call_simulator,
-    distance,
-    run,
-    wait_for,
-    wait_for_connection,
-)
+from harness import SIMULATOR, Recorder, SystemTest, call_simulator, distance, run, wait_for, wait_for_connection
 from nav_msgs.msg import Odometry
-from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.ros.convert import to_quaternion
@@ -33,7 +23,7 @@ class TimeControl(SystemTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.status = Recorder(f"{SIMULATOR}/status", SimStatus)
-        cls.step, cls.reset, cls.set_pose = service("step", Step), service("reset", Reset), service("set_pose", SetPose)
+        cls.step, cls.set_pose = service("step", Step), service("set_pose", SetPose)
 
     def tearDown(self):
         call_simulator("unpause")
@@ -55,37 +45,14 @@ class TimeControl(SystemTest):
         self.assertLessEqual(odom.messages[-1].header.stamp, answer.stamp)
         self.assertAlmostEqual((self.step(0.0).stamp - answer.stamp).to_sec(), 1.0 / 240.0, places=6)
 
-    def test_a_step_of_an_invalid_duration_is_refused_with_the_reason(self):
-        for duration in (-1.0, float("nan"), float("inf")):
-            answer = self.step(duration)
-            self.assertFalse(answer.success)
-            self.assertIn(f"duration {duration}: expected 0 to", answer.message)
-
     def test_the_real_time_factor_follows_dynamic_reconfigure(self):
         client = Client(SIMULATOR[1:], timeout=60)
         client.update_configuration({"real_time_factor": 2.0})
         self.status.wait_for(lambda m: m.factor_asked == 2.0, "factor 2")
         self.assertEqual(client.update_configuration({"real_time_factor": -3.0})["real_time_factor"], 2.0)
         self.goals.log.wait_for(lambda m: "expected a number, 0 or more, got -3; keeping 2" in m.msg, "a complaint")
-        client.update_configuration({"real_time_factor": 1e-5})  # a clock tick in half an hour
-        self.status.wait_for(lambda m: m.factor_asked == 1e-5, "hardly any time")
-        client.update_configuration({"real_time_factor": 0.0})
-        self.status.wait_for(lambda m: m.factor_asked == 0.0, "as fast as possible", len(self.status))
         client.update_configuration({"real_time_factor": 4.0})
         self.status.wait_for(lambda m: m.factor_asked == 4.0, "factor 4", len(self.status))
-
-    def test_the_same_seed_gives_the_same_noise(self):
-        def first_scan(seed):
-            call_simulator("pause")
-            self.assertTrue(self.reset(seed).success)
-            scans = Recorder("scan", LaserScan)
-            wait_for_connection(SIMULATOR, "scan")
-            self.step(0.1)
-            return list(scans.newest().ranges)
-
-        self.assertEqual(first_scan(5), first_scan(5))
-        self.assertNotEqual(first_scan(5), first_scan(6))
-        self.assertIn("seed -3: expected a positive number", self.reset(-3).message)
 
     def test_set_pose_moves_the_robot_or_names_the_problem(self):
         request = SetPoseRequest()
@@ -98,15 +65,7 @@ class TimeControl(SystemTest):
         request.pose.pose.position.x = 2.3
         answer = self.set_pose(request)
         self.assertFalse(answer.success)
-        self.assertEqual(
-            answer.message,
-            "pose refused: x 2.300 y -0.400 is 0.050 m from 'walls/link/east', "
-            "expected at least the robot's radius of 0.105 m",
-        )
-        request.pose.header.frame_id = "nowhere"
-        self.assertIn("its frame is 'nowhere'", self.set_pose(request).message)
-        request.pose.pose.orientation.x = float("inf")
-        self.assertIn("expected a quaternion of length 1, got x inf", self.set_pose(request).message)
+        self.assertIn("x 2.300 y -0.400 is 0.050 m from 'walls/link/east'", answer.message)
         request.robot = "robot_9"
         self.assertIn("robot 'robot_9' is not one of: ''", self.set_pose(request).message)
 
