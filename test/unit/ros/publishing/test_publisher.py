@@ -3,8 +3,6 @@
 import itertools
 import socket
 import struct
-import subprocess
-import sys
 import threading
 import weakref
 from types import SimpleNamespace
@@ -128,18 +126,6 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
         assert _received(link, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
     finally:
         latched.unregister()
-
-
-def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
-    program = (
-        "import resource\n"
-        "from aro_robocop_goto_as.ros.node_main import raise_descriptor_limit\n"
-        "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
-        "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
-        "raise_descriptor_limit()\n"
-        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (min(hard, 65_536), hard)\n"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:

@@ -1,0 +1,110 @@
+"""A click becomes a goal, and the status says what becomes of the goal."""
+
+from types import SimpleNamespace
+
+import pytest
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionResult
+from geometry_msgs.msg import Point, PoseStamped
+
+from aro_robocop_goto_as.bridge_params import BridgeParams
+from aro_robocop_goto_as.errors import FrameError
+from aro_robocop_goto_as.ros.client import rviz_bridge
+from aro_robocop_goto_as.ros.client.goal_states import ending
+
+CHECKS = 6  # of is_shutdown, until the node ends
+
+
+class System:
+    """A bridge whose server is up, the calls of its client and its statuses; also stands for its client."""
+
+    def __init__(self, monkeypatch):
+        self.topics, self.calls, self.statuses = {}, [], []
+        self.on_cancel = self.wait_for_result = self.stop_tracking_goal = lambda: None
+        self.get_state = lambda: GoalStatus.ACTIVE
+        checks = iter([False] * CHECKS)
+        monkeypatch.setattr(rospy, "is_shutdown", lambda: next(checks, True))
+        monkeypatch.setattr(rospy, "Subscriber", lambda name, _, callback, **__: self.topics.update({name: callback}))
+        monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: SimpleNamespace(publish=self.statuses.append))
+        monkeypatch.setattr(rospy, "Timer", lambda *_, **__: None)
+        monkeypatch.setattr(rviz_bridge.actionlib, "SimpleActionClient", lambda *_: self)
+        monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: True)
+        transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
+        monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *_: transformer)
+        self.bridge = rviz_bridge.Bridge(BridgeParams())
+
+    def resolve(self, pose):
+        if pose.pose.position.x < 0.0:
+            raise FrameError("no transform")
+        return Point(pose.pose.position.x + 10.0, 0.0, 0.0)
+
+    def click(self, x):
+        pose = PoseStamped()
+        pose.pose.position.x = x
+        self.topics["move_base_simple/goal"](pose)
+
+    def send_goal(self, goal, done_cb, feedback_cb):
+        self.calls.append(f"goal {goal.position.x:g}")
+        self.done, self.feedback = done_cb, feedback_cb
+
+    def cancel_goal(self):
+        self.calls.append("cancel")
+        self.on_cancel()
+        self.done(GoalStatus.PREEMPTED, None)
+
+
+@pytest.fixture
+def system(monkeypatch):
+    return System(monkeypatch)
+
+
+def test_click_is_sent_once_in_the_servers_frame(system):
+    system.click(1.0)
+    system.bridge.run()
+    assert system.calls == ["goal 11"]
+    assert system.statuses == ["goal x 1.00 y 0.00 in map is ACTIVE"]
+
+
+def test_newer_click_cancels_the_goal_before_its_own_is_sent(system):
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.click(2.0)
+    system.bridge.run()
+    assert system.calls == ["goal 1", "cancel", "goal 12"]
+
+
+def test_click_that_is_outdated_before_it_is_sent_is_left_out(system):
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.on_cancel = lambda: system.click(3.0)
+    system.click(2.0)
+    system.bridge.run()
+    assert system.calls == ["goal 1", "cancel", "goal 13"]
+
+
+def test_refused_click_leaves_the_earlier_goal(system):
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.click(-1.0)
+    system.bridge.run()
+    assert (system.calls, system.statuses[-1]) == (["goal 1"], "goal refused: no transform")
+
+
+def test_status_tells_of_the_last_goal(system):
+    system.bridge.report()
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.feedback(GoToPositionFeedback(0.5, 0.1, "driving"))
+    system.bridge.report()
+    system.done(GoalStatus.SUCCEEDED, GoToPositionResult(True, "REACHED: so"))
+    system.bridge.report()
+    assert [text.replace("goal x 0.00 y 0.00 in map", "goal") for text in system.statuses] == [
+        "robocop_goto_as is ready, no goal yet",
+        "goal is ACTIVE",
+        "goal is ACTIVE: driving (position_error 0.50 m, angle_error 0.10 rad)",
+        "robocop_goto_as is ready, last goal SUCCEEDED: REACHED: so",
+    ]
+
+
+@pytest.mark.parametrize(
+    "message, text", [(None, "ABORTED"), ("", "ABORTED"), ("STUCK: so", "ABORTED: STUCK: so"), ("ABORTED: so",) * 2]
+)
+def test_ending_is_the_state_and_the_message_of_the_result(message, text):
+    assert ending(GoalStatus.ABORTED, None if message is None else GoToPositionResult(message=message)) == text
