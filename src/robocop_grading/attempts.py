@@ -1,5 +1,6 @@
 """If the session has repeated a scenario with a new node: which of the two attempts counts."""
 
+from dataclasses import replace
 from typing import Dict, List, Mapping, Tuple
 
 from .checks import CHECKS, Failed
@@ -25,7 +26,7 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
         mistakes = [it for it in best if it != name and _fails(plan, best[it])]
         is_left_behind = any(order.index(it) < order.index(name) or len(best[it].goals) > 1 for it in mistakes)
         if is_left_behind or _fails(plan, best[name]):
-            chosen[name] = best[name]
+            chosen[name] = replace(best[name], name=name)
             counted.append(name)
         if not _fails(plan, best[name]):
             told.append(text("left_behind" if is_left_behind else "went_wrong", name))

@@ -104,11 +104,11 @@ class ServerEnds(unittest.TestCase):
         text = self.assert_ended(goal, "NO_SCAN")
         self.assertRegex(text, r"^NO_SCAN: no valid beam ahead on /scan for 1\.\d s \(limit 1 s\)$")
 
-    def test_stale_data_does_not_move_the_robot(self):
+    def test_stale_data_does_not_move_the_robot_and_ends_the_goal_a_second_after_its_start(self):
         self.robot.pass_time(60.0, odom=False, scan=False)
-        goal = self.start(ticks=0)
+        goal, start = self.start(ticks=0), self.robot.now
         wait_for(lambda: self.robot.pass_time(PERIOD, odom=False, scan=False) or goal.results(), "the goal's end")
-        self.robot.end(goal, "NO_ODOM")
+        self.assertGreater((self.robot.end(goal, "NO_ODOM").header.stamp - start).to_sec(), 0.85)
         self.assertEqual(self.robot.commands.messages, [Twist()])
         self.assert_ended(goal, "NO_ODOM")
 

@@ -136,6 +136,12 @@ def _grade(plan: Plan, **records: Record) -> Any:
     return judge("x", plan, {"server": records}, {"server": "time-out: it was at left"})
 
 
+def test_check_that_passed_names_the_first_scenario_that_it_examined() -> None:
+    records = {"server": {"left": RIGHT, "right": replace(RIGHT, name="right")}}
+    checks = {check.name: check for check in judge("anna", load(PLAN), records, {}).checks}
+    assert (checks["reaches_goal"].outcome, checks["reaches_goal"].scenario) == (Outcome.PASSED, "left")
+
+
 def test_interrupted_scenario_fails_its_checks_with_the_reason() -> None:
     checks = {check.name: check for check in _grade(load(PLAN), start=replace(RIGHT, name="start")).checks}
     assert checks["action_server"].outcome is Outcome.PASSED

@@ -1,0 +1,35 @@
+"""Which of two attempts counts, of a scenario that was repeated with a new node."""
+
+from dataclasses import replace
+
+import pytest
+from grading_records import GOAL, PLAN, RIGHT, changed
+
+from robocop_grading.attempts import AGAIN, counting
+from robocop_grading.plan_file import load
+
+STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
+SEVERAL = changed(goals=(GOAL, replace(GOAL, id="h")))  # the second goal gets no result
+
+
+@pytest.mark.parametrize(
+    "others, again, counts, told",
+    [
+        pytest.param(
+            {"left": RIGHT}, RIGHT, False, "no mistake had come before it", id="the first: it went wrong by itself"
+        ),
+        pytest.param({"left": STUCK}, RIGHT, True, "earlier mistake has left behind", id="the second, after a mistake"),
+        pytest.param(
+            {"newer_goal": SEVERAL}, RIGHT, True, "left behind", id="the second, if a later goal of a node fails"
+        ),
+        pytest.param({"beside": STUCK}, RIGHT, False, "no mistake", id="the first, if a mistake comes only later"),
+        pytest.param({"left": RIGHT}, STUCK, True, "", id="the second, if it fails as well"),
+    ],
+)
+def test_attempt_that_counts(others, again, counts, told):
+    records = {**others, "right": replace(STUCK, name="right"), f"right{AGAIN}": replace(again, name=f"right{AGAIN}")}
+    records.update({name: replace(record, name=name) for name, record in others.items()})
+    chosen, counted, said = counting(load(PLAN), records)
+    assert chosen["right"] == replace(again if counts else STUCK, name="right")
+    assert counted == (["right"] if counts else [])
+    assert told in "".join(said) and bool(said) == bool(told)
