@@ -6,7 +6,7 @@
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
     stuck        threads that wait in a way that none of these sees; other processes
     ros          rospy's time
-    ends, grader, connections    rospy's topics and services, and the ROS master, without the network
+    ends, ros_graph, connections    rospy's topics and services, and the ROS master, without the network
     noetic       names that the lab's Python 3.8 and NumPy still have
     wire         what the grader and the agent say to each other
     channel      the grader's requests to go on until a simulated time, and the answers

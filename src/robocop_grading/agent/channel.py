@@ -10,7 +10,7 @@ import pickle
 import socket
 from typing import List, Tuple
 
-from . import connections, files, grader, ros, stuck, wire
+from . import connections, files, ros, ros_graph, stuck, wire
 from .scheduler import allocate_lock, scheduler
 
 # Processor time [s] that a node may use before simulated time goes on without it
@@ -56,11 +56,11 @@ class Channel:
         self._programs = 0  # of ROS that the grader has been told of
         _, body = self._read()
         parameters, offered = pickle.loads(body)
-        self.grader = grader.Grader(self._publish, self._call, offered)
+        self.grader = ros_graph.Grader(self._publish, self._call, offered)
         self.grader.tell_of_child = lambda: self._write(wire.CHILD, b"")
         for name, value in parameters.items():
             self.grader.master.setParam("/robocop_sim", name, value)
-        self.clock = ros.Clock(clock_ns, lambda data: self.grader.feed(grader.CLOCK, data))
+        self.clock = ros.Clock(clock_ns, lambda data: self.grader.feed(ros_graph.CLOCK, data))
 
     def _begin_anew(self) -> None:
         """In a forked child, which may publish on the topics that it has inherited."""

@@ -10,7 +10,7 @@ import xmlrpc.client
 from typing import Any, Dict, Optional
 
 from .ends import End, accept
-from .grader import Grader
+from .ros_graph import Grader
 from .scheduler import scheduler
 
 

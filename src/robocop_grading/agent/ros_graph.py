@@ -1,4 +1,4 @@
-"""The grader as the node sees it: the node /robocop_sim, with its topics and services, and the ROS master."""
+"""The ROS graph as the node sees it: the node /robocop_sim, with its topics and services, and the ROS master."""
 
 import _thread
 import logging
