@@ -1,5 +1,7 @@
 """The scheduler by itself, without threads: which thread it no longer waits for, and who gets the next turn."""
 
+import os
+
 from robocop_grading.agent.scheduler import Scheduler, Waiter
 
 
@@ -13,3 +15,23 @@ def test_a_thread_is_no_longer_waited_for_only_if_no_other_runs_and_the_next_one
     scheduler.queue.append(Waiter(3))
     assert scheduler.wait_for_none_of({1}) is True
     assert scheduler.running == {1, 3} and not scheduler.queue
+
+
+def test_all_threads_wait_when_none_runs_or_starts():
+    scheduler = Scheduler()
+    assert scheduler.wait_until_idle(0.0) is True
+    scheduler.running = {1}
+    assert scheduler.wait_until_idle(0.01) is False
+    scheduler.running, scheduler.starting = set(), 1
+    assert scheduler.wait_until_idle(0.01) is False
+
+
+def test_a_forked_child_has_none_of_the_threads_and_lives_on_the_wall_clock():
+    scheduler = Scheduler()
+    scheduler.running, scheduler.unawaited, scheduler.calling, scheduler.starting = {1}, {1}, {1}, 1
+    scheduler.queue.append(Waiter(2))
+    child = os.fork()
+    if not child:
+        left = scheduler.active, scheduler.running, scheduler.unawaited, scheduler.calling, scheduler.queue
+        os._exit(any(left) or scheduler.starting)
+    assert os.waitpid(child, 0)[1] == 0
