@@ -107,7 +107,7 @@ WRONG = (
     _server(
         "scan_callback_blocks_for_ever",
         "stops_at_obstacle",
-        "does the scan's callback return at once",
+        "messages on /scan waited up to",
         (
             "    def scan_cb(self, msg):\n",
             "    def scan_cb(self, msg):\n        self.count += 1\n        if self.count == 320:\n"
