@@ -4,11 +4,9 @@ from dataclasses import replace
 from typing import Dict, List, Mapping, Tuple
 
 from .checks import CHECKS, Failed
-from .plan import Plan
+from .plan import AGAIN, Plan
 from .record import Record
 from .texts import text
-
-AGAIN = "_again"  # after a scenario's name: its repetition with a new node
 
 
 def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Record], List[str], List[str]]:
@@ -35,5 +33,6 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
 
 def _fails(plan: Plan, record: Record) -> bool:
     """Return whether a check of the plan fails in this record."""
-    names = [it.name for it in plan.checks if record.name.replace(AGAIN, "") in it.scenarios]
+    scenario = record.name[: -len(AGAIN)] if record.name.endswith(AGAIN) else record.name
+    names = [it.name for it in plan.checks if scenario in it.scenarios]
     return any(isinstance(CHECKS[name](record, plan.limits), Failed) for name in names)

@@ -15,7 +15,7 @@ from robocop_hosting.tree import read_bytes
 from .checks import CHECKS
 from .handout import Limits
 from .packages import Packages
-from .plan import BRIDGE_SCENARIOS, MIDDLE, START, Block, CheckPlan, Plan, Push, Scenario, Step
+from .plan import AGAIN, BRIDGE_SCENARIOS, MIDDLE, START, Block, CheckPlan, Plan, Push, Scenario, Step
 
 MAX_SEED = 999_999
 DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]
@@ -68,7 +68,7 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
     scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios)
     names = [scenario.name for scenario in scenarios]
     for name in names:
-        if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS):
+        if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS) or name.endswith(AGAIN):
             raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
     known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
     checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in file.checks.items())

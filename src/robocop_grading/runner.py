@@ -15,9 +15,9 @@ from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
-from .attempts import AGAIN, counting
+from .attempts import counting
 from .packages import provide
-from .plan import Plan
+from .plan import AGAIN, Plan
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
 from .sandbox.guard import Guard, kernel_kills

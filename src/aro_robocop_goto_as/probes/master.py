@@ -110,11 +110,15 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
 
 
 def no_simulator(uri: str) -> str:
-    """A message that no simulator runs; empty if a node publishes time or odometry, or no master answers."""
+    """A message that no simulator runs; empty if one does, if a robot publishes odometry, or if no master answers.
+
+    Odometry alone is not enough where /use_sim_time is set: without /clock, time stands still for the robot's nodes.
+    """
     try:
-        if publishers(uri, "clock", "odom"):
-            return ""
+        found = publishers(uri, "clock", "odom")
         stands = ask_master(uri, "getParam", "/use_sim_time") is True
+        if "/clock" in found or (found and not stands):
+            return ""
     except (OSError, MasterError):
         return ""
     without = (

@@ -112,10 +112,13 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
 
 
 def _explained(records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to forward a click; if only clicks of earlier scenarios became goals, with what that means."""
-    number = sum(len(record.goals) for record in records.values())
+    """The failure to forward a click; if clicks became goals before it and none after it, with what that means."""
+    times = [goal.time for record in records.values() for goal in record.goals]
+    number = sum(time < failure.time for time in times)
     if failure.cause != NOT_FORWARDED or not number or any(records[name].goals for name in names):
         return failure
+    if number < len(times):  # a later click in odom became a goal
+        return replace(failure, cause=text("other_frame_ignored"))
     return replace(failure, cause=text("no_more_goals", "goal" if number == 1 else f"{number} goals"))
 
 

@@ -1,7 +1,7 @@
 """How a bridge reports its goal's state: how often, whether reports name a state, and whether the state is true."""
 
 import re
-from typing import List, NamedTuple, Optional, Set
+from typing import List, NamedTuple, Optional, Set, Tuple
 
 from ..handout import Limits
 from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, SUCCEEDED, Line, Record
@@ -20,6 +20,7 @@ UNCALLED = re.compile(r"<(?:bound method|function) [^>]*>*")
 NOTHING = re.compile(r"(?:[^:=,;]*[:=]\s*)?(?:None|\'\'|\"\")?\W*|[^:=,;]*\bNone\W*")
 SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
 MOSTLY = 0.8
+SOMETIMES = 0.3  # share of reports that name the same states whatever the true one is
 DONE = 7  # the number of actionlib's CommState for a goal that has ended, in which ACTIVE is 2
 CLIENT_ACTIVE = 2
 
@@ -66,6 +67,7 @@ class Report(NamedTuple):
     states: Set[int]
     by_number: bool
     true: int
+    named: Tuple[str, ...] = ()  # states and numbers in the order in which it names them
 
     @property
     def is_true(self) -> bool:
@@ -86,11 +88,12 @@ def _stated(record: Record) -> List[Report]:
     for line in record.lines:
         before = [change for change in changes if change.time <= line.time + 1e-6]
         told = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
-        names = {STATUS_NAMES.index(name.upper()) for name in STATES.findall(told)}
-        numbers = {int(one or other) for one, other in NUMBER.findall(line.text)}
+        words, figures = STATES.findall(told), [one or other for one, other in NUMBER.findall(line.text)]
+        names, numbers = {STATUS_NAMES.index(name.upper()) for name in words}, set(map(int, figures))
         judged = before and before[-1].status in (PENDING, ACTIVE, SUCCEEDED) and line.time > before[-1].time + SETTLED
         if (names or numbers) and judged and not (found and line.time - found[-1].time <= SAME_REPORT):
-            found.append(Report(line.time, names or numbers, not names, before[-1].status))
+            named = (*map(str.upper, words), *figures)
+            found.append(Report(line.time, names or numbers, not names, before[-1].status, named))
     return found
 
 
@@ -104,8 +107,9 @@ def _is_client_state(reports: List[Report]) -> bool:
 def _untrue(record: Record) -> Optional[Failed]:
     """Name the failure of a bridge that reports wrong states; only reports in actionlib's words are judged."""
     reports = _stated(record)
-    several = [report for report in reports if len(report.states) > 1]
-    if len(several) > 1 and len(several) > MOSTLY * len(reports):
+    told = {(report.named, report.true) for report in reports}
+    several = [it for it in reports if len(it.states) > 1 and sum(named == it.named for named, _ in told) > 1]
+    if len(several) > 1 and len(several) > SOMETIMES * len(reports):
         first = several[0]
         seen = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
         return Failed(STATUS_NAMES[first.true], seen, first.time, text("several_states"), UNTRUE)

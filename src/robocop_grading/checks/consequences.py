@@ -21,6 +21,7 @@ MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and drivin
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
+MIN_DELAY = 1.0  # [s] a callback that waits once at the start makes messages wait for less
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
@@ -61,6 +62,7 @@ def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
 def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
     """A sentence: data is old because the callback of a topic with such a name is too slow; empty if no callback is."""
     delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
+    delays = [it for it in delays if it[0] >= MIN_DELAY]
     return text("late", what, *reversed(max(delays))) if delays else ""
 
 

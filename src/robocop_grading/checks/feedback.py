@@ -116,7 +116,10 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
 
 
 # Feedback that is wrong from a later goal on, as a server keeps what an earlier one has set.
-KEPT = After("next_goal", lambda record, it, earlier: earlier.kind == NOT_RESET and it.time > record.goals[0].time)
+KEPT = After(
+    "next_goal",
+    lambda record, it, earlier: earlier.kind == NOT_RESET and any(it.time > goal.time for goal in record.goals[1:]),
+)
 
 
 @check("errors", after=(KEPT,), needs=("feedback_rate",), explain=partial(_explained, POSITION))

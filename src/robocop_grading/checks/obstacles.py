@@ -13,6 +13,7 @@ from ..record import (
     Goal,
     Record,
     active_until,
+    errors_at,
     feedback_of,
     results_of,
     samples_between,
@@ -82,7 +83,9 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
 def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str:
     """Why a goal was aborted at a time [s], when the obstacle was nearer [m] than it should have been."""
     own = [it for it in feedback_of(record, goal) if it.time <= end]
-    if own and abs(own[-1].angle_error) > HEADING_TOLERANCE:  # it was about to turn
+    there = samples_between(record, goal.time, end)
+    angles = [own[-1].angle_error, errors_at(there[-1], goal)[1]] if own and there else [0.0]
+    if all(abs(angle) > HEADING_TOLERANCE for angle in angles):  # it was about to turn
         return text("aborted_while_turning", STOP_DISTANCE, clearance)
     return text("aborted_near", STOP_DISTANCE)
 
@@ -111,7 +114,8 @@ AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not 
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
     verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
-    if verdict is PASSED and not any(sample.x > PAST * record.goals[0].x for sample in record.samples):
+    ways = [[errors_at(it, goal)[0] for it in samples_between(record, goal.time, math.inf)] for goal in record.goals]
+    if verdict is PASSED and not all(way and min(way) < (1.0 - PAST) * way[0] for way in ways):
         return NotReached("the robot did not drive past the obstacles")
     return verdict
 

@@ -92,6 +92,7 @@ def build(
     try:
         environment = make(folder, names, underlay, runner_in(sandbox, folder, reads))
     except HostingError as error:
+        links = [link for link in links if Path(link.partition(" -> ")[0]).name in str(error)]
         if not links:
             raise
         told = "links that lead out of the package are not followed: put the files themselves in their places"
@@ -101,9 +102,10 @@ def build(
 
 
 def _links_elsewhere(copies: Path, names: Iterable[str]) -> Iterator[str]:
-    """The links in copies of packages that lead out of them, each with where it leads."""
+    """The links in copies of packages that lead out of all copies, each with where it leads."""
+    inside = os.path.realpath(copies)
     for name in names:
         top = copies / name
         for path in files_below(top):
-            if path.is_symlink() and os.path.realpath(top) not in map(str, Path(os.path.realpath(path)).parents):
+            if path.is_symlink() and inside not in map(str, Path(os.path.realpath(path)).parents):
                 yield f"{path.relative_to(top)} -> {os.readlink(path)}"

@@ -194,7 +194,8 @@ class Node:
         self._is_over, self.next_ns = True, NEVER
         for _ in range(MAX_LAST_READS):
             for kind, body in self._channel.frames():
-                self._handle(kind, body)
+                if kind != wire.DONE:  # of an answer that came as the node was ended
+                    self._handle(kind, body)
             if not self._has_more():
                 break
         self._topics.handle_arrived()

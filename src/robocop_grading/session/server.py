@@ -12,9 +12,8 @@ from aro_robocop_goto_as.goto import Errors, track_progress
 from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
-from ..attempts import AGAIN
 from ..handout import ACTION
-from ..plan import START, Push, Scenario, Step
+from ..plan import AGAIN, START, Push, Scenario, Step
 from ..record import Record
 from .job import Job
 from .run import TICK, Run

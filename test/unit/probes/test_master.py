@@ -95,6 +95,7 @@ def test_no_simulator_runs_where_nobody_publishes_time_or_odometry_any_more(topi
         assert master.no_simulator(ended) == ""
     with node() as publisher:
         assert no_simulator(publisher) == ""
+        assert ("time stands still" in no_simulator(publisher, use_sim_time=True)) == (topic != "/clock")
 
 
 def test_simulator_that_hangs_is_reported_with_its_address(monkeypatch):

@@ -36,6 +36,10 @@ def test_a_goal_beyond_the_walls_is_outside(walls, goal) -> None:
     assert is_outside(goal, (-0.7, 0.0), walls + COLUMNS)
 
 
+def test_a_robot_close_to_a_wall_in_the_open_is_not_enclosed_although_far_obstacles_make_cells_large() -> None:
+    assert not is_outside((5.0, 5.0), (0.0, 0.13), [wall(0.0, 0.0, 2.0, 0.1), wall(300.0, 0.0, 1.0, 1.0)])
+
+
 @pytest.mark.parametrize("goal", [(2.3, 2.3), (-0.7, 0.0), PILLAR, BALL])
 def test_a_goal_in_the_room_even_in_an_obstacle_is_not_outside(goal) -> None:
     assert not is_outside(goal, (-0.7, 0.0), ROOM + COLUMNS)

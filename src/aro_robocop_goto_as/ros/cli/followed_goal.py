@@ -133,14 +133,14 @@ def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], O
     seen = threading.Event()  # the whole world comes first, then what moves
 
     def on_world(message: MarkerArray) -> None:
-        if seen.is_set():
+        here, markers = odom(), MarkerStore()
+        if seen.is_set() or here is None:
             return
         seen.set()
-        here, markers = odom(), MarkerStore()
         markers.apply(message)
-        robot = None if here is None else here.pose.pose.position
+        robot = here.pose.pose.position
         walls = obstacles(markers.placed(transformer.pose_of))
-        if robot is not None and is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
+        if is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
             complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
 
     rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)

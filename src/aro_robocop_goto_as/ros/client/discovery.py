@@ -4,7 +4,7 @@ import actionlib
 import rosgraph
 import rospy
 
-from ...names import ACTION_TYPE
+from ...names import ACTION_TYPE, robocop
 from ...probes import master
 from ...suggestions import did_you_mean
 from .. import graph
@@ -48,5 +48,5 @@ def advice(action: str) -> str:
         return missing
     namespace = rospy.resolve_name(action).rpartition("/")[0]
     setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
-    command = f"./robocop shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
+    command = f"{robocop()} shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
     return f"the server's output may say why it ended; to start it again, in another terminal: {command}"

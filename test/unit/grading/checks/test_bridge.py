@@ -46,6 +46,9 @@ def _reported(active: str, succeeded: str) -> Record:
         ("report 3", "report 4"),
         ("connected: True, result: None", "connected: True, result: there"),
         ("[INFO] [1668.1, 2.3]: no errors", "no errors"),
+        ("state: ACTIVE (previous: PENDING)", "state: SUCCEEDED (previous: ACTIVE)"),
+        ("pending clicks: 0, state: ACTIVE", "pending clicks: 0, state: SUCCEEDED"),
+        ("goal state 1 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)", "goal state 3 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)"),
     ],
 )
 def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str) -> None:
@@ -61,6 +64,7 @@ def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str)
         ("active", "aborted", "reports ABORTED while the goal is SUCCEEDED"),
         ("PREEMPTED", "ABORTED", "shifted: PREEMPTED is reported for ACTIVE"),
         ("state 2", "state 4", "shifted"),
+        ("PENDING or ACTIVE or SUCCEEDED", "PENDING or ACTIVE or SUCCEEDED", "names several states says nothing if"),
         ("", "", 'say nothing about the state, as in ""'),
         ("[INFO] [1668.1, 2.3]: server:", "[INFO] server: done", 'as in "server:"'),
         ("\x1b[32m[INFO] status = None.", "SUCCEEDED", 'as in "status = None."'),
