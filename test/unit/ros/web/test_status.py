@@ -51,7 +51,9 @@ def test_a_bridge_that_has_ended_no_longer_says_that_a_goal_waits():
     state = PageState(answering=True)
     status = made(state)
     status.subscribe_to_robot(MagicMock(), "")
-    status._on_bridge(0.0, MagicMock(data="waiting for robocop_goto_as; goal x 0.30 y 0.00 in map waits for it; advice"))
+    status._on_bridge(
+        0.0, MagicMock(data="waiting for robocop_goto_as; goal x 0.30 y 0.00 in map waits for it; advice")
+    )
     assert status.context.state.now.waiting == "x 0.30 y 0.00 in map"
     status._reports.impl = None  # nobody publishes it
     status.show(state)
