@@ -6,18 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Twist2D
-from aro_robocop_goto_as.web.dead_man import DeadMan, Drive
+from aro_robocop_goto_as.web.dead_man import TIMEOUT, DeadMan, Drive
 
 FORWARD = Twist2D(0.2, 0.0)
 
 
 def test_the_robot_drives_while_requests_are_renewed_and_is_stopped_once_when_they_end() -> None:
-    dead_man = DeadMan(timeout=0.3)
+    dead_man = DeadMan()
     for now in (0.0, 0.1, 0.2):
         dead_man.request(1, "red", FORWARD, now)
         assert dead_man.command(now) == Drive("red", FORWARD)
-    assert dead_man.command(0.49) == Drive("red", FORWARD)
-    assert dead_man.command(0.51) == Drive("red", STANDSTILL)
+    assert dead_man.command(0.2 + 0.99 * TIMEOUT) == Drive("red", FORWARD)
+    assert dead_man.command(0.2 + 1.01 * TIMEOUT) == Drive("red", STANDSTILL)
     assert dead_man.command(0.6) is None and not dead_man.active
 
 
@@ -57,14 +57,14 @@ def test_the_former_robot_is_stopped_before_the_next_one_drives() -> None:
 
 
 def test_only_the_first_request_begins_a_drive() -> None:
-    dead_man = DeadMan(timeout=0.3)
+    dead_man = DeadMan()
     begins = [dead_man.request(1, "", FORWARD, now) for now in (0.0, 0.1, 0.2, 0.6)]
     assert begins == [True, False, False, True]
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 0.5), st.sampled_from(["request", "release", "stop", "tick"])), max_size=40))
 def test_no_command_but_zero_is_sent_later_than_the_timeout_after_the_last_request(steps: "list") -> None:
-    dead_man, now, asked = DeadMan(timeout=0.3), 0.0, -math.inf
+    dead_man, now, asked = DeadMan(), 0.0, -math.inf
     for wait, what in steps:
         now += wait
         if what == "request":
@@ -77,4 +77,4 @@ def test_no_command_but_zero_is_sent_later_than_the_timeout_after_the_last_reque
             dead_man.stop()
             asked = -math.inf
         command = dead_man.command(now)
-        assert (command == Drive("", FORWARD)) == (now < asked + 0.3)
+        assert (command == Drive("", FORWARD)) == (now < asked + TIMEOUT)

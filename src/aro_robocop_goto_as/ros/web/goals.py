@@ -126,7 +126,7 @@ class Goals(Part):
             estimate.pose.covariance = convert.diagonal(variances)
             requests.publish(where, "initialpose", estimate)
 
-    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox, robot: str) -> None:
         self._robot, self._feedback, self._executing, self._newest = robot, None, None, None
         self._status = inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)

@@ -65,6 +65,7 @@ class Teleop(Part):
                 command = gui.add_command(label, hotkey=key, description="drives while the key is held")
                 command.on_trigger(hold)
         context.server.on_client_disconnect(self._on_release)
+        rospy.on_shutdown(self.end)
         threading.Thread(target=self._run, daemon=True).start()
 
     def _holder(self, twist: Twist2D) -> Callable[[Any], Any]:
