@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.world.grid_map.edges import edges_of_cells
+from aro_robocop_goto_as.world.grid_map.reader import edges_of_cells
 
 
 def edges_one_by_one(occupied):
