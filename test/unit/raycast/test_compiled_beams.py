@@ -83,15 +83,6 @@ def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
     assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 
 
-@given(lattice, lattice, st.integers(0, 7))
-def test_beams_along_tile_borders_see_segments_on_the_border(x: float, y: float, eighth: int) -> None:
-    walls = [((i, j), (i + 0.5, j)) for i in range(-3, 4) for j in range(-3, 4)]
-    cut, yaw = cut_of(np.array(walls, float), np.zeros((0, 3))), eighth * math.pi / 4.0
-    every = Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut)
-    cut.tiles = Tiles(cut.segments)
-    assert Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut).tobytes() == every.tobytes()
-
-
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
