@@ -38,9 +38,10 @@ def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict
 
 
 def test_every_rate_parameter_is_kept(simulator: Make) -> None:
-    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10)
+    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10, camera=12)
     given = {f"{name}_rate": rate for name, rate in rates.items()}
-    sim = simulator("empty", drive="kinematic", physics_rate=600, clock_rate=1, control_rate=2, **given)
+    given.update(physics_rate=600, clock_rate=1, control_rate=2, camera_width=8, camera_height=6)
+    sim = simulator("empty", model="waffle", drive="kinematic", **given)
     seen = drive(sim, STANDSTILL, 1.0, everything(1))
     rates.update(joints=rates.pop("joint_state"), tf=rates["odom"])
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in rates} == rates
