@@ -10,9 +10,8 @@ import numpy as np
 from ..compiled import address, members
 from ..raycast.beams import Fan
 from ..raycast.caster_library import load
-from .noise_streams import Episode
 from .scan_profiles import LidarSpec, ScanParams
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import Calls, Episode, Robots, Sensor, Site
 
 SCAN = "scan"
 STREAM = 0  # of the noise of the number of beams

@@ -9,8 +9,8 @@ import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.sensors.lidar import Lidar
-from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.sensors.sensor import Episode
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 

@@ -94,10 +94,13 @@ def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make)
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
 
 
-def test_map_and_odom_are_one_where_odometry_is_of_the_world(simulator: Make) -> None:
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world")
+def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulator: Make) -> None:
+    errors = dict(odom_wheel_radius_error=0.1, odom_slip=0.1, encoder_tick=0.1)
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", **errors)
     assert _odom(sim) == sim.world_from_footprint()
     sim.place(Pose2D(1.0, -1.0, 1.0))
+    seen = drive(sim, Twist2D(0.2, 0.3), 1.0, ["odom"])[-1].odometry
+    assert (Pose2D(*seen.poses[0]), Twist2D(*seen.twists[0])) == (sim.world_from_footprint(), sim.velocity())
     assert sim.map_from_odom() == Pose2D()
 
 
