@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Images, calibration and points of a camera are of one step and match each other."""
 
 import io
@@ -7,7 +6,7 @@ import unittest
 import numpy as np
 import ros_numpy
 import rospy
-from harness import Recorder, run
+from harness import Recorder
 from PIL import Image as Picture
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 
@@ -70,7 +69,3 @@ class Camera(unittest.TestCase):
     def test_robot_without_a_camera_has_no_camera_topics(self):
         names = [name for name, _ in rospy.get_published_topics()]
         self.assertFalse([name for name in names if name.startswith("/green/camera")])
-
-
-if __name__ == "__main__":
-    run(Camera)

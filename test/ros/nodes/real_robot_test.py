@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """profile:=real: the covariances of a real robot."""
 
 import unittest
 
-from harness import Recorder, Robot, run
+from harness import Recorder, Robot
 from sensor_msgs.msg import Imu
 
 
@@ -16,7 +15,3 @@ class RealRobot(unittest.TestCase):
             [imu.orientation_covariance[0], imu.angular_velocity_covariance[4], imu.linear_acceleration_covariance[8]],
             [0.0025, 0.02, 0.04],
         )
-
-
-if __name__ == "__main__":
-    run(RealRobot)

@@ -3,9 +3,10 @@
 import struct
 from io import BytesIO
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
+import pytest
 from genpy import Message, Time
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from hypothesis import given
@@ -14,15 +15,17 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Header
+from support import drive
 from tf2_msgs.msg import TFMessage
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, yaw_of
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
 from aro_robocop_goto_as.ros.sim import sensor_topics as packed
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 NUMBER = st.floats(-1e6, 1e6)
 POSE = st.builds(Pose2D, NUMBER, NUMBER, st.floats(-3.0, 3.0))
@@ -107,3 +110,21 @@ def test_transforms(entries: "list[tuple[str, str, Pose2D]]", stamp: "tuple[int,
     transforms: list[TransformStamped] = [convert.to_transform(*entry, Time(*stamp)) for entry in entries]
     message = packed.packed_transforms([(parent, child, np.array(pose)) for parent, child, pose in entries])
     assert filled(message, stamp) == sent(TFMessage(transforms))
+
+
+def test_transforms_lead_from_the_map_to_where_the_robot_is_if_localization_is_true(
+    simulator: Callable[..., Simulator],
+) -> None:
+    sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, drive="kinematic")
+    message = packed.packed_transforms(packed.SensorTopics(0, sim, lambda: None).transforms(sim.params.topics))
+    drive(sim, Twist2D(0.2, 1.0), 0.9, ["odom", "tf"])
+    filled(message, (0, 0))
+    sent = sorted(TFMessage().deserialize(message.body()).transforms, key=lambda t: t.header.frame_id)
+    map_from_odom, odom_from_base = (
+        Pose2D(
+            t.transform.translation.x, t.transform.translation.y, yaw_of(convert.from_quaternion(t.transform.rotation))
+        )
+        for t in sent
+    )
+    assert compose(map_from_odom, odom_from_base) == pytest.approx(sim.world_from_footprint(), abs=1e-6)
+    assert map_from_odom.x < -0.001
