@@ -9,6 +9,7 @@ import pytest
 from systems import System
 
 NODES = Path(__file__).with_name("nodes")
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 SIMULATOR, SERVER = "/robocop_sim", "/aro_robocop_goto_as_node"
 pytestmark = pytest.mark.xdist_group("lockstep")  # for the master and the reference run that the tests share
 
@@ -22,7 +23,7 @@ class Ros(System):
         self.core = self.start_master()
 
     def node(self, script, *arguments):
-        return self.start(f"{next(self.numbers)}-{script}", "rosrun", "aro_robocop_goto_as", script, *arguments)
+        return self.start(f"{next(self.numbers)}-{script}", SCRIPTS / script, *arguments)
 
     def script(self, name, *arguments, **streams):
         return self.start(f"{next(self.numbers)}-{name}", sys.executable, NODES / name, *arguments, **streams)

@@ -20,7 +20,9 @@ NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "ro
 @pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").glob("*.py")))
 def test_each_program_answers_help_without_a_master(name):
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
-    done = subprocess.run([ROOT / "scripts" / name, "--help"], env=environment, capture_output=True, text=True, timeout=DEADLINE)
+    done = subprocess.run(
+        [ROOT / "scripts" / name, "--help"], env=environment, capture_output=True, text=True, timeout=DEADLINE
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert f"usage: rosrun aro_robocop_goto_as {name}" in done.stdout
     assert name not in NODES or len(done.stdout.splitlines()) == 3

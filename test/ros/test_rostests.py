@@ -14,8 +14,8 @@ FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes
 LONG = ("faults", "lab", "server", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
 SLOW = (
-    *("bridge", "bridge_waits", "commands", "faults", "figures", "models", "navigation"),
-    *("time_and_pose", "two_robots"),
+    *("bridge", "bridge_waits", "commands", "faults", "figures", "navigation", "time_and_pose"),
+    "two_robots",
 )
 
 

@@ -95,14 +95,25 @@ def test_joint_states(angles: "tuple[float, float]", speeds: "tuple[float, float
     assert filled(packed.packed_joint_state(np.array(angles), np.array(speeds)), stamp) == expected
 
 
-@given(NAME, st.lists(NUMBER, min_size=10, max_size=10).map(np.array), STAMP)
-def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]") -> None:
-    orientation, rates, force = (np.diag([variance] * 3).ravel().tolist() for variance in (1e-6, 0.1**2, 0.2**2))
+@given(NAME, st.lists(NUMBER, min_size=10, max_size=10).map(np.array), STAMP, st.booleans())
+def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]", real: bool) -> None:
+    variances = (0.0025, 0.02, 0.04) if real else (1e-6, 0.1**2, 0.2**2)  # those of a TurtleBot3's firmware
+    orientation, rates, force = (np.diag([variance] * 3).ravel().tolist() for variance in variances)
     expected = Imu(
         *(Header(0, Time(*stamp), frame), Quaternion(*sample[:4]), orientation),
         *(Vector3(*sample[4:7]), rates, Vector3(*sample[7:]), force),
     )
-    assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), False, sample), stamp) == sent(expected)
+    assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), real, sample), stamp) == sent(expected)
+
+
+def test_odometry_of_a_real_robot_has_no_covariances(simulator: Callable[..., Simulator]) -> None:
+    body = packed.SensorTopics(0, simulator(covariances="real"), lambda: None).packed("odom").body()  # type: ignore[union-attr]
+    odom = Odometry().deserialize(body)
+    assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
+
+
+def test_each_sensor_has_its_place_among_the_messages_of_a_step(simulator: Callable[..., Simulator]) -> None:
+    assert {*packed.TOPICS, "camera", "tf"} == set(simulator().observed.by_name)
 
 
 @given(st.lists(st.tuples(NAME, NAME, POSE), min_size=1, max_size=4), STAMP)
