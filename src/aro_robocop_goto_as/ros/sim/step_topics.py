@@ -46,7 +46,6 @@ class StepTopics:
         """Sensor -> indices of the robots for which it is subscribed to."""
         if self._changed:
             self._changed = False  # before the look at the connections: a change during it causes another look
-            self.count()
             self._batches = {}
             self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
@@ -87,11 +86,6 @@ class StepTopics:
         """Simulated time [ns] alone."""
         self.subscriptions()
         self._clock_alone.send(stamp_ns)
-
-    def count(self) -> None:
-        """Update rospy's statistics."""
-        for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
-            batch.count()
 
     def packed(self, due: Due) -> List[Posted]:
         """The packed messages of what is due, with their topics."""

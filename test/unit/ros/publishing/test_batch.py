@@ -26,7 +26,6 @@ class Connection:
     endpoint_id, name = "/subscriber", "/topic"
 
     def __init__(self) -> None:
-        self.stat_bytes = self.stat_num_msg = 0
         self.closed = False
 
     def close(self) -> None:
@@ -74,8 +73,6 @@ def topic_of(*subscribers: Subscriber) -> Any:
     """Stands for a DirectPublisher with these subscribers."""
     impl = SimpleNamespace(
         is_latch=False,
-        seq=0,
-        message_data_sent=0,
         c_lock=threading.RLock(),
         connections=[one.connection for one in subscribers],
         remove_connection=lambda connection: connection.close(),
