@@ -117,7 +117,7 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
     sim, sent = simulator(scan_profile="lds02"), []
-    lds02 = SensorTopics(0, sim, lambda: None)
+    lds02 = SensorTopics(0, sim)
     for beams in (230, 231, 230, 229, 230):
         sim.observed.scan.ranges = sim.observed.scan.ranges_of(beams)
         message = lds02.packed("scan")

@@ -62,7 +62,7 @@ def test_what_has_a_subscriber_is_sent_with_the_frame_and_the_stamp_of_one_image
 
     monkeypatch.setattr(camera_topics, "publisher", publisher)
     sim = simulator("empty", model=model)
-    robot = SensorTopics(0, sim, lambda: None)
+    robot = SensorTopics(0, sim)
     drive(sim, STANDSTILL, 0.2, ["camera"])
     if CAMERA in robot.topics:
         robot.publish(CAMERA)

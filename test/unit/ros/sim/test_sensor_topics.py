@@ -107,7 +107,7 @@ def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]", real: boo
 
 
 def test_odometry_of_a_real_robot_has_no_covariances(simulator: Callable[..., Simulator]) -> None:
-    body = packed.SensorTopics(0, simulator(covariances="real"), lambda: None).packed("odom").body()  # type: ignore[union-attr]
+    body = packed.SensorTopics(0, simulator(covariances="real")).packed("odom").body()  # type: ignore[union-attr]
     odom = Odometry().deserialize(body)
     assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
 
@@ -127,7 +127,7 @@ def test_transforms_lead_from_the_map_to_where_the_robot_is_if_localization_is_t
     simulator: Callable[..., Simulator],
 ) -> None:
     sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, drive="kinematic")
-    message = packed.packed_transforms(packed.SensorTopics(0, sim, lambda: None).transforms(sim.params.topics))
+    message = packed.packed_transforms(packed.SensorTopics(0, sim).transforms(sim.params.topics))
     drive(sim, Twist2D(0.2, 1.0), 0.9, ["odom", "tf"])
     filled(message, (0, 0))
     sent = sorted(TFMessage().deserialize(message.body()).transforms, key=lambda t: t.header.frame_id)
