@@ -116,9 +116,8 @@ class SimNode:
         time.pacer.waited(time.pacer.now() - started)
 
     def _report(self) -> None:
-        """Publish and count what is due by the wall clock."""
+        """Publish what is due by the wall clock."""
         if self._status.report():
-            self._topics.count()
             self._status.warn_of_full_speed(self._commands.connected)
             resume()
 
