@@ -96,7 +96,9 @@ def running_node(uri: str, name: str, kind: str = "a node of this name") -> Opti
 
 
 def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
-    """The running nodes that publish topics of these names, in any namespace; topics without a publisher are left out.
+    """The running nodes that publish these topics, in any namespace if a name has none; each node is asked.
+
+    Topics without a running publisher are left out.
 
     OSError and MasterError as ask_master().
     """
@@ -104,7 +106,7 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
     found = {
         topic: [node for node in nodes if running_node(uri, node)]
         for topic, nodes in topics
-        if topic.rpartition("/")[2] in names
+        if topic in names or topic.rpartition("/")[2] in names
     }
     return {topic: nodes for topic, nodes in found.items() if nodes}
 

@@ -7,9 +7,8 @@ import rospy
 from clicks import Clicks
 from harness import SystemTest, distance, run, wait_for
 
-from aro_robocop_goto_as.geometry import Pose2D, compose
+from aro_robocop_goto_as.geometry import Pose2D
 
-LAST_STAMP = rospy.Time(2**32 - 1, 0)
 NEAR = 0.12  # [m] the handout's tolerance of 0.1 m, and the drift of odometry
 
 
@@ -37,15 +36,6 @@ class BridgeFrames(SystemTest):
         self.goals.of_others()[0].result("REACHED")
         self.assertLess(distance(self.robot.wait_until_it_stands(), Pose2D(-0.4, 0.2)), NEAR)
 
-    def test_goal_in_base_footprint_is_relative_to_the_robot(self):
-        self.goals.send(0.2, -0.2).result("REACHED")
-        start = self.robot.wait_until_it_stands()  # neither at the origin of odom nor along its x axis
-        self.goals.clear()
-        self.clicks.click(0.0, 0.4, "base_footprint")
-        self.sent()
-        self.goals.of_others()[0].result("REACHED")
-        self.assertLess(distance(self.robot.wait_until_it_stands(), compose(start, Pose2D(0.0, 0.4))), NEAR)
-
     def test_goal_in_base_footprint_is_relative_to_the_pose_at_the_stamp_of_the_click(self):
         self.goals.send(1.0, 0.0)
         self.robot.wait_until_it_drives(0.15)
@@ -57,17 +47,6 @@ class BridgeFrames(SystemTest):
         sent = self.goals.sent.messages[-1].goal.position
         self.assertAlmostEqual(sent.x, past.pose.pose.position.x + 0.1, delta=0.001)
         self.goals.of_others()[0].result("REACHED")
-
-    def test_goal_without_a_frame_or_stamped_after_all_transforms_is_sent_with_a_warning(self):
-        for click, x, warning in (
-            ((0.1, 0.0, "base_footprint", LAST_STAMP), 0.1, "using the latest one"),
-            ((-0.6, 0.0, ""), 0.1, "assuming the default 'map'"),
-        ):
-            self.clicks.click(*click)
-            self.assertAlmostEqual(self.sent().x, x, delta=0.001)
-            self.goals.log.wait_for(lambda m, text=warning: text in m.msg, "a warning")
-            self.goals.of_others()[0].result("REACHED")
-            self.goals.clear()
 
     def test_goal_in_an_unknown_frame_or_of_nan_is_refused_with_the_reason_and_the_next_one_is_served(self):
         for click, words in (((0.5, 0.0, "kitchen"), "'kitchen' to 'odom'"), ((math.nan, 0.0, "map"), "finite")):

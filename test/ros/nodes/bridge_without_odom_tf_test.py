@@ -4,13 +4,9 @@
 The handout's own bridge, ignore_goal_frame:=true, is right only while the robot is at the origin of odom.
 """
 
-import rospy
 from clicks import Clicks
-from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
-from harness import BRIDGE, Recorder, SystemTest, distance, run, wait_for, wait_for_subscriber
-from std_msgs.msg import Header
+from harness import Recorder, SystemTest, distance, run, wait_for
 from tf2_msgs.msg import TFMessage
-from tf2_msgs.srv import FrameGraph
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
@@ -38,21 +34,6 @@ class BridgeWithoutOdomTf(SystemTest):
         frames = {t.child_frame_id for m in self.tf.messages for t in m.transforms}
         self.assertNotIn("base_footprint", frames)
         self.assertIn("wheel_left_link", frames)
-
-    def test_odometry_is_used_when_the_publisher_of_a_transform_has_left(self):
-        tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        wait_for_subscriber(tf, BRIDGE)
-        left = rospy.Time.now()
-        header, wrong = Header(0, left, "odom"), Transform(Vector3(x=3.0), Quaternion(w=1.0))
-        tf.publish([TransformStamped(header, child, wrong) for child in ("base_footprint", "the_last_one")])
-        frames = rospy.ServiceProxy(f"{BRIDGE}/tf2_frames", FrameGraph)
-        wait_for(lambda: "the_last_one" in frames().frame_yaml, "the bridge has received the transform")
-        tf.unregister()
-        self.robot.odom.wait_for(lambda m: (m.header.stamp - left).to_sec() > 1.0, "odometry of one second later")
-        self.clicks.click(0.2, 0.0, "base_footprint", rospy.Time.now())
-        goal = self.goal_of_the_bridge()
-        self.assertLess(distance(self.goals.sent.messages[-1].goal.position, Pose2D(0.2, 0.0)), NEAR)
-        goal.result("REACHED")
 
     def click_ahead_in_the_naive_bridge(self):
         """Click half a metre ahead of the robot; the distance [m] of its last position from there."""

@@ -68,11 +68,6 @@ class FakeRobot:
             self.ranges[angle % BEAMS] = distance
         self.settle()
 
-    def stand_at(self, pose):
-        """Move to a pose."""
-        self.pose = pose
-        self.settle()
-
     def settle(self):
         """Publish odometry and scan, and wait until the server has received them."""
         self._wait_for_server()
@@ -87,43 +82,36 @@ class FakeRobot:
         """Simulated time."""
         return rospy.Time(self.now_ns // 1000000000, self.now_ns % 1000000000)
 
-    def pass_time(self, seconds, odom=True, scan=True):
+    def pass_time(self, seconds):
         """Advance the clock at once, publish odometry and scan, and wait until this node has received the clock."""
         self.now_ns += int(round(seconds / PERIOD)) * PERIOD_NS
-        if odom:
-            self._publish_odom()
-        if scan:
-            self._publish_scan()
+        self._publish_odom()
+        self._publish_scan()
         self._publish(self._clock, Clock(self.now))
         wait_for(lambda: rospy.get_rostime() == self.now, "the clock")
 
     # -- goals --
 
-    def send(self, x, y, z=0.0):
-        """Send a goal in odom [m], and drop the commands and logs recorded before."""
+    def start(self, x, y):
+        """Send a goal in odom [m] and wait until it is accepted: the next clock tick is its first control period.
+
+        The commands and logs recorded before are dropped.
+        """
         self.commands.clear()
         self.log.clear()
-        return self.goals.send(x, y, z)
-
-    def start(self, x, y, z=0.0):
-        """Send a goal and wait until it is accepted: the next clock tick is its first control period."""
-        goal = self.send(x, y, z)
-        self.wait_for_acceptance(goal)
-        return goal
-
-    def wait_for_acceptance(self, goal):
-        """Wait until the server has accepted a goal."""
+        goal = self.goals.send(x, y)
         wait_for(
             lambda: any(m.name == SERVER and m.msg.startswith("goal accepted") for m in self.log.messages),
             f"goal {goal.id} accepted by {ACTION}",
         )
+        return goal
 
-    def tick(self, goal, **silent):
+    def tick(self, goal):
         """One control period: publish, wait for the command, follow it; False once the goal has ended.
 
         The last feedback is published just before the result, so the end may be seen only at the next tick.
         """
-        self.pass_time(PERIOD, **silent)
+        self.pass_time(PERIOD)
         wait_for(lambda: goal.results() or self._answered(goal), f"an answer for goal {goal.id} at {self.now.to_sec()}")
         if goal.results():
             return False
@@ -138,10 +126,10 @@ class FakeRobot:
         feedback = goal.feedback()
         return feedback and feedback[-1].header.stamp == self.now and len(self.commands) == len(feedback)
 
-    def follow(self, goal, seconds=60.0, **silent):
+    def follow(self, goal, seconds=60.0):
         """Tick until a goal has ended; the simulated time it took [s], at most `seconds`."""
         start = self.now
-        while self.tick(goal, **silent):
+        while self.tick(goal):
             passed = (self.now - start).to_sec()
             assert passed < seconds, f"goal {goal.id} is still active after {passed} s: {goal.feedback()[-1].feedback}"
         return (self.now - start).to_sec()

@@ -130,3 +130,8 @@ def test_a_click_into_the_sky_or_beyond_the_horizon_hits_nothing(origin, directi
 @pytest.mark.parametrize("share, hits", [(0.99, True), (1.01, False)])
 def test_a_click_hits_the_floor_up_to_a_limited_distance(share, hits) -> None:
     assert (floor_point((0.0, 0.0, 1.0), (share * MAX_CLICK, 0.0, -1.0)) is not None) == hits
+
+
+def test_a_page_that_is_hidden_and_has_no_size_gets_the_first_view() -> None:
+    server = server_of((0, 0))
+    assert server.get_clients()[0].camera.position == pytest.approx(server.initial_camera.position)

@@ -147,7 +147,7 @@ class GotoNode:
         """Which other nodes publish cmd_vel, as the end of a sentence; empty if none."""
         topic = self.cmd_vel.resolved_name
         try:
-            nodes = master.publishers(master.master_uri(), "cmd_vel").get(topic, [])
+            nodes = master.publishers(master.master_uri(), topic).get(topic, [])
         except (OSError, MasterError):
             return ""
         others = [node for node in nodes if node != rospy.get_name()]

@@ -4,6 +4,7 @@ import re
 import time
 from typing import Any, List, Optional, Tuple
 
+import rospy
 from std_msgs.msg import String
 
 from aro_robocop_goto_as.msg import SimStatus
@@ -12,6 +13,7 @@ from ...names import ACTION, BRIDGE, SIMULATOR, absolute
 from ...probes import master
 from ...web import text
 from ...web.state import PageState
+from ..connected_nodes import publishers_of
 from .part import Context, Inbox, Part
 
 SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
@@ -29,6 +31,7 @@ class Status(Part):
         self._sim: Optional[SimStatus] = None
         self._sim_at = 0.0  # [s, wall]
         self._bridge = ""
+        self._reports: Optional[rospy.Subscriber] = None  # to the bridge's status
         self._no_simulator = ""  # that none runs, as long as none has reported
 
         async def on_select(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
@@ -42,7 +45,7 @@ class Status(Part):
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._on_bridge(0.0, String(""))
-        inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
+        self._reports = inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
@@ -53,10 +56,13 @@ class Status(Part):
         self.context.state.change(waiting=found[1] if found else "")
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
-        self._no_simulator = master.no_simulator(master.master_uri()) if state.live and self._sim is None else ""
+        asked = state.live and self._sim is None and self.context.server.get_clients()  # a visitor may have to wait
+        self._no_simulator = master.no_simulator(master.master_uri()) if asked else ""
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
+        if self._bridge and not state.recorded and self._reports is not None and not publishers_of(self._reports):
+            self._on_bridge(0.0, String(""))  # it is gone
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
         self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else self._no_simulator)

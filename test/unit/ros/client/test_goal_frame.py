@@ -68,6 +68,12 @@ def test_goal_is_transformed_at_its_stamp_or_else_by_the_newest_pose(transformer
     assert [text.split(" at the ")[0] for text in warnings] == ["no transform from 'base' to 'odom'"] * warned
 
 
+def test_goal_without_a_frame_is_taken_in_the_default_one_with_a_warning(transformer):
+    made, warnings = transformer({})
+    assert made.resolve(PoseStamped()).x == 0.0
+    assert len(warnings) == 1 and warnings[0].startswith("goal without frame_id; assuming the default ")
+
+
 @pytest.mark.parametrize("odometry", [None, odometry_at(5.0, "other")])
 def test_goal_in_a_frame_that_nothing_connects_is_refused(transformer, odometry):
     with pytest.raises(FrameError, match=re.escape("no transform from 'base' to 'odom' within 0.01 s: ")):

@@ -25,24 +25,18 @@ class Server:
         monkeypatch.setattr(inputs.time, "monotonic", lambda: self.wall)
         self.inputs = Inputs(self)
 
-    def receive_odom(self, stamp):
-        """Odometry of a time [s]."""
+    def receive_odom(self, stamp, x=0.0, w=1.0):
+        """Odometry of a time [s]; its position x [m], and its orientation's w."""
         odom = Odometry()
-        odom.header.stamp, odom.pose.pose.orientation.w = rospy.Time(stamp), 1.0
+        odom.header.stamp = rospy.Time(stamp)
+        odom.pose.pose.position.x, odom.pose.pose.orientation.w = x, w
         self.inputs.on_odom(odom)
 
-    def receive_scan(self, stamp):
-        """A scan of a time [s]."""
-        scan = LaserScan(angle_increment=0.1, range_max=5.0, ranges=[2.0])
+    def receive_scan(self, stamp, ahead=2.0):
+        """A scan of a time [s] with one beam [m]."""
+        scan = LaserScan(angle_increment=0.1, range_max=5.0, ranges=[ahead])
         scan.header.stamp = rospy.Time(stamp)
         self.inputs.on_scan(scan)
-
-    def receive(self, ahead, orientation_w=1.0):
-        """Odometry, and a scan with one beam [m]."""
-        odom = Odometry()
-        odom.pose.pose.orientation.w = orientation_w
-        self.inputs.on_odom(odom)
-        self.inputs.on_scan(LaserScan(angle_increment=0.1, range_max=5.0, ranges=[ahead]))
 
 
 @pytest.fixture
@@ -57,12 +51,43 @@ def test_topic_without_any_message_since_the_goal_was_accepted_may_be_connecting
     assert missing == (Outcome.NO_ODOM, "no message on /odom so far (limit 1 s)")
 
 
-@pytest.mark.parametrize("w", [0.0, 1.2, math.nan])
-def test_odometry_whose_orientation_is_no_rotation_is_refused(server, w):
-    server.receive(2.0, w)
-    with pytest.raises(
-        RobocopError, match="/odom holds an impossible pose: expected a quaternion of length 1, got x 0"
-    ):
+@pytest.mark.parametrize(
+    "odom, ahead, outcome, words",
+    [
+        (False, 2.0, Outcome.NO_ODOM, "message on /odom"),
+        (True, None, Outcome.NO_SCAN, "message on /scan"),
+        (True, math.nan, Outcome.NO_SCAN, "valid beam ahead on /scan"),
+    ],
+)
+def test_odometry_or_valid_scans_that_have_been_missing_for_more_than_a_second_are_named(
+    server, odom, ahead, outcome, words
+):
+    server.receive_odom(1.5)
+    server.receive_scan(1.5)
+    for now, missing in ((2.4, None), (2.6, (outcome, f"no {words} for 1.1 s (limit 1 s)"))):
+        server.ros_time = now
+        if odom:
+            server.receive_odom(now)
+        if ahead is not None:
+            server.receive_scan(now, ahead)
+        assert server.inputs.missing(now, started=1.5, accepted=0.0) == missing
+
+
+def test_data_from_before_the_goal_is_not_used_and_the_goal_has_a_second_for_newer_data(server):
+    server.receive_odom(1.5)
+    server.receive_scan(1.5)
+    server.ros_time = 60.0
+    assert server.inputs.read() is None
+    assert server.inputs.missing(60.9, started=60.0, accepted=0.0) is None
+    assert server.inputs.missing(61.1, started=60.0, accepted=0.0)[0] is Outcome.NO_ODOM
+
+
+@pytest.mark.parametrize("x, w", [(0.0, 0.0), (0.0, 1.2), (0.0, math.nan), (math.nan, 1.0), (-1e39, 1.0)])
+def test_impossible_pose_of_odometry_is_refused(server, x, w):
+    server.receive_odom(1.5, x, w)
+    server.receive_scan(1.5)
+    expected = "finite numbers within +-1e+06 m" if w == 1.0 else "a quaternion of length 1"
+    with pytest.raises(RobocopError, match=re.escape(f"/odom holds an impossible pose: expected {expected}, got x ")):
         server.inputs.read()
 
 
@@ -70,7 +95,7 @@ def test_odometry_whose_orientation_is_no_rotation_is_refused(server, w):
     "first, last, increment", [(-3.14, 3.14, -0.0175), (3.14, -3.14, 0.0175), (0.0, 0.0, 0.0), (0.0, 359.0, 1.0)]
 )
 def test_scan_whose_angles_contradict_themselves_ends_the_goal(server, first, last, increment):
-    server.receive(2.0)
+    server.receive_odom(1.5)
     server.inputs.on_scan(
         LaserScan(angle_min=first, angle_max=last, angle_increment=increment, range_max=5.0, ranges=[2.0] * 360)
     )

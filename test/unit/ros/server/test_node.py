@@ -108,9 +108,11 @@ def test_goal_drives_the_robot_with_feedback_until_it_ends(system):
     assert [feedback.message for feedback in system.feedback] == ["driving, 1.00 m to go"]
 
 
-def test_goal_that_is_no_position_is_aborted_at_once(system):
-    ((state, success, text),) = system.execute(None, x=math.nan)
-    assert (state, success, text.split(" y ")[0]) == ("aborted", False, "BAD_GOAL: position x nan")
+@pytest.mark.parametrize("x", [math.nan, math.inf, -1e39])
+def test_goal_that_is_no_position_is_aborted_at_once_and_the_robot_stays(system, x):
+    ((state, success, text),) = system.execute(None, x=x)
+    assert (state, success, text.split(" y ")[0]) == ("aborted", False, f"BAD_GOAL: position x {x}")
+    assert system.speeds == [0.0]
 
 
 def test_cancel_ends_the_goal_while_the_clock_stands(system):
