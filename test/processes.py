@@ -7,33 +7,21 @@ import sys
 
 import psutil
 
-LOAD = 8  # busy processes
 BUSY = "import os, sys\nwhile os.getppid() == int(sys.argv[1]): pass"  # ends with the process that started it
-
-
-def processes_with(setting, word=""):
-    """Ids of processes with `setting`, NAME=value, in their environment, and `word` on their command line."""
-    name, _, value = setting.partition("=")
-    processes = []
-    for process in psutil.process_iter():
-        with contextlib.suppress(psutil.Error):  # ended meanwhile, or another user's
-            if process.environ().get(name) == value and word in "\0".join(process.cmdline()):
-                processes.append(process.pid)
-    return processes
 
 
 def processes_mentioning(folder):
     """Ids of processes with this folder's path in their environment or on their command line."""
     processes = []
     for process in psutil.process_iter():
-        with contextlib.suppress(psutil.Error):
+        with contextlib.suppress(psutil.Error):  # ended meanwhile, or another user's
             if any(str(folder) in word for word in (*process.cmdline(), *process.environ().values())):
                 processes.append(process.pid)
     return [pid for pid in processes if pid != os.getpid()]
 
 
 @contextlib.contextmanager
-def busy_processes(count=LOAD):
+def busy_processes(count=8):
     """Keep the machine busy with `count` endless loops while the block runs."""
     command = [sys.executable, "-c", BUSY, str(os.getpid())]
     running = []

@@ -7,9 +7,9 @@ import subprocess
 import tempfile
 import xmlrpc.client
 
+import psutil
 import rosgraph
 import yaml
-from processes import processes_with
 from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
@@ -122,7 +122,12 @@ class System:
 
     def processes(self, word=""):
         """Ids of all its processes with a word on their command line, nodes in sessions of their own included."""
-        return processes_with(f"ROS_HOME={self.environment['ROS_HOME']}", word)
+        found = []
+        for process in psutil.process_iter():
+            with contextlib.suppress(psutil.Error):  # ended meanwhile, or another user's
+                is_own = process.environ().get("ROS_HOME") == self.environment["ROS_HOME"]
+                found += [process.pid] if is_own and word in "\0".join(process.cmdline()) else []
+        return found
 
     # -- what the master and the nodes say --
 
@@ -153,10 +158,6 @@ class System:
     def publisher(self, topic, prefix):
         """Name of a node that publishes a topic, by its prefix; None if there is none."""
         return self._registered(0, topic, prefix)
-
-    def offers(self, service):
-        """Whether a node offers a service."""
-        return self._registered(2, service, "/") is not None
 
     def _registered(self, kind, name, prefix):
         try:

@@ -2,7 +2,7 @@
 
 import ctypes
 import os
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 
@@ -17,25 +17,24 @@ def file_name(name: str) -> str:
     return f"libaro_robocop_goto_as_{name}.so"
 
 
-def find(name: str, folders: Optional[Sequence[str]] = None) -> str:
+def find(name: str) -> str:
     """A library's path: CMake puts it into the Python package, in devel space and in install space.
 
     In devel space that folder and the sources are both in the package's __path__. InstallationError when it is missing.
     """
-    folders = list(package_folders if folders is None else folders)
-    for folder in folders:
+    for folder in package_folders:
         path = os.path.join(folder, file_name(name))
         if os.path.isfile(path):
             return path
-    raise InstallationError(f"{file_name(name)} is in none of {', '.join(folders)}: {BUILD}")
+    raise InstallationError(f"{file_name(name)} is in none of {', '.join(package_folders)}: {BUILD}")
 
 
-def load(name: str, version: int, path: Optional[str] = None) -> ctypes.PyDLL:
+def load(name: str, version: int) -> ctypes.PyDLL:
     """Load a library. Its calls hold the GIL, so only one thread at a time runs in it.
 
     InstallationError when it is missing, can't be loaded, or was built from other sources: their version differs.
     """
-    path = path or find(name)
+    path = find(name)
     try:
         library = ctypes.PyDLL(path)
         built = getattr(library, f"aro_{name}_version")()
@@ -56,13 +55,10 @@ def address(name: str, array: np.ndarray, shape: Tuple[Optional[int], ...], dtyp
 
     ValueError unless the array is contiguous and has exactly this type and shape: C could read beyond its end.
     """
-    kind = array.dtype if isinstance(array, np.ndarray) else None
-    if kind is None or kind.type is not dtype or not kind.isnative or not array.flags.c_contiguous:
-        got = type(array).__name__ if kind is None else f"{kind}, strides {array.strides}"
+    if array.dtype.type is not dtype or not array.dtype.isnative or not array.flags.c_contiguous:
+        got = f"{array.dtype}, strides {array.strides}"
         raise ValueError(f"{name}: expected a C-contiguous array of {np.dtype(dtype)}, got {got}")
-    if array.shape != shape and (
-        len(array.shape) != len(shape) or any(size not in (None, have) for size, have in zip(shape, array.shape))
-    ):
+    if len(array.shape) != len(shape) or any(size not in (None, have) for size, have in zip(shape, array.shape)):
         expected: List[object] = ["any" if size is None else size for size in shape]
         raise ValueError(f"{name}: expected shape {tuple(expected)}, got {array.shape}")
     return int(array.__array_interface__["data"][0])

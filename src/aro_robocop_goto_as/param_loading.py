@@ -46,13 +46,14 @@ def group(cls: Type[T]) -> T:
     return field(default=cls(), metadata={"group": cls})
 
 
-def declared(cls: Type[Any]) -> Dict[str, "Field[Any]"]:
-    """The parameters of a dataclass and of its groups, by their names."""
-    specs: Dict[str, Field[Any]] = {}
+def declared(cls: Type[Any]) -> "Dict[str, Tuple[Field[Any], Type[Any]]]":
+    """The parameters of a dataclass and of its groups, by their names, with the type of a value: X of Optional[X]."""
+    hints, found = get_type_hints(cls), {}
     for spec in fields(cast(Any, cls)):
-        inner = spec.metadata.get("group")
-        specs.update(declared(inner) if inner else {_key(spec): spec})
-    return specs
+        inner, hint = spec.metadata.get("group"), hints[spec.name]
+        kind = next((arg for arg in get_args(hint) if arg is not type(None)), hint)
+        found.update(declared(inner) if inner else {_key(spec): (spec, kind)})
+    return found
 
 
 def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
@@ -61,19 +62,19 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     Raises ParameterError naming `source` (a file or a parameter namespace) and every key that is unknown, missing, of
     the wrong type or out of bounds, with its value and what was expected.
     """
-    specs, types = declared(cls), types_of(cls)
+    known = declared(cls)
     problems = [
-        f"{name}: missing, expected {types[name].__name__}"
-        for name, spec in specs.items()
+        f"{name}: missing, expected {kind.__name__}"
+        for name, (spec, kind) in known.items()
         if spec.default is MISSING and name not in raw
     ]
     values: Dict[str, Any] = {}
     for key, value in raw.items():
-        if key not in specs:
-            hint = did_you_mean(key, specs, "'{}'") or "; known are: {}".format(", ".join(sorted(specs)))
+        if key not in known:
+            hint = did_you_mean(key, known, "'{}'") or "; known are: {}".format(", ".join(sorted(known)))
             problems.append(f"{key}: unknown parameter{hint}")
             continue
-        values[key], problem = _checked(specs[key], types[key], value)
+        values[key], problem = _checked(*known[key], value)
         if problem:
             problems.append(f"{key}: {problem}")
     if not problems:
@@ -82,16 +83,6 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     if problems:
         raise ParameterError("{}: {}".format(source, "; ".join(problems)))
     return params
-
-
-def types_of(cls: Type[Any]) -> Dict[str, Type[Any]]:
-    """The type of each parameter's value."""
-    types: Dict[str, Type[Any]] = {}
-    hints = get_type_hints(cls)
-    for spec in fields(cast(Any, cls)):
-        inner = spec.metadata.get("group")
-        types.update(types_of(inner) if inner else {_key(spec): _type_of_value(hints[spec.name])})
-    return types
 
 
 def _made(cls: Type[T], values: Mapping[str, Any]) -> T:
@@ -110,13 +101,10 @@ def _key(spec: "Field[Any]") -> str:
     return spec.metadata.get("key") or spec.name
 
 
-def _type_of_value(hint: Any) -> Type[Any]:
-    """The type of a value: X of Optional[X] and of Tuple[X, ...], else the hint itself."""
-    given: Type[Any] = next((arg for arg in get_args(hint) if arg is not type(None)), hint)
-    return given
-
-
-def _to_float(value: int) -> float:
+def _converted(kind: Type[Any], value: Any) -> Any:
+    """A whole number as a float where one is expected."""
+    if kind is not float or type(value) is not int:
+        return value
     try:
         return float(value)
     except OverflowError:
@@ -127,12 +115,12 @@ def _checked(spec: "Field[Any]", kind: Type[Any], value: Any) -> Tuple[Any, Opti
     """A value, converted for its field, and what is wrong with the value, in words, or None."""
     count = spec.metadata.get("count")
     if count is None:
-        value = _to_float(value) if kind is float and type(value) is int else value
+        value = _converted(kind, value)
         return value, _problem(spec, kind, value)
     if not isinstance(value, list) or len(value) not in ([count] if count else range(1, len(value) + 1)):
         words = f"{count or ''} {'numbers' if kind is float else 'names'}".strip()
         return value, f"expected a list of {words}, got {value!r}"
-    values = tuple(_to_float(it) if kind is float and type(it) is int else it for it in value)
+    values = tuple(_converted(kind, it) for it in value)
     return values, next(filter(None, (_problem(spec, kind, it) for it in values)), None)
 
 

@@ -15,7 +15,7 @@ def goto(started, tmp_path):
 
 
 def test_goal_is_reached_in_a_system_started_for_it(goto):
-    command = goto("0.5", "0.2", "--world", "empty")
+    command = goto("0.15", "0", "--world", "empty")
     assert command.wait_for_exit() == 0, command.output
     assert "SUCCEEDED: REACHED: " in command.output
 

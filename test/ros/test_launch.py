@@ -143,7 +143,7 @@ def layered(field, layer):
 
 
 def written(path, cls, layer):
-    path.write_text(yaml.safe_dump({field.name: layered(field, layer) for field in declared(cls).values()}))
+    path.write_text(yaml.safe_dump({field.name: layered(field, layer) for field, _ in declared(cls).values()}))
     return path
 
 
@@ -155,7 +155,7 @@ def test_every_simulator_parameter_comes_from_argument_else_profile_else_config_
     def texts(layer, names):
         return [f"{field.name}:={layered(field, layer)}" for field in fields if field.name in names]
 
-    fields = declared(SimParams).values()
+    fields = [field for field, _ in declared(SimParams).values()]
     values = [{field.name: layered(field, layer) for field in fields} for layer in (1, 2, 3)]
     arguments = arguments_of("robocop_sim.launch") & {field.name for field in fields}
     assert arguments

@@ -1,4 +1,4 @@
-"""The package's programs as rosrun and roslaunch start them: without ./robocop, a display or a master."""
+"""The package's programs as ROS starts them: without ./robocop, a display or a master."""
 
 import os
 import signal
@@ -20,8 +20,9 @@ NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "ro
 @pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").glob("*.py")))
 def test_each_program_answers_help_without_a_master(name):
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
-    command = ["rosrun", "aro_robocop_goto_as", name, "--help"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=DEADLINE)
+    done = subprocess.run(
+        [ROOT / "scripts" / name, "--help"], env=environment, capture_output=True, text=True, timeout=DEADLINE
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert f"usage: rosrun aro_robocop_goto_as {name}" in done.stdout
     assert name not in NODES or len(done.stdout.splitlines()) == 3
@@ -42,16 +43,12 @@ def roslaunch(started, tmp_path):
 def test_without_a_display_roslaunch_leaves_rviz_out_with_one_warning_and_goes_on(roslaunch):
     launched = roslaunch("robocop_goto_as.launch", "drive:=kinematic")
     launched.wait_until(lambda: "RViz is not started" in launched.output, "the warning")
-    goto = [sys.executable, launched_script("robocop_goto.py"), "--frame", "odom", "0.2", "0"]
+    goto = [sys.executable, ROOT / "scripts" / "robocop_goto.py", "--frame", "odom", "0.2", "0"]
     done = subprocess.run(goto, env=launched.environment, capture_output=True, text=True, timeout=DEADLINE)
     assert done.returncode == 0, done.stdout + done.stderr
     assert launched.output.count("no usable display") == 1 and "Traceback" not in launched.output
     launched.process.interrupt()
     assert launched.wait_for_exit() == 0
-
-
-def launched_script(name):
-    return str(ROOT / "scripts" / name)
 
 
 @pytest.mark.slow
@@ -79,8 +76,9 @@ def test_a_second_launch_ends_and_the_first_goes_on_until_its_master_ends(roslau
     assert "has ended, and so does /robocop_sim" in launched.output
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("name", ["robocop_goto_as.py", "robocop_rviz_goto_ac.py"])
+@pytest.mark.parametrize(
+    "name, number", [("robocop_goto_as.py", signal.SIGINT), ("robocop_rviz_goto_ac.py", signal.SIGTERM)]
+)
 def test_a_program_that_waits_for_a_master_says_so_and_is_ended_by_a_signal(tmp_path, name, number):
     with Program(tmp_path, name) as program:
         program.wait_until(lambda: "waiting for a ROS master" in program.output, "the message")

@@ -29,21 +29,13 @@ def ros(tmp_path):
         yield system
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """Where the commands are typed."""
-    made = tmp_path / "folder"
-    made.mkdir()
-    return made
-
-
-@pytest.fixture
-def robocop(ros, folder):
-    return lambda command, *arguments: ros.start(command, ROOT / "robocop", command, *arguments, cwd=folder)
-
-
 @pytest.mark.slow
-def test_a_recorded_goal_is_played_again(ros, robocop, folder):
+def test_a_recorded_goal_is_played_again(ros, tmp_path):
+    def robocop(command, *arguments):
+        return ros.start(command, ROOT / "robocop", command, *arguments, cwd=folder)
+
+    folder = tmp_path / "folder"
+    folder.mkdir()
     system = robocop("run", "rviz:=false", "real_time_factor:=5")
     wait_for(lambda: ros.publisher(RESULT, SERVER), "the server")
     recorder = robocop("record", "run.bag")

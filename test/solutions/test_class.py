@@ -120,16 +120,20 @@ def rows(folder):
         return list(csv.DictReader(text))
 
 
-def expect_everybody_once(folder, count, output):
-    """Each hand-in is in the table, the overview and the output once, with the expected points."""
-    names = [f"student_{number:02}.py" for number in range(count)]
-    assert [row["name"] for row in rows(folder)] == names, output
-    assert [row["points"] for row in rows(folder)] == ["0.0" if n % 3 == 2 else "2.0" for n in range(count)], output
+def expect_everybody_once(folder, count, output, not_gradable):
+    """Each hand-in is in the table, the overview and the output once, with its points or (`not_gradable`) a reason."""
+    judged, table = [f"student_{number:02}.py" for number in range(count)], {row["name"]: row for row in rows(folder)}
+    assert sorted(table) == sorted([*judged, *not_gradable]) and len(rows(folder)) == len(table), output
+    points = ["0.0" if number % 3 == 2 else "2.0" for number in range(count)]
+    assert [table[name]["points"] for name in judged] == points, output
+    for name, reason in not_gradable.items():
+        assert not table[name]["points"] and table[name]["problem"].startswith(reason), table[name]
+        assert f"not gradable: {name}: {reason}" in output
     printed = collections.Counter(line.split("] ")[1].split(":")[0] for line in output.splitlines() if line[:1] == "[")
     assert set(printed.values()) == {1}, output
     html = (folder.parent / "results" / "index.html").read_text()
-    assert f"{count} judged, 0 not gradable" in html and "refresh" not in html
-    assert all(html.count(f"{name}/report.html") == 1 for name in names)
+    assert f"{count} judged, {len(not_gradable)} not gradable" in html and "refresh" not in html
+    assert all(html.count(f"{name}/report.html") == 1 for name in judged)
 
 
 @pytest.mark.slow
@@ -150,12 +154,14 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
     os.kill(workers[watch.stdout.readline().strip()].pid, signal.SIGKILL)
     output, _ = grading.communicate(timeout=TIMEOUT + 25.0 * count)
     assert grading.returncode == 0, output
-    expect_everybody_once(group, count, output)
+    expect_everybody_once(group, count, output, not_gradable={})
     assert len(stamps(group)) == count
 
 
 @pytest.mark.timeout(900)
-def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, count, start, tmp_path, monkeypatch):
+def test_interrupted_class_resumes_without_repeating_a_hand_in_and_names_what_is_not_gradable(
+    group, count, start, tmp_path, monkeypatch
+):
     scratch = tmp_path / "scratch"
     scratch.mkdir()
     monkeypatch.setenv("TMPDIR", str(scratch))
@@ -172,35 +178,14 @@ def test_interrupted_grading_resumes_without_repeating_finished_hand_ins(group, 
     assert 1 <= len(rows(group)) == len(done) < count
     places = {name: os.stat(group.parent / "results" / name).st_ino for name in done}
 
+    (group / "late.txt").write_text("no Python")
     second = grade_class(start, group)
     output, _ = second.communicate(timeout=TIMEOUT + 25.0 * count)
-    assert second.returncode == 0, output
-    assert f"{count} handed in, {len(done)} of them already graded" in output
-    expect_everybody_once(group, count, output)
+    assert second.returncode == 1, output  # of the one that is not gradable
+    assert f"{count + 1} handed in, {len(done)} of them already graded" in output
+    expect_everybody_once(group, count, output, not_gradable={"late.txt": "a .txt file: expected a folder"})
     assert {name: os.stat(group.parent / "results" / name).st_ino for name in done} == places
     assert all(stamps(group)[name] == done[name] for name in done)
-
-
-def test_what_can_not_be_graded_has_a_row_with_the_reason_and_the_exit_status_tells(tmp_path, start):
-    folder = tmp_path / "class"
-    for name in ("anna/lab.ipynb", "ben/lab.rar", "carl.7z", "dora.txt", "eve.zip"):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text("no archive")
-    (tmp_path / "plan.yaml").write_text(PLAN)
-    grading = grade_class(start, folder)
-    output, _ = grading.communicate(timeout=TIMEOUT)
-    assert grading.returncode == 1, output
-    assert "0 judged, 5 not gradable" in output
-    reasons = {
-        "anna": "no package and no Python file in it, only lab.ipynb",
-        "ben": "no package and no Python file in it, only lab.rar",
-        "carl.7z": "a .7z file: expected a folder, a zip or tar archive, or a Python file",
-        "dora.txt": "a .txt file: expected a folder, a zip or tar archive, or a Python file",
-        "eve.zip": "neither a zip nor a tar archive",
-    }
-    assert {row["name"]: row["points"] for row in rows(folder)} == dict.fromkeys(reasons, "")
-    assert all(row["problem"].startswith(reasons[row["name"]]) for row in rows(folder)), rows(folder)
-    assert all(f"not gradable: {name}: {reason}" in output for name, reason in reasons.items())
 
 
 @pytest.mark.slow

@@ -39,10 +39,6 @@ class FakeClock(Clock):
             action()
         return jobs.get_nowait()
 
-    def sleep(self, seconds: float) -> None:
-        """Nothing is scheduled while the owner sleeps."""
-        self.time += seconds
-
 
 class Owner:
     """Runs one robot in the empty world with the loop of ros/sim/node.py, by a fake clock."""

@@ -9,11 +9,7 @@ from aro_robocop_goto_as.geometry import rotation_matrix
 from aro_robocop_goto_as.shapes import Box, Plane
 
 BURGER_RADIUS = 0.105  # [m]
-
-
 CELL = 0.05  # [m] side of a raster cell
-
-
 HALF = 160  # raster cells from the origin to each border: 8 m, outside of every wall
 
 

@@ -6,8 +6,6 @@ from aro_robocop_goto_as.errors import WorldError
 from aro_robocop_goto_as.world.load import load_world
 
 BOX = '<link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link>'
-
-
 SPHERE = "<sphere><radius>0.5</radius></sphere>"
 
 

@@ -2,6 +2,7 @@
 
 import itertools
 import socket
+import struct
 from typing import Callable, Iterator, NamedTuple
 
 import pytest
@@ -9,12 +10,26 @@ import rospy
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import TCPROSPub
 
+SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, of a subscriber that is to stand still
+LONG = struct.pack("ll", 60, 0)  # of one that reads, whenever it gets a processor
+
 
 class Link(NamedTuple):
     """rospy's connection to a subscriber, and the subscriber's end of it."""
 
     connection: TCPROSTransport
     socket: socket.socket
+
+
+def received(end: socket.socket, size: int) -> bytes:
+    """The next bytes at a subscriber's end."""
+    end.settimeout(60.0)
+    data = b""
+    while len(data) < size:
+        part = end.recv(size - len(data))
+        assert part, "closed"
+        data += part
+    return data
 
 
 @pytest.fixture(name="connect")

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Optional
 
 import numpy as np
 import pytest
@@ -27,7 +28,6 @@ ARRAYS = {
         np.zeros((3, 4)).T,
         r"^footprints: expected a C-contiguous array of float64, got float64, strides \(8, 32\)",
     ),
-    "list": ([[0.0] * 3], "^footprints: expected a C-contiguous array of float64, got list"),
 }
 
 
@@ -35,38 +35,26 @@ ARRAYS = {
 def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> None:
     array, message = ARRAYS[case]
     with pytest.raises(ValueError, match=message):
-        compiled.address("footprints", array, (None, 3))  # type: ignore[arg-type]
-
-
-def _compile(tmp_path: Path, text: str) -> str:
-    source, path = tmp_path / "other.c", tmp_path / NAME
-    source.write_text(text)
-    subprocess.run(["cc", "-shared", "-fPIC", str(source), "-o", str(path)], check=True)
-    return str(path)
-
-
-def test_missing_library_is_reported_with_the_command_to_build_it(tmp_path: Path) -> None:
-    with pytest.raises(InstallationError, match=rf"^{NAME} is in none of {tmp_path}: build .*\./robocop setup"):
-        compiled.find("caster", [str(tmp_path)])
+        compiled.address("footprints", array, (None, 3))
 
 
 @pytest.mark.parametrize(
-    ("text", "message"),
+    ("source", "message"),
     [
+        (None, rf"^{NAME} is in none of /.*: build .*\./robocop setup"),
+        ("", "can't be used .*aro_caster_version.*: build"),
         ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 5: build"),
-        ("int other(void) { return 1; }", "can't be used .*aro_caster_version.*: build"),
     ],
 )
-def test_library_built_from_other_sources_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    path = _compile(tmp_path, text)
+def test_library_that_is_missing_or_of_other_sources_is_refused_with_the_command_to_build_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, source: Optional[str], message: str
+) -> None:
+    monkeypatch.setattr(compiled, "package_folders", [str(tmp_path)])
+    if source is not None:
+        command = ["cc", "-shared", "-fPIC", "-x", "c", "-", "-o", str(tmp_path / NAME)]
+        subprocess.run(command, input=source, text=True, check=True)
     with pytest.raises(InstallationError, match=message):
-        compiled.load("caster", caster_library.VERSION, path)
-
-
-def test_file_that_is_not_a_library_is_refused(tmp_path: Path) -> None:
-    (tmp_path / NAME).write_text("no library")
-    with pytest.raises(InstallationError, match="can't be used .*: build"):
-        compiled.load("caster", caster_library.VERSION, compiled.find("caster", [str(tmp_path)]))
+        compiled.load("caster", caster_library.VERSION)
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +77,7 @@ import os, sys
 import pytest
 from aro_robocop_goto_as import compiled
 folder, *arguments = sys.argv[1:]
-compiled.find = lambda name, folders=None: os.path.join(folder, compiled.file_name(name))
+compiled.find = lambda name: os.path.join(folder, compiled.file_name(name))
 sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arguments]))
 """
 TESTS = (

@@ -1,6 +1,5 @@
 """Changing the server's parameters while it runs: which sets are valid, and what the tools show as bounds."""
 
-import math
 import re
 from dataclasses import fields
 from pathlib import Path
@@ -28,8 +27,6 @@ def test_a_change_replaces_its_values_and_keeps_all_others() -> None:
     [
         ({"min_linear_velocity": 0.5}, "min_linear_velocity: expected at most max_linear_velocity 0.2, got 0.5"),
         ({"max_angular_velocity": 0.1}, "min_angular_velocity: expected at most max_angular_velocity 0.1, got 0.3"),
-        ({"angular_gain": math.nan}, "angular_gain: expected a finite number, got nan"),
-        ({"angular_gain": "high"}, "angular_gain: expected float, got str 'high'"),
     ],
 )
 def test_an_impossible_set_is_refused_with_the_reason(changes: Dict[str, Any], reason: str) -> None:

@@ -67,7 +67,7 @@ def visual_shapes(geometry: Geometry, client: int) -> List[int]:
     ]
 
 
-def _primitive(geometry: Geometry) -> Dict[str, Any]:
+def _primitive(geometry: Union[Box, Cylinder, Sphere, Plane]) -> Dict[str, Any]:
     """pybullet's arguments for a shape without triangles."""
     if isinstance(geometry, Box):
         return {"shapeType": pybullet.GEOM_BOX, "halfExtents": [size / 2 for size in geometry.size]}
@@ -75,9 +75,7 @@ def _primitive(geometry: Geometry) -> Dict[str, Any]:
         return {"shapeType": pybullet.GEOM_CYLINDER, "radius": geometry.radius, "height": geometry.length}
     if isinstance(geometry, Sphere):
         return {"shapeType": pybullet.GEOM_SPHERE, "radius": geometry.radius}
-    if isinstance(geometry, Plane):
-        return {"shapeType": pybullet.GEOM_PLANE, "planeNormal": geometry.normal}
-    raise TypeError(f"no shape for {geometry!r}")
+    return {"shapeType": pybullet.GEOM_PLANE, "planeNormal": geometry.normal}
 
 
 def _meshes(corners: np.ndarray) -> Iterator[Dict[str, Any]]:

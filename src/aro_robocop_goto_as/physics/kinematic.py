@@ -17,7 +17,7 @@ from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.caster_library import GridStruct
 from ..raycast.cross_section import CrossSection
 from ..raycast.grid_index import Tiles
-from ..raycast.movers import Movers
+from ..raycast.movers import moving
 from ..raycast.obstacle_distance import body_heights
 from ..robot.fleet import Fleet, FleetStruct, library
 from ..robot.model import BodyState
@@ -60,8 +60,7 @@ class _BodySection:
             for circle, motion in zip(section.circles.tolist(), section.motions)
         )
         self._circles = np.array([entry[:3] for entry in found], dtype=float).reshape(-1, 3)
-        moving = [(row, entry[3]) for row, entry in enumerate(found) if entry[3] is not None]
-        self.move = Movers(self._circles, moving).move
+        self.move = moving(self._circles, [motion for *_, motion in found])
         self.move(time)
         self.struct = _BodySectionStruct(
             address("segments", self._segments, (None, 2, 2)),

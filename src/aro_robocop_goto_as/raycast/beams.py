@@ -51,10 +51,6 @@ class Scene:
         """
         self._plane_of = np.array(plane_of, dtype=np.int64)
         count = len(self._plane_of)
-        if any(not 0 <= plane < len(planes) for plane in plane_of):
-            raise ValueError(f"plane_of: expected numbers from 0 to {len(planes) - 1}, got {list(plane_of)}")
-        if any(not 0 <= owner < count for plane in planes for owner in plane.owners):
-            raise ValueError(f"owners: expected numbers from 0 to {count - 1}")
         self.footprints = np.zeros((count, 3)) if footprints is None else footprints
         self._mounts = mounts
         self._planes = list(planes)
@@ -74,13 +70,9 @@ class Scene:
 
 
 class Fan:
-    """Beams at angle_min + i * increment [rad], i from 0 to samples - 1, counter-clockwise in the scanner's frame."""
+    """Beams at angle_min + i * increment [rad] in the scanner's frame, i from 0 to samples - 1; increment > 0."""
 
     def __init__(self, angle_min: float, increment: float, samples: int) -> None:
-        if not (increment > 0.0 and samples >= 1):
-            raise ValueError(f"expected increment > 0 and samples >= 1, got {increment} and {samples}")
-        if not (math.isfinite(angle_min) and math.isfinite(increment * samples)):
-            raise ValueError(f"expected finite angles, got angle_min {angle_min} and increment {increment}")
         self.angle_min = angle_min
         self.increment = increment
         self.samples = samples

@@ -10,7 +10,7 @@ from ..shapes import Box, Cylinder, Geometry, Mesh, PlacedShape, Plane, Sphere, 
 from ..world.model import World
 from ..world.scripted_motion import Motion
 from .grid_index import Tiles
-from .movers import Movers
+from .movers import moving
 
 CYLINDER_SIDES = 64  # of the prism that approximates a tilted cylinder; upright cylinders are exact
 FAR = 1e4  # [m] half the length of the segment that represents a vertical plane
@@ -33,10 +33,9 @@ class CrossSection:
         self.segments = np.concatenate([NO_SEGMENTS, *(of_one for of_one, _ in outlines)])  # (m, [start, end], [x, y])
         self.circles = np.concatenate([NO_CIRCLES, *(of_one for _, of_one in outlines)])  # (k, [x, y, radius]) [m]
         self.circles_at_start = self.circles.copy()
-        self.motions: Sequence[Optional[Motion]] = motions  # of each circle
+        self.motions: Sequence[Optional[Motion]] = motions  # of each circle; None: it never moves
         self.tiles = Tiles(self.segments) if len(self.segments) > MIN_INDEXED else None
-        moving = [(row, motion) for row, motion in enumerate(motions) if motion is not None]
-        self.move = Movers(self.circles, moving).move  # to be called with a time [s]
+        self.move = moving(self.circles, motions)  # to be called with a time [s]
 
 
 def outline(placed: PlacedShape, height: float) -> Tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,7 @@
 """The moving circles of a cross-section; compiled code puts them where they are at a time."""
 
 import ctypes
-from typing import List, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence
 
 import numpy as np
 
@@ -21,33 +21,25 @@ class _MoverStruct(ctypes.Structure):
     ]
 
 
-class Movers:
-    """Moves the circles of models, as world.scripted_motion.Motion.carry does."""
+def moving(circles: np.ndarray, motions: Sequence[Optional[Motion]]) -> Callable[[float], float]:
+    """A function that moves circles of models, as world.scripted_motion.Motion.carry does.
 
-    def __init__(self, circles: np.ndarray, moving: Sequence[Tuple[int, Motion]]) -> None:
-        """circles: (k, [x, y, radius]) [m] at time zero, changed in place; `moving`: row in circles, its motion."""
-        at, self._circles = address("circles", circles, (None, 3)), circles
-        self._stops: List[np.ndarray] = []
-        movers = []
-        for row, motion in moving:
+    circles: (k, [x, y, radius]) [m] at time zero, changed in place; motions: of each, None: it never moves
+    The function puts the circles where they are at a time of at least 0 [s]; it returns the largest distance moved [m].
+    """
+    at = address("circles", circles, (None, 3))
+    stops: List[np.ndarray] = []
+    movers: List[_MoverStruct] = []
+    for row, motion in enumerate(motions):
+        if motion is not None:
             x, y = map(float, circles[row, :2])
             place = compose(inverse(motion.world_from_model), Pose2D(x, y))
-            stops = np.array(motion.stops(), dtype=float).reshape(-1, 3)
-            self._stops.append(stops)
-            movers.append(
-                _MoverStruct(
-                    *motion.world_from_model,
-                    motion.turn,
-                    place.x,
-                    place.y,
-                    len(stops),
-                    address("stops", stops, (None, 3)),
-                    at + row * circles.strides[0],
-                )
-            )
-        self._structs = (_MoverStruct * len(movers))(*movers)
-        self._move = load().aro_move
+            stops.append(np.array(motion.stops(), dtype=float).reshape(-1, 3))
+            fields = (*motion.world_from_model, motion.turn, place.x, place.y, len(stops[-1]))
+            movers.append(_MoverStruct(*fields, address("stops", stops[-1], (None, 3)), at + row * circles.strides[0]))
+    structs, library = (_MoverStruct * len(movers))(*movers), load()
 
-    def move(self, time: float) -> float:
-        """Put the circles where they are at a time of at least 0 [s]; returns the largest distance moved [m]."""
-        return float(self._move(self._structs, len(self._structs), time)) if self._structs else 0.0
+    def move(time: float, _pointed_to: object = (circles, stops)) -> float:  # which the structures do not keep alive
+        return float(library.aro_move(structs, len(structs), time)) if structs else 0.0
+
+    return move

@@ -1,6 +1,6 @@
 /* The errors of laser scanners: exact distances -> ranges.
  *
- * The structures are mirrored in lidar.py and noise_streams.py; ARO_CASTER_VERSION changes with it.
+ * The structures are mirrored in lidar.py and sensor.py; ARO_CASTER_VERSION changes with it.
  */
 
 #include <math.h>

@@ -10,9 +10,8 @@ import numpy as np
 from ..compiled import address, members
 from ..raycast.beams import Fan
 from ..raycast.caster_library import load
-from .noise_streams import Episode
 from .scan_profiles import LidarSpec, ScanParams
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import Calls, Episode, Robots, Sensor, Site
 
 SCAN = "scan"
 STREAM = 0  # of the noise of the number of beams
@@ -62,12 +61,10 @@ class Lidar:
     def measuring(self, robots: Sequence[int], episode: Episode, ranges: np.ndarray) -> Callable[[], None]:
         """A function that turns exact distances into ranges each time it is called.
 
-        Distances and ranges are in these robots' rows of `ranges` (n, samples) [m]. The noise depends on seed, step
-        and robot.
+        Distances and ranges are in these robots' rows of `ranges` (n, samples) [m], as Fan.casting() fills them. The
+        noise depends on seed, step and robot.
         As in REP-117, too near is -inf and no return is +inf; with zero_is_none both are 0.0, as in the LDS drivers.
         """
-        if robots and not 0 <= min(robots) <= max(robots) < len(ranges):
-            raise ValueError(f"robots: expected numbers from 0 to {len(ranges) - 1}, got {robots}")
         numbers = (ctypes.c_int64 * len(robots))(*robots)
         address("ranges", ranges, (None, self.spec.samples))
         return partial(load().aro_measure, self, len(robots), numbers, ctypes.pointer(episode), ranges.ctypes)

@@ -4,7 +4,7 @@ from typing import Dict, Tuple
 
 from ..sim_params import Rates
 from .observations import Due, Observations, Subscriptions
-from .schedule import CLOCK, CONTROL, Schedule
+from .schedule import CLOCK, CONTROL, due_next
 
 
 class Agenda:
@@ -18,8 +18,7 @@ class Agenda:
         """How many steps after this one something is due, and what it is."""
         if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
             self._schedule_for(subscriptions)
-        steps, names = self._schedule.after(step)
-        return steps, self._dues[names]
+        return self._after[step % self._rates.physics_rate]
 
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         self._subscriptions = subscriptions
@@ -27,11 +26,12 @@ class Agenda:
         for name, sensor in self._observed.by_name.items():
             if sensor.unasked or subscriptions.get(name):
                 rates[name] = sensor.rate
-        self._schedule = Schedule(rates, self._rates.physics_rate)
+        after = due_next(rates, self._rates.physics_rate)
         self._dues: Dict[Tuple[str, ...], Due] = {}
-        for names in self._schedule.occurring:
+        for names in {names for _, names in after}:
             sensors = {name: subscriptions[name] for name in names if subscriptions.get(name)}
             self._dues[names] = Due(CLOCK in names, CONTROL in names, sensors)
+        self._after = [(steps, self._dues[names]) for steps, names in after]  # by the step's number within its second
         self.prepare()
 
     def prepare(self) -> None:

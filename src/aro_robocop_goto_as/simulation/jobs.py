@@ -27,10 +27,6 @@ class Clock:
         """The next job; raises queue.Empty when none has come within `timeout` [s]."""
         return jobs.get(timeout=timeout) if timeout > 0.0 else jobs.get_nowait()
 
-    def sleep(self, seconds: float) -> None:
-        """Wait without looking for jobs."""
-        time.sleep(seconds)
-
 
 class Jobs:
     """Any thread may use `post`, `call` and `wait_for`; all else is for the owner's thread."""
@@ -75,10 +71,6 @@ class Jobs:
         except queue.Empty:
             return
         job()
-
-    def sleep(self, seconds: float) -> None:
-        """Wait [s, wall], while jobs queue up."""
-        self._clock.sleep(seconds)
 
     def run_queued(self) -> None:
         """Run the jobs that are queued now, and no more: their senders may be faster than the owner."""

@@ -21,25 +21,20 @@ def due(step: int, rate: int, physics_rate: int) -> bool:
     return (step * rate) // physics_rate != ((step - 1) * rate) // physics_rate
 
 
-class Schedule:
-    """What is due when; every second is alike, as all rates are whole numbers."""
+def due_next(rates: Mapping[str, int], physics_rate: int) -> List[Tuple[int, Tuple[str, ...]]]:
+    """How many steps after each step of a second something is due, and what it is, in the order of the rates.
 
-    def __init__(self, rates: Mapping[str, int], physics_rate: int) -> None:
-        """`rates` [Hz] by the names of what is due; 0: never. One of them at least must divide physics_rate."""
-        self._physics_rate = physics_rate
-        names = [
-            tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
-            for step in range(1, physics_rate + 1)
-        ]
-        self.occurring = set(filter(None, names))  # what is due together on some steps
-        self._after: List[Tuple[int, Tuple[str, ...]]] = []  # by the number of the step within its second
-        following = next(filter(None, names))
-        steps = names.index(following) + 1
-        for due_now in reversed(names):
-            steps, following = (1, due_now) if due_now else (steps + 1, following)
-            self._after.append((steps, following))
-        self._after.reverse()
-
-    def after(self, step: int) -> Tuple[int, Tuple[str, ...]]:
-        """How many steps after this one something is due, and what it is, in the order of the rates."""
-        return self._after[step % self._physics_rate]
+    `rates` [Hz] by the names of what is due; 0: never. One of them at least must divide physics_rate. Every second is
+    alike, as all rates are whole numbers.
+    """
+    names = [
+        tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
+        for step in range(1, physics_rate + 1)
+    ]
+    following = next(filter(None, names))
+    steps = names.index(following) + 1
+    after: List[Tuple[int, Tuple[str, ...]]] = []
+    for due_now in reversed(names):
+        steps, following = (1, due_now) if due_now else (steps + 1, following)
+        after.append((steps, following))
+    return after[::-1]

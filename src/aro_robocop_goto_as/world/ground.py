@@ -10,7 +10,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from ..geometry import Pose2D, Pose3D, compose, inverse, rotation_matrix
-from ..shapes import Box, Cylinder, Mesh, Plane, Sphere, Walls
+from ..shapes import Box, Cylinder, Mesh, Plane, Sphere
 from .model import Obstacle, World
 
 MAX_TOP = 0.2  # [m] above z = 0: the highest top of a slab that is ground
@@ -51,9 +51,7 @@ def top(obstacle: Obstacle) -> float:
         return z + upwards * shape.length / 2.0 + math.sqrt(1.0 - upwards**2) * shape.radius
     if isinstance(shape, Sphere):
         return z + shape.radius
-    if isinstance(shape, Walls):
-        return z + shape.height
-    raise TypeError(f"no top for {shape!r}")
+    return z + shape.height
 
 
 def is_in_ground(obstacle: Obstacle) -> bool:

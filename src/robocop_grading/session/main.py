@@ -33,7 +33,6 @@ def _run(job: Job) -> None:
         run.scenarios()
     finally:
         run.close()
-        stage.bag.close()  # of a scenario that was cut short
 
 
 if __name__ == "__main__":

@@ -56,16 +56,15 @@ class ScenarioBag:
 
     def open(self, path: Path) -> None:
         """Begin a bag."""
-        self.close()
         self._file = _File(path)
         self._bag = rosbag.Bag(self._file, "w")
         setattr(self._bag, "_connection_indexes", _NoIndex())  # noqa: B010  mypy does not know it
 
     def close(self) -> None:
-        """Close the bag, if one is open."""
-        if self._bag is not None:
-            self._bag.close()
-            self._bag = None
+        """Write the file of the bag that is open."""
+        assert self._bag is not None
+        self._bag.close()
+        self._bag = None
 
     def write(self, topic: str, message: Any) -> None:
         """Write a message, unless the bag has become too large."""

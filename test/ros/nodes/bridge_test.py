@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """2D Nav Goals on their way through the bridge: transformed, replaced by newer ones, or refused with the reason.
 
 Which transform a goal gets, and what the status says, are in test/unit/ros/client.
@@ -6,7 +5,7 @@ Which transform a goal gets, and what the status says, are in test/unit/ros/clie
 
 from actionlib_msgs.msg import GoalStatus
 from clicks import Clicks
-from harness import SystemTest, distance, run, wait_for
+from harness import SystemTest, distance, wait_for
 
 from aro_robocop_goto_as.geometry import Pose2D
 
@@ -42,7 +41,3 @@ class Bridge(SystemTest):
         self.assertLess(distance(self.robot.wait_until_it_stands(), TARGET), NEAR)
         for goal in self.goals.of_others()[:-1]:
             self.assertIn(goal.result().status.status, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
-
-
-if __name__ == "__main__":
-    run(Bridge)

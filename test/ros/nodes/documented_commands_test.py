@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What docs/ tells the reader to type works in a running system: shell commands as printed, Python as one session."""
 
 import itertools
@@ -6,7 +5,7 @@ import sys
 import unittest
 
 from documentation import blocks, commands
-from harness import Robot, run, wait_for
+from harness import Robot, wait_for
 from systems import Process
 
 # Commands, and headings of Python sections, that are not run here.
@@ -71,7 +70,3 @@ class DocumentedCommands(unittest.TestCase):
         for heading, text in sections:
             with Process(sys.executable, "-c", text) as process:
                 self.assertEqual(process.wait_for_exit(), 0, f"{heading}: {process.output}")
-
-
-if __name__ == "__main__":
-    run(DocumentedCommands)

@@ -1,11 +1,10 @@
-#!/usr/bin/env python3
 """Whatever node ends, each goal ends once, the robot stops, and the next goal is reached.
 
 What goes wrong with odometry, scans and goals is in server_test.py and test/unit/ros/server.
 """
 
 import psutil
-from harness import ACTION, SERVER, SIMULATOR, SystemTest, run, script, wait_for, wait_for_connection
+from harness import ACTION, SERVER, SIMULATOR, SystemTest, script, wait_for, wait_for_connection
 from systems import Process
 
 SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py"}
@@ -111,7 +110,3 @@ class Faults(SystemTest):
     def usage(self):
         processes = [psutil.Process(node.pid) for node in self.nodes.values()]
         return [count for process in processes for count in (process.num_threads(), process.num_fds())]
-
-
-if __name__ == "__main__":
-    run(Faults)

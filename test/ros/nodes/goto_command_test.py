@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
 """`./robocop goto X Y` in a running system: progress, result or the reason, and exit status."""
 
 import signal
 
 from dynamic_reconfigure.client import Client
-from harness import SIMULATOR, SystemTest, distance, run, script
+from harness import SIMULATOR, SystemTest, distance, script
 from systems import Process
 
 from aro_robocop_goto_as.geometry import Pose2D
@@ -41,7 +40,3 @@ class GotoCommand(SystemTest):
             self.assertEqual(command.wait_for_exit(), 1, command.output)
         self.assertRegex(command.output, r"(?m)^PREEMPTED: goal ")
         self.robot.wait_until_it_stands()
-
-
-if __name__ == "__main__":
-    run(GotoCommand)

@@ -286,10 +286,12 @@ class Robot:
 class SystemTest(unittest.TestCase):
     """Tests of a running system. Each starts with the robot at its spawn, odometry at zero, and empty records."""
 
+    goals = robot = None  # those of all tests in this process
+
     @classmethod
     def setUpClass(cls):
-        cls.goals = Goals()
-        cls.robot = Robot()
+        SystemTest.goals = SystemTest.goals or Goals()
+        SystemTest.robot = SystemTest.robot or Robot()
 
     def setUp(self):
         self.robot.reset()

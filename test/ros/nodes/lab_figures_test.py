@@ -1,11 +1,10 @@
-#!/usr/bin/env python3
 """The figures that docs/lab.md prints for drives and for its tuning experiments are those of such runs."""
 
 import re
 
 from documentation import ROOT
 from dynamic_reconfigure.client import Client
-from harness import DEADLINE, SERVER, SystemTest, run
+from harness import DEADLINE, SERVER, SystemTest
 
 from aro_robocop_goto_as.goto_params import GotoParams
 
@@ -73,7 +72,3 @@ class LabFigures(SystemTest):
         self.assertAlmostEqual(took, reached, delta=0.7)
         self.assertGreater(max(angles), 1.0)
         self.assertAlmostEqual(min(angles[angles.index(max(angles)) :]), -0.25, delta=0.15)
-
-
-if __name__ == "__main__":
-    run(LabFigures)

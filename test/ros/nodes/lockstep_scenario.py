@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A scripted run in lockstep: three goals are reached, one is preempted, one ends at an obstacle.
+"""A scripted run in lockstep: a goal is reached, one is preempted, one ends at an obstacle.
 
 Usage: lockstep_scenario.py RESULT.json. The result holds the outcomes and a digest of all messages. Time advances
 only by ~step, and goals are sent while it stands, so the run is the same on any machine.
@@ -25,8 +25,8 @@ RECORDED = {
     "/robocop_goto_as/feedback": GoToPositionActionFeedback,
     "/robocop_goto_as/result": GoToPositionActionResult,
 }
-# Goal in odom [m], and the time [s] before the next one is sent. The third goal is preempted by the fourth.
-GOALS = [((1.0, 0.0), 10.0), ((1.0, -0.8), 10.0), ((0.2, -0.5), 2.0), ((0.5, 0.3), 10.0), ((1.1, 0.55), 5.0)]
+# Goal in odom [m], and the time [s] before the next one is sent. The second goal is preempted by the third.
+GOALS = [((0.4, 0.0), 5.0), ((0.5, -0.8), 2.0), ((1.1, 0.55), 6.0)]
 WARM_UP = 1.0  # [s] for every node to receive the clock, and for lockstep to learn the period of each topic
 
 

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A navigation stack at its interfaces: amcl's map -> odom, a costmap's scans in map, commands of move_base."""
 
 import math
@@ -10,7 +9,7 @@ import rospy
 import tf2_ros
 from aro_robocop_goto_as.msg import SimStatus
 from geometry_msgs.msg import Transform, TransformStamped, Twist, Vector3
-from harness import DEADLINE, SIMULATOR, Recorder, Robot, distance, run, wait_for, wait_for_subscriber
+from harness import DEADLINE, SIMULATOR, Recorder, Robot, distance, wait_for, wait_for_subscriber
 from nav_msgs.srv import GetMap
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Header
@@ -90,7 +89,3 @@ class Navigation(unittest.TestCase):
         end = self.robot.wait_until_it_stands()
         self.assertLess(distance(end, Pose2D(*WAY[-1])), REACHED + DRIFT)
         self.assert_scan_matches_map()
-
-
-if __name__ == "__main__":
-    run(Navigation)

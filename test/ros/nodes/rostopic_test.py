@@ -1,16 +1,15 @@
-#!/usr/bin/env python3
 """As in the handout, `rostopic pub` sends a goal, and `rostopic echo` shows its feedback and result."""
 
 import xmlrpc.client
 
 import rosgraph
 import rospy
-from harness import ACTION, SERVER, SystemTest, run, wait_for
+from harness import ACTION, SERVER, SystemTest, wait_for
 from systems import Process
 
 
 def rostopic_subscribes(topic):
-    """Whether the server is connected to a rostopic process, /rostopic_PID_TIME, on a topic; this node is /rostopic."""
+    """Whether the server is connected to a rostopic process, /rostopic_PID_TIME, on a topic."""
     server = xmlrpc.client.ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(SERVER))
     _, _, connections = server.getBusInfo(rospy.get_name())
     return any(
@@ -46,7 +45,3 @@ class Rostopic(SystemTest):
             result.output, r'(?m)^  message: "REACHED: 0\.(0..|100) m from the goal x 0\.30 y 0\.10 in odom '
         )
         self.robot.wait_until_it_stands()
-
-
-if __name__ == "__main__":
-    run(Rostopic)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Goals at actionlib's server: obstacles, cancels, replaced and outdated goals, and parameters that are changed.
 
 Outcomes that differ only in their reason are in test/unit/ros/server.
@@ -7,7 +6,7 @@ Outcomes that differ only in their reason are in test/unit/ros/server.
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
-from harness import DEADLINE, SERVER, SystemTest, call_simulator, run, wait_for
+from harness import DEADLINE, SERVER, SystemTest, call_simulator, wait_for
 
 
 class Server(SystemTest):
@@ -64,7 +63,3 @@ class Server(SystemTest):
         self.goals.log.wait_for(lambda m: refused in m.msg, "a refusal")
         goal.cancel()
         goal.result("PREEMPTED")
-
-
-if __name__ == "__main__":
-    run(Server)

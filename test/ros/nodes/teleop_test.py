@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """`./robocop teleop`: the robot moves only while a key is held. The simulator itself never stops it here."""
 
 import os
@@ -7,7 +6,7 @@ import signal
 import termios
 import unittest
 
-from harness import Robot, run, script, wait_for
+from harness import Robot, script, wait_for
 from systems import Process
 
 TURNS = 0.5  # [rad/s]
@@ -45,6 +44,8 @@ class Teleop(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.robot = Robot()
+        cls.nobodys = Terminal("--robot", "nobody")  # here, because it waits for a while
+        cls.addClassCleanup(cls.nobodys.__exit__)
 
     def setUp(self):
         self.robot.reset()
@@ -82,13 +83,6 @@ class Teleop(unittest.TestCase):
         self.robot.wait_until_it_stands()
 
     def test_robot_that_is_not_there_is_reported(self):
-        keyboard, screen = pty.openpty()
-        with Process(script("robocop_teleop.py"), "--robot", "nobody", stdin=screen) as program:
-            self.assertEqual(program.wait_for_exit(), 1)
-        os.close(keyboard)
-        os.close(screen)
+        program = self.nobodys.program
+        self.assertEqual(program.wait_for_exit(), 1)
         self.assertIn("nobody subscribes to /nobody/cmd_vel", program.output)
-
-
-if __name__ == "__main__":
-    run(Teleop)

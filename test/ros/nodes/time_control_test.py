@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Control of simulated time: real-time factor, steps and poses."""
 
 import rospy
@@ -6,7 +5,7 @@ from aro_robocop_goto_as.msg import SimStatus
 from aro_robocop_goto_as.srv import SetPose, SetPoseRequest, Step
 from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
-from harness import SIMULATOR, Recorder, SystemTest, call_simulator, distance, run, wait_for, wait_for_connection
+from harness import SIMULATOR, Recorder, SystemTest, call_simulator, distance, wait_for, wait_for_connection
 from nav_msgs.msg import Odometry
 
 from aro_robocop_goto_as.geometry import Pose2D
@@ -76,7 +75,3 @@ class TimeControl(SystemTest):
             (status.name, values["world"], values["drive"], values["robots"]),
             ("robocop_sim: simulation", "stage_4", "wheels", "1"),
         )
-
-
-if __name__ == "__main__":
-    run(TimeControl)

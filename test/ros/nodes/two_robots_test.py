@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Two robots: a goal for one moves only that one, and their frames are told apart by a prefix."""
 
 import unittest
@@ -6,7 +5,7 @@ import unittest
 import tf2_ros
 import yaml
 from clicks import Clicks
-from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, run, script, wait_for
+from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, script, wait_for
 from systems import Process
 from visualization_msgs.msg import MarkerArray
 
@@ -78,7 +77,3 @@ class TwoRobots(unittest.TestCase):
             {m.text: m.header.frame_id for m in shapes if m.ns == "names"},
             {name: f"{name}/base_footprint" for name in ("robot_1", "robot_2")},
         )
-
-
-if __name__ == "__main__":
-    run(TwoRobots)

@@ -1,7 +1,9 @@
 """Hosted packages: launched with the right arguments, and from scripts that can be started."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
@@ -45,6 +47,23 @@ def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, packa
     for others in ([], [LaunchNode(package, script, "sim", "x.launch")]):
         written = launch_file(hosted, tmp_path, {}, Started({}, {}, (), others)).read_text()
         assert ("aro_sim" in written) != bool(others)
+
+
+def test_launch_file_gets_its_arguments_and_scripts_without_one_become_the_labs_nodes(tmp_path: Path) -> None:
+    package = find_package(str(tree(tmp_path / "src" / LAB, PAIR)))
+    included = ElementTree.parse(launch_file(package, tmp_path, {"speed": "<1"}, Started({}, {}, ()))).findall(
+        "include"
+    )
+    assert included[-1].attrib == {"file": str(tmp_path / "src" / LAB / "a.launch")}
+    assert [argument.attrib for argument in included[-1]] == [{"name": "speed", "value": "<1"}]
+    scripts = {part: Choice(Path(f"{part}.py"), None, False, []) for part in ("server", "bridge")}
+    written = launch_file(replace(package, launch_file=None), tmp_path, {}, Started(scripts, {}, ()))
+    assert [
+        (node.get("pkg"), node.get("type"), node.get("name")) for node in ElementTree.parse(written).iter("node")
+    ] == [
+        (LAB, "server.py", "aro_robocop_goto_as_node"),
+        (LAB, "bridge.py", "robocop_rviz_goto_ac_node"),
+    ]
 
 
 @pytest.mark.parametrize(

@@ -38,16 +38,9 @@ def _post(x: float, y: float, radius: float, motion: Optional[Motion] = None) ->
     return Obstacle("post", Pose3D((x, y, 0.25)), Cylinder(radius, 0.5), motion)
 
 
-WALL = _world(_box(2.0, 0.0, 0.0, 0.02, 4.0))
-obstacles = st.one_of(
-    st.builds(_box, numbers, numbers, st.floats(-4.0, 4.0), st.floats(0.02, 0.5), st.floats(0.02, 0.5)),
-    st.builds(_post, numbers, numbers, st.floats(0.01, 0.4)),
-)
-
-
-def _kinematics(world: World, *spawns: Pose2D, rate: int = 30) -> KinematicEngine:
+def _kinematics(world: World, *spawns: Pose2D, radii: Optional[List[float]] = None) -> KinematicEngine:
     n = len(spawns)
-    engine = KinematicEngine(world, Fleet([model_named("burger")] * n, [AT_ONCE] * n, [RADIUS] * n), rate)
+    engine = KinematicEngine(world, Fleet([model_named("burger")] * n, [AT_ONCE] * n, radii or [RADIUS] * n), 30)
     engine.reset(spawns)
     return engine
 
@@ -82,20 +75,17 @@ def test_walls_found_by_a_grid_index_block_as_all_walls_do(
     assert ends[0] == ends[1]
 
 
-@pytest.mark.parametrize("v", [0.1, 1.0, 30.0, 1e4])
-@pytest.mark.parametrize("rate", [30, 100])
-def test_robot_stops_in_contact_with_a_wall_at_any_speed(v: float, rate: int) -> None:
-    engine = _kinematics(WALL, ORIGIN, rate=rate)
-    _drive(engine, int(2.5 / v * rate) + 2, (v, 0.0))
+@pytest.mark.parametrize("v", [0.1, 1.0, 1e4])
+def test_robot_stops_in_contact_with_a_wall_at_any_speed(v: float) -> None:
+    engine = _kinematics(_world(_box(2.0, 0.0, 0.0, 0.02, 4.0)), ORIGIN)
+    _drive(engine, int(2.5 / v * 30) + 2, (v, 0.0))
     assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
     assert engine.touching(0) and engine.fleet.twists[0, 0] == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.parametrize("indexed", [False, True])
-def test_robot_that_a_moving_obstacle_pushes_stops_at_another_robot(indexed: bool) -> None:
+def test_robot_that_a_moving_obstacle_pushes_stops_at_another_robot() -> None:
     along_x = Motion(Pose2D(-0.3, 0.0), waypoints=((10.0, 1.0, 0.0),))
-    far = [_box(10.0 + i, 10.0, 0.0, 0.1, 0.1) for i in range(300 if indexed else 0)]
-    engine = _kinematics(_world(_post(-0.3, 0.0, 0.1, along_x), *far), ORIGIN, Pose2D(0.3, 0.0))
+    engine = _kinematics(_world(_post(-0.3, 0.0, 0.1, along_x)), ORIGIN, Pose2D(0.3, 0.0))
     for step in range(1, 100):
         engine.advance(step, 1)
         engine.move_obstacles(step / 30.0)
@@ -119,14 +109,15 @@ def test_robot_never_penetrates_an_obstacle(yaw: float, v: float, w: float) -> N
 
 
 @given(st.lists(st.tuples(st.floats(-0.5, 0.5), st.floats(-3, 3)), min_size=4, max_size=4))
-def test_colliding_robots_never_overlap(velocities: List[Tuple[float, float]]) -> None:
+def test_colliding_robots_of_several_sizes_never_overlap(velocities: List[Tuple[float, float]]) -> None:
     spawns = [Pose2D(0.0, 0.0, 0.0), Pose2D(0.4, 0.0, math.pi), Pose2D(0.0, 0.4, -1.5), Pose2D(0.4, 0.4, -2.3)]
-    engine = _kinematics(_world(_post(1.0, 0.0, 0.1)), *spawns)
+    radii = np.array([0.08, 0.105, 0.12, 0.2])
+    engine = _kinematics(_world(_post(1.0, 0.0, 0.1)), *spawns, radii=radii.tolist())
     for _ in range(60):
         _drive(engine, 1, *velocities)
         places = engine.fleet.poses[:, :2]
-        apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)) + np.eye(4)
-        assert apart.min() > 2.0 * RADIUS - 1e-9
+        apart = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
+        assert (apart > radii + radii[:, None] - 1e-9)[~np.eye(4, dtype=bool)].all()
 
 
 def test_robots_of_different_heights_and_radii_are_blocked_by_what_is_at_their_height() -> None:

@@ -83,15 +83,6 @@ def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
     assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 
 
-@given(lattice, lattice, st.integers(0, 7))
-def test_beams_along_tile_borders_see_segments_on_the_border(x: float, y: float, eighth: int) -> None:
-    walls = [((i, j), (i + 0.5, j)) for i in range(-3, 4) for j in range(-3, 4)]
-    cut, yaw = cut_of(np.array(walls, float), np.zeros((0, 3))), eighth * math.pi / 4.0
-    every = Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut)
-    cut.tiles = Tiles(cut.segments)
-    assert Fan(0.0, math.pi / 4.0, 8).cast(np.array([[x, y, yaw]]), cut).tobytes() == every.tobytes()
-
-
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
@@ -120,27 +111,11 @@ def test_scanner_inside_a_circle_sees_its_far_side() -> None:
     assert Fan(0.0, math.pi, 2).cast(np.zeros((1, 3)), drum)[0] == pytest.approx([2.5, 1.5])
 
 
-# What is refused
-
-
-@pytest.mark.parametrize("angles", [(0.0, -0.1, 10), (0.0, math.nan, 10), (math.inf, 0.1, 10), (0.0, math.inf, 2)])
-def test_fan_with_negative_increment_or_non_finite_angles_is_refused(angles: "tuple[float, float, int]") -> None:
-    with pytest.raises(ValueError, match="^expected (increment > 0|finite angles)"):
-        Fan(*angles)
-
-
-def test_invalid_scenes_and_scans_are_refused() -> None:
-    plane = ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))
-    scene = Scene([plane], [0, 0], np.zeros((2, 3)))
+def test_scan_of_an_unknown_robot_or_from_a_pose_that_is_not_finite_is_refused() -> None:
+    scene = Scene([ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)))
     for robot in (-1, 2, 2**40):
         with pytest.raises(ValueError, match="^robots: "):
             LAB.scan(scene, [0, robot])
     scene.footprints[1, 2] = np.nan
-    with pytest.raises(ValueError, match="^poses: "):
+    with pytest.raises(ValueError, match="^poses: expected finite numbers"):
         LAB.scan(scene, [0])
-    with pytest.raises(ValueError, match="^plane_of: expected numbers from 0 to 0, got "):
-        Scene([plane], [0, 1], np.zeros((2, 3)))
-    with pytest.raises(ValueError, match=r"^mounts: expected shape \(2, 3\), got \(1, 3\)"):
-        Scene([plane], [0, 0], np.zeros((1, 3)))
-    with pytest.raises(ValueError, match="^owners: expected numbers from 0 to 0"):
-        Scene([ScanPlane(plane.section, np.zeros((1, 3)), np.array([1], np.int64))], [0], np.zeros((1, 3)))

@@ -39,20 +39,12 @@ def test_scan_hits_fall_on_occupied_cells_of_the_map(name):
         assert value_at(occupancy, *half_way) in (FREE, OCCUPIED)
 
 
-def test_unreachable_cells_are_unknown():
-    occupancy = grid_of(CrossSection(world_named("stage_4"), 0.182), Pose2D(-0.7, 0.0), 0.05)
-    assert value_at(occupancy, 0.4, 0.5) == UNKNOWN  # within a pillar
-    assert value_at(occupancy, 2.9, 2.9) == UNKNOWN  # outside
-    assert value_at(occupancy, 1.8, 1.8) == FREE
-    assert set(np.unique(occupancy.cells)) == {UNKNOWN, FREE, OCCUPIED}
-
-
-def test_cells_that_any_of_several_robots_reaches_are_free():
-    cut = CrossSection(world_named("stage_4"), 0.182)
-    occupancy = occupancy_of(cut.segments, cut.circles, [Pose2D(-0.7, 0.0), Pose2D(2.9, 2.9), Pose2D(1e6, 0.0)], 0.05)
-    assert value_at(occupancy, 2.9, 2.9) == value_at(occupancy, 1.8, 1.8) == FREE
-    assert value_at(occupancy, 0.4, 0.5) == UNKNOWN  # within a pillar
-    assert occupancy.resolution == 0.05
+def test_cells_that_any_of_several_robots_reaches_are_free_and_others_are_unknown():
+    cut, inside = CrossSection(world_named("stage_4"), 0.182), Pose2D(-0.7, 0.0)
+    for starts, outside in (([inside], UNKNOWN), ([inside, Pose2D(2.9, 2.9), Pose2D(1e6, 0.0)], FREE)):
+        occupancy = occupancy_of(cut.segments, cut.circles, starts, 0.05)
+        assert [value_at(occupancy, *place) for place in ((1.8, 1.8), (0.4, 0.5), (2.9, 2.9))] == [FREE, UNKNOWN, outside]
+        assert occupancy.resolution == 0.05
 
 
 def test_empty_world_is_a_small_free_map():

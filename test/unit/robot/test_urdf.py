@@ -20,12 +20,6 @@ URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
         ('link name="base_scan"', 'link name="laser"', "no link 'base_scan'"),
         ('<sphere radius="0.033"/>', '<cylinder radius="0.033" length="0.018"/>', "needs a sphere as its collision"),
         ('<child link="imu_link"/>', '<child link="elsewhere"/>', "no joints lead from link 'imu_link' to"),
-        ("</robot>", "", "not well-formed XML: "),
-        (
-            '<sphere radius="0.033"/>',
-            '<sphere radius="3 cm"/>',
-            "radius='3 cm', expected one finite number greater than 0",
-        ),
         (
             'size="0.140 0.140 0.143"',
             'size="0.140 0 0.143"',
@@ -37,7 +31,6 @@ URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
             'xyz="0 -0.090 0.023"',
             "expected 'wheel_left_joint' to the left of 'wheel_right_joint'",
         ),
-        ('<mass value="0.8257"/>', '<mass value="heavy"/>', "<mass> has value='heavy', expected one finite number"),
     ],
 )
 def test_broken_description_is_refused_with_file_and_problem(

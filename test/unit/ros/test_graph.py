@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import pytest
 import rosgraph
-import rospy
 
 from aro_robocop_goto_as.ros import graph
 
@@ -14,14 +13,8 @@ PUBLISHERS = [["/odom", ["/sim"]], ["/go/result", ["/server"]], ["/x/result", ["
 
 @pytest.fixture(autouse=True)
 def master(monkeypatch):
-    known = SimpleNamespace(
-        getTopicTypes=lambda: TYPES,
-        getSystemState=lambda: (PUBLISHERS, [], []),
-        lookupNode=lambda _: "http://localhost:1/",
-    )
+    known = SimpleNamespace(getTopicTypes=lambda: TYPES, getSystemState=lambda: (PUBLISHERS, [], []))
     monkeypatch.setattr(rosgraph, "Master", lambda _: known)
-    monkeypatch.setattr(rospy, "get_name", lambda: "/me")
-    return known
 
 
 def test_topic_without_a_publisher_is_not_published_and_one_of_unknown_type_is():

@@ -1,13 +1,12 @@
-"""The command line of a node."""
+"""The command line of a node, and its limits."""
 
-import subprocess
+import resource
 import sys
 
 import pytest
 
-from aro_robocop_goto_as.ros.client import rviz_bridge
+from aro_robocop_goto_as.ros import node_main
 from aro_robocop_goto_as.ros.node_main import answer_help
-from aro_robocop_goto_as.ros.server import node
 
 
 def test_unknown_option_is_refused_and_arguments_of_ros_are_not(monkeypatch):
@@ -19,22 +18,10 @@ def test_unknown_option_is_refused_and_arguments_of_ros_are_not(monkeypatch):
     answer_help("The simulator.")
 
 
-@pytest.mark.parametrize("program, text", [(rviz_bridge, "The bridge: makes goals"), (node, "The go-to action server")])
-def test_help_is_printed_without_a_ros_system(monkeypatch, capsys, program, text):
-    monkeypatch.setattr(sys, "argv", ["robocop.py", "--help"])
-    monkeypatch.setattr(program, "node", None)
-    with pytest.raises(SystemExit):
-        program.main()
-    assert text in capsys.readouterr().out
-
-
-def test_node_may_open_as_many_descriptors_as_the_system_allows() -> None:
-    program = (
-        "import resource\n"
-        "from aro_robocop_goto_as.ros.node_main import raise_descriptor_limit\n"
-        "hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]\n"
-        "resource.setrlimit(resource.RLIMIT_NOFILE, (20, hard))\n"
-        "raise_descriptor_limit()\n"
-        "assert resource.getrlimit(resource.RLIMIT_NOFILE) == (min(hard, 65_536), hard)\n"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True)
+@pytest.mark.parametrize("granted, wanted", [(4096, 4096), (2**30, 65_536), (resource.RLIM_INFINITY, 65_536)])
+def test_node_may_open_as_many_descriptors_as_the_system_allows(monkeypatch, granted, wanted):
+    limits = []
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (1024, granted))
+    monkeypatch.setattr(resource, "setrlimit", lambda *given: limits.append(given))
+    node_main.raise_descriptor_limit()
+    assert limits == [(resource.RLIMIT_NOFILE, (wanted, granted))]

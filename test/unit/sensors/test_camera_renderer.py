@@ -4,9 +4,9 @@ from typing import Callable
 
 import numpy as np
 import pytest
-from support import analytic_distances, drive, model_named, world_named
+from support import analytic_distances, model_named, world_named
 
-from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Pose3D, compose3, lifted, rotation_matrix
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.sensors.camera_image import CameraImage, CameraSpec, points_of
 from aro_robocop_goto_as.shapes import Box
 from aro_robocop_goto_as.simulation.simulator import Simulator
@@ -91,10 +91,3 @@ def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> No
     assert (first.depth != later.depth).any()
     sim.change_world(world_named("empty"))
     assert np.isinf(_image(sim).depth[:50]).all()
-
-
-def test_camera_rate_is_the_number_of_images_per_second_and_zero_disables_them(simulator: Make) -> None:
-    for rate in (10, 0):
-        sim = simulator("stage_1", model="waffle", camera_rate=rate, camera_width=8, camera_height=6, **KINEMATIC)
-        seen = drive(sim, STANDSTILL, 1.0, ["camera"])
-        assert sum(bool(observed.of("camera")) for observed in seen) == rate

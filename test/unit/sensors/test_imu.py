@@ -16,12 +16,6 @@ def _measured(before: BodyState, after: BodyState, dt: float, at: Vector3) -> np
     return imu.measure(before, after, dt, Pose3D(at), EXACT, np.random.Generator(np.random.Philox(1)))
 
 
-def test_imu_at_rest_measures_gravity_upwards() -> None:
-    sample = _measured(STANDING, STANDING, 0.01, (0.0, 0.0, 0.0))
-    assert sample[imu.FORCE] == pytest.approx([0.0, 0.0, STANDARD_GRAVITY])
-    assert sample[imu.RATES] == pytest.approx([0.0, 0.0, 0.0])
-
-
 def test_off_centre_imu_measures_the_acceleration_at_its_mounting_point() -> None:
     before = BodyState(Pose3D(), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     after = BodyState(Pose3D(), (0.1, 0.0, 0.0), (0.0, 0.0, 2.0))

@@ -81,15 +81,3 @@ def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
     assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
     _measure(odometers)
     assert odometers.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)
-
-
-def test_odometry_of_the_world_has_no_errors() -> None:
-    fleet = _fleet()
-    fleet.place(0, Pose2D(1.0, 2.0, 3.0))
-    odometers = Odometers(OdometryParams("world", 0.1, 0.1, 0.1), _site(fleet))
-    odometers.reset([Pose2D(1.0, 2.0, 3.0)])
-    assert odometers.poses[0].tolist() == [1.0, 2.0, 3.0]
-    fleet.poses[0], fleet.twists[0] = (4.0, 5.0, 6.0), (0.1, 0.2)
-    assert odometers.pose_now(0) == (4.0, 5.0, 6.0) and odometers.poses[0, 0] == 1.0
-    odometers.update()
-    assert odometers.poses[0].tolist() == [4.0, 5.0, 6.0] and odometers.twists[0].tolist() == [0.1, 0.2]

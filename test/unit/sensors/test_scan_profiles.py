@@ -9,8 +9,8 @@ import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.sensors.lidar import Lidar
-from aro_robocop_goto_as.sensors.noise_streams import Episode
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.sensors.sensor import Episode
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
@@ -32,34 +32,28 @@ def _scans(sim: Simulator, count: int) -> "list[np.ndarray]":
     return found
 
 
-def test_the_default_is_the_labs_gazebo_sensor() -> None:
+def test_the_default_is_the_labs_gazebo_sensor_with_its_beams_as_lab_code_spreads_them() -> None:
     scan = SimParams().sensors.scan
     spec = scan.lidar()
     assert (scan.rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
     assert (spec.range_min, spec.range_max, spec.noise) == (0.12, 10.0, 0.01)
-    assert _measured("gazebo", [0.1, 1.0, math.inf], noise=0.0) == [-math.inf, 1.0, math.inf]
-
-
-def test_beams_are_spread_as_lab_code_expects() -> None:
-    spec = SimParams().sensors.scan.lidar()
-    assert spec.increment == pytest.approx(6.28319 / 359)
     assert len(np.arange(spec.angle_min, spec.angle_max + spec.increment, spec.increment)) == 360
     inc = np.float32(spec.increment)
     assert len(np.arange(np.float32(spec.angle_min), np.float32(spec.angle_max) + inc / 2, inc)) == 360
 
 
-def test_an_lds01_scans_at_5_hz_with_one_beam_per_degree() -> None:
-    scan = SimParams.of(scan_profile="lds01").sensors.scan
-    spec = scan.lidar()
-    assert (scan.rate, spec.samples, spec.range_min, spec.range_max) == (5, 360, 0.12, 3.5)
-    assert spec.angle_max == pytest.approx(2.0 * math.pi - spec.increment)
-    assert spec.increment == pytest.approx(math.radians(1.0))
-
-
-def test_an_lds01_reports_no_return_as_zero_and_ranges_in_whole_millimetres() -> None:
-    assert _measured("lds01", [0.119, 0.12, 1.23449, 3.5, 3.51, math.inf], noise=0.0) == pytest.approx(
-        [0.0, 0.12, 1.234, 3.5, 0.0, 0.0], abs=1e-12
-    )
+@pytest.mark.parametrize(
+    "profile, ranges",
+    [
+        ("gazebo", [-math.inf, 0.12, 1.23449, 3.5, 3.51, math.inf]),
+        ("lds01", [0.0, 0.12, 1.234, 3.5, 0.0, 0.0]),  # in whole millimetres
+    ],
+)
+def test_what_is_too_near_or_too_far_is_reported_as_the_scanners_driver_does(
+    profile: str, ranges: "list[float]"
+) -> None:
+    measured = _measured(profile, [0.119, 0.12, 1.23449, 3.5, 3.51, math.inf], noise=0.0)
+    assert measured == pytest.approx(ranges, abs=1e-12)
 
 
 def test_ideal_scans_are_exact(simulator: Make) -> None:
@@ -86,9 +80,8 @@ def test_an_lds02s_number_of_beams_varies_reproducibly(simulator: Make) -> None:
 
 
 def test_any_number_of_beams_covers_the_same_full_turn(simulator: Make) -> None:
-    spec = PROFILES["lds02"].spec
-    for samples in (225, 230, 235):
-        turned = spec.with_samples(samples)
+    for profile, samples in (("lds01", 360), ("lds02", 225), ("lds02", 230), ("lds02", 235)):
+        turned = PROFILES[profile].spec.with_samples(samples)
         assert turned.increment * samples == pytest.approx(2.0 * math.pi)
     sim = simulator("stage_1", Pose2D(0.5, 0.0), scan_profile="lds02", scan_noise=0.0)
     for scan in _scans(sim, 5):

@@ -32,24 +32,26 @@ def test_factor_may_change_while_time_runs() -> None:
 def test_paused_simulation_repeats_the_clock_and_runs_jobs_until_it_is_resumed() -> None:
     owner = Owner(0.5, start_paused=True)
     times: list[float] = []
-    owner.post(0.95, lambda: times.append(owner.simulator.time))
+    for delay in (0.31, 0.32, 0.33, 0.95):
+        owner.post(delay, lambda: times.append(owner.simulator.time))
     owner.post(1.0, lambda: owner.simulation.set_paused(False))
     owner.run()
-    assert times == [0.0]
+    assert times == [0.0] * 4
     assert owner.events.count("clock repeated") == pytest.approx(9, abs=1)
     assert owner.clock.time == pytest.approx(101.5, abs=0.05)
     assert owner.simulation.take_changes() == {Change.STATUS} and owner.simulation.take_changes() == set()
 
 
-def test_span_runs_exactly_its_steps_and_then_stays_paused() -> None:
+@pytest.mark.parametrize("seconds, steps", [(0.26, 62), (0.0, 1)])
+def test_span_runs_exactly_its_steps_one_at_least_and_then_stays_paused(seconds: float, steps: int) -> None:
     owner = Owner(start_paused=True, clock_rate=1)
     time, begun = owner.simulation.time_control, []
-    owner.post(0.1, lambda: begun.extend(time.begin_span(seconds, 0) for seconds in (0.26, 1.0)))
+    owner.post(0.1, lambda: begun.extend(time.begin_span(asked, 0) for asked in (seconds, 1.0)))
     owner.is_stopped = lambda: owner.clock.time > 103.0
     owner.run()
     span, refused = begun
     assert refused is None, "while the first one runs"
-    assert span is not None and span.result(0) == owner.simulator.steps == 62
+    assert span is not None and span.result(0) == owner.simulator.steps == steps
     assert time.paused and time.standing
 
 

@@ -38,9 +38,10 @@ def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict
 
 
 def test_every_rate_parameter_is_kept(simulator: Make) -> None:
-    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10)
+    rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10, camera=12)
     given = {f"{name}_rate": rate for name, rate in rates.items()}
-    sim = simulator("empty", drive="kinematic", physics_rate=600, clock_rate=1, control_rate=2, **given)
+    given.update(physics_rate=600, clock_rate=1, control_rate=2, camera_width=8, camera_height=6)
+    sim = simulator("empty", model="waffle", drive="kinematic", **given)
     seen = drive(sim, STANDSTILL, 1.0, everything(1))
     rates.update(joints=rates.pop("joint_state"), tf=rates["odom"])
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in rates} == rates
@@ -93,10 +94,13 @@ def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make)
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
 
 
-def test_map_and_odom_are_one_where_odometry_is_of_the_world(simulator: Make) -> None:
-    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world")
+def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulator: Make) -> None:
+    errors = dict(odom_wheel_radius_error=0.1, odom_slip=0.1, encoder_tick=0.1)
+    sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", **errors)
     assert _odom(sim) == sim.world_from_footprint()
     sim.place(Pose2D(1.0, -1.0, 1.0))
+    seen = drive(sim, Twist2D(0.2, 0.3), 1.0, ["odom"])[-1].odometry
+    assert (Pose2D(*seen.poses[0]), Twist2D(*seen.twists[0])) == (sim.world_from_footprint(), sim.velocity())
     assert sim.map_from_odom() == Pose2D()
 
 

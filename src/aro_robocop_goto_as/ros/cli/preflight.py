@@ -10,7 +10,7 @@ import rosparam  # with its tags for YAML, such as !degrees
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
-from ...param_loading import from_dict, types_of
+from ...param_loading import declared, from_dict
 from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...sim_params import SimParams
@@ -27,8 +27,8 @@ def check(given: Mapping[str, str]) -> None:
 
     A world is found, but not read. The simulator checks what its parameter files say.
     """
-    kinds = types_of(SimParams)
-    values = {name: _value(text, kinds[name]) for name, text in given.items() if text and name in kinds}
+    known = declared(SimParams)
+    values = {name: _value(text, known[name][1]) for name, text in given.items() if text and name in known}
     p = from_dict(SimParams, values, "launch arguments")
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))

@@ -13,7 +13,7 @@ from ... import compiled
 from ...compiled import members
 from .packed import PackedMessage
 from .publisher import DirectPublisher
-from .rospy_internals import count_messages, count_sent, disconnect, latch_lock
+from .rospy_internals import disconnect, latch_lock
 
 VERSION = 7  # of batch.c
 
@@ -61,11 +61,11 @@ class Batch:
         self, messages: Sequence[Posted], last: Sequence[Posted] = (), filled: Sequence[PackedMessage] = ()
     ) -> None:
         """`last`: messages sent after all others, such as the clock; `filled`: messages filled but not sent."""
-        self._messages = [*messages, *last]
-        self._parcels = [(*posted, link) for posted in self._messages for link in posted[0].links]
+        sent = [*messages, *last]
+        self._parcels = [(*posted, link) for posted in sent for link in posted[0].links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
-            for message in (*(message for _, message in self._messages), *filled)
+            for message in (*(message for _, message in sent), *filled)
             for field in message.fields
         ]
         parcels = [
@@ -80,9 +80,8 @@ class Batch:
             (_ParcelStruct * len(parcels))(*parcels),
         )
         self._pointer, self._fill_and_send = ctypes.addressof(self._struct), _library().aro_send
-        locks = [lock for lock in (latch_lock(topic) for topic, _ in self._messages) if lock is not None]
+        locks = [lock for lock in (latch_lock(topic) for topic, _ in sent) if lock is not None]
         self._lock: Any = locks[0] if locks else threading.Lock()
-        self._times = 0  # sent since the statistics were updated
 
     def send(self, stamp_ns: int, more: bool = False) -> None:
         """Send everything at a simulated time [ns].
@@ -92,7 +91,6 @@ class Batch:
         A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. All
         subscribers of a step share that time, because a stopped node can have many topics.
         """
-        self._times += 1
         with self._lock:
             if self._fill_and_send(self._pointer, stamp_ns, more):
                 self._finish()
@@ -111,11 +109,3 @@ class Batch:
                     disconnect(topic, link.connection)
                 else:
                     may_wait = may_wait and (sent or stood)
-
-    def count(self) -> None:
-        """Update rospy's statistics of these topics and connections."""
-        times, self._times = self._times, 0
-        for topic, message in self._messages:
-            count_messages(topic, times, message.size)
-        for _, message, link in self._parcels:
-            count_sent(link.connection, times, message.size)

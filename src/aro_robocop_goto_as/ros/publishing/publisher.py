@@ -7,7 +7,7 @@ import threading
 import warnings
 import weakref
 from contextlib import suppress
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, List, Optional, Tuple
 
 import rospy
 
@@ -22,28 +22,26 @@ _publishers: "weakref.WeakSet[DirectPublisher]" = weakref.WeakSet()
 class DirectPublisher(rospy.Publisher):
     """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss."""
 
-    def __init__(self, topic: str, kind: Any, latch: bool, on_change: Callable[[], None]) -> None:
+    changes = 0  # how often the subscribers of any publisher have changed; counted in rospy's threads
+    _lock = threading.Lock()
+
+    def __init__(self, topic: str, kind: Any, latch: bool) -> None:
         self.links: Tuple[SubscriberLink, ...] = ()
-        self._links_lock = threading.Lock()
-
-        def changed() -> None:
-            self._update_links()
-            on_change()
-
         listener = rospy.SubscribeListener()
-        listener.peer_subscribe = listener.peer_unsubscribe = lambda *_: changed()
+        listener.peer_subscribe = listener.peer_unsubscribe = lambda *_: self._update_links()
         super().__init__(topic, kind, subscriber_listener=listener, latch=latch, queue_size=None)
-        changed()  # for a subscriber that connected before the listener was there
+        self._update_links()  # for a subscriber that connected before the listener was there
         _publishers.add(self)
 
     def _update_links(self) -> None:
-        with self._links_lock:
+        with DirectPublisher._lock:
             known = {id(link.connection): link for link in self.links}
             found: List[Optional[SubscriberLink]] = [
                 known.get(id(connection)) or _link(connection, connected)
                 for connection, connected in connections_of(self)
             ]
             self.links = tuple(link for link in found if link is not None)
+            DirectPublisher.changes += 1
 
     def resume(self) -> None:
         """Send the latched message to subscribers that stood still, missed the message, and read again."""
@@ -83,13 +81,8 @@ def _link(connection: Any, connected: socket.socket) -> Optional[SubscriberLink]
     return link
 
 
-def publisher(
-    topic: str, kind: Any, latch: bool = False, on_change: Callable[[], None] = lambda: None
-) -> DirectPublisher:
-    """Advertise a topic.
-
-    `on_change` is called, from rospy's threads, when a subscriber connects or disconnects.
-    """
+def publisher(topic: str, kind: Any, latch: bool = False) -> DirectPublisher:
+    """Advertise a topic."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # rospy advises a queue_size, which would drop messages
-        return DirectPublisher(topic, kind, latch, on_change)
+        return DirectPublisher(topic, kind, latch)

@@ -35,20 +35,6 @@ def disconnect(publisher: rospy.Publisher, connection: Any) -> None:
                 topic.remove_connection(connection)
 
 
-def count_messages(publisher: rospy.Publisher, number: int, size: int) -> None:
-    """Count messages of `size` bytes that were sent to a publisher's subscribers; rospy's statistics show them."""
-    topic = publisher.impl
-    if topic is not None:
-        topic.seq += number
-        topic.message_data_sent += number * size
-
-
-def count_sent(connection: Any, number: int, size: int) -> None:
-    """Count messages of `size` bytes that were sent to one subscriber, as rospy's write_data does."""
-    connection.stat_bytes += number * size
-    connection.stat_num_msg += number
-
-
 def latch_lock(publisher: rospy.Publisher) -> Optional[threading.RLock]:
     """The lock under which rospy sends the message of a latching topic to a new subscriber; None if it doesn't latch.
 

@@ -11,10 +11,6 @@ from typing import Any
 
 import rospy
 
-from .rospy_internals import count_sent
-
-WOULD_BLOCK = (-errno.EAGAIN, -errno.EWOULDBLOCK)  # the subscriber's socket takes nothing at the moment
-
 
 class SubscriberLink:
     """One subscriber of one topic; its publisher's thread calls the methods.
@@ -44,8 +40,7 @@ class SubscriberLink:
 
     def write(self, data: bytes) -> None:
         """Send a message, or miss it; OSError if the connection is lost."""
-        if self.finish(memoryview(data), 0, may_wait=True):
-            count_sent(self.connection, 1, len(data))
+        self.finish(memoryview(data), 0, may_wait=True)
 
     def finish(self, message: memoryview, taken: int, may_wait: bool) -> bool:
         """Send the rest of a message of which `taken` bytes were sent (or -errno); return whether all bytes were sent.
@@ -53,7 +48,7 @@ class SubscriberLink:
         OSError if the connection is lost. A subscriber that takes nothing at once is skipped, unless this call may
         wait.
         """
-        if taken < 0 and taken not in WOULD_BLOCK:
+        if taken < 0 and taken != -errno.EAGAIN:  # which means that the socket takes nothing at the moment
             raise OSError(-taken, "send")
         left = message[max(0, taken) :]
         if self.push_rest():

@@ -18,11 +18,11 @@ JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default
 class CameraTopics:
     """Topics named as the TurtleBot3's in Gazebo. Colour and depth share one lens: one frame, one calibration."""
 
-    def __init__(self, prefix: str, spec: CameraSpec, frame: str, on_change: Callable[[], None]) -> None:
+    def __init__(self, prefix: str, spec: CameraSpec, frame: str) -> None:
         self._spec = spec
         self._frame = frame
         self._topics: List[Tuple[rospy.Publisher, Callable[[CameraImage, CameraSpec, Header], Any]]] = [
-            (publisher(f"{prefix}camera/{name}", kind, on_change=on_change), to_message)
+            (publisher(f"{prefix}camera/{name}", kind), to_message)
             for name, kind, to_message in (
                 ("rgb/image_raw", Image, to_color),
                 ("rgb/image_raw/compressed", CompressedImage, to_jpeg),  # as image_transport names it

@@ -1,6 +1,7 @@
 """robocop_sim: the loop that steps the simulation, and publishes and receives all of its topics."""
 
 import contextlib
+from time import sleep
 from typing import AbstractSet, Any, Callable
 
 import rospy
@@ -81,7 +82,7 @@ class SimNode:
         self._run_jobs()
         wait = time.hold(simulator.steps)
         if 0.0 < wait < MAX_SLEEP:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
-            self._simulation.jobs.sleep(wait)
+            sleep(wait)
             time.pacer.waited(wait)
             self._run_jobs()
             wait = time.hold(simulator.steps)
@@ -115,9 +116,8 @@ class SimNode:
         time.pacer.waited(time.pacer.now() - started)
 
     def _report(self) -> None:
-        """Publish and count what is due by the wall clock."""
+        """Publish what is due by the wall clock."""
         if self._status.report():
-            self._topics.count()
             self._status.warn_of_full_speed(self._commands.connected)
             resume()
 

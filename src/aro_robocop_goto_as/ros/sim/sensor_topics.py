@@ -169,8 +169,7 @@ TOPICS: Dict[str, Topic] = {
 class SensorTopics:
     """Publishers in a robot's namespace; its frames carry its name as a prefix."""
 
-    def __init__(self, index: int, simulator: Simulator, on_change: Callable[[], None]) -> None:
-        """`on_change` is called when a subscriber of any topic connects or disconnects."""
+    def __init__(self, index: int, simulator: Simulator) -> None:
         p, self._name = simulator.params, simulator.robots[index].name
         self.row: int = index
         self.observed: Observations = simulator.observed
@@ -180,7 +179,7 @@ class SensorTopics:
         self.scan_number = counter()  # whatever their number of beams
         self._packed: Dict[Tuple[str, int], PackedMessage] = {}  # by sensor and, for a scan, its number of beams
         self.topics: Dict[str, Any] = {  # by sensor
-            sensor: publisher(self.frame(topic.name), topic.kind, on_change=on_change)
+            sensor: publisher(self.frame(topic.name), topic.kind)
             for sensor, topic in TOPICS.items()
             if self.observed.by_name[sensor].rate
         }
@@ -188,7 +187,7 @@ class SensorTopics:
         if camera is not None and self.observed.camera.rate:
             from .camera_topics import CameraTopics
 
-            self.topics[CAMERA] = CameraTopics(self.frame(""), camera, self.frame(CAMERA_FRAME), on_change)
+            self.topics[CAMERA] = CameraTopics(self.frame(""), camera, self.frame(CAMERA_FRAME))
 
     def frame(self, name: str) -> str:
         """A frame or topic of this robot, with the robot's name as a prefix."""

@@ -17,7 +17,7 @@ from ...simulation.observations import Due, Observations, Subscriptions
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.batch import Batch, Posted
-from ..publishing.publisher import publisher
+from ..publishing.publisher import DirectPublisher, publisher
 from ..publishing.rospy_internals import set_latched
 from .sensor_topics import TOPICS, SensorTopics, packed_clock, packed_transforms
 
@@ -27,26 +27,21 @@ class StepTopics:
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
-        self.tf = publisher("/tf", TFMessage, on_change=self._on_change)
+        self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
-        self.robots = [SensorTopics(index, simulator, self._on_change) for index in range(len(simulator.robots))]
-        self.clock = publisher("/clock", Clock, latch=True, on_change=self._on_change)
+        self.robots = [SensorTopics(index, simulator) for index in range(len(simulator.robots))]
+        self.clock = publisher("/clock", Clock, latch=True)
         self._clock_message = packed_clock()
         set_latched(self.clock, self._clock_message)
-        self._changed = True
+        self._changes = -1  # of the publishers, when these were made:
         self._subscriptions: Subscriptions = {}
         self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
         self._clock_alone = Batch([])
 
-    def _on_change(self) -> None:
-        """A subscriber has connected or disconnected. Called from rospy's threads."""
-        self._changed = True
-
     def subscriptions(self) -> Subscriptions:
         """Sensor -> indices of the robots for which it is subscribed to."""
-        if self._changed:
-            self._changed = False  # before the look at the connections: a change during it causes another look
-            self.count()
+        if self._changes != DirectPublisher.changes:
+            self._changes = DirectPublisher.changes  # before the look at the connections: one may change during it
             self._batches = {}
             self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
@@ -87,11 +82,6 @@ class StepTopics:
         """Simulated time [ns] alone."""
         self.subscriptions()
         self._clock_alone.send(stamp_ns)
-
-    def count(self) -> None:
-        """Update rospy's statistics."""
-        for batch in (self._clock_alone, *(batch for _, batch in self._batches.values())):
-            batch.count()
 
     def packed(self, due: Due) -> List[Posted]:
         """The packed messages of what is due, with their topics."""

@@ -10,8 +10,8 @@ import yaml
 from ...errors import WorldError
 from ...geometry import MAX_COORDINATE, Pose2D, wrap_angle
 from ...reading import finite_numbers
-from .image import SUPPORTED
 
+SUPPORTED = "PGM, PNG or BMP"  # formats of a map's image
 MODES = ("trinary", "scale", "raw")
 MAX_QUOTED = 60  # characters of a list that an error message quotes
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")

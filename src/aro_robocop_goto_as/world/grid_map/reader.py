@@ -1,13 +1,14 @@
-"""Make a world of a map_server map by extruding its occupied cells to walls."""
+"""Make a world of a map_server map by extruding the edges of its occupied cells to walls."""
 
 import math
 import os
 
+import numpy as np
+
 from ...geometry import Pose2D, Pose3D, lifted
 from ...shapes import Plane, Walls
 from ..model import Obstacle, Occupancy, World
-from .cells import read_cells
-from .edges import edges_of_cells
+from .image import read_cells
 from .map_file import read_spec
 
 WALL_HEIGHT = 0.5  # [m], as in the worlds of this package
@@ -31,3 +32,19 @@ def read_map(path: str) -> World:
     ignored = tuple(f"key '{key}' of the map" for key in spec.unknown)
     different = (spec.image_beside,) if spec.image_beside else ()
     return World(name, obstacles, Pose2D(), ignored, path, occupancy=occupancy, has_spawn=False, approximated=different)
+
+
+def edges_of_cells(occupied: np.ndarray) -> np.ndarray:
+    """The edges between occupied and other cells, merged into segments (n, [start, end], [x, y]) in units of cells.
+
+    occupied: (rows, columns) bool; the outside of the map counts as not occupied.
+    """
+    framed = np.pad(occupied, 1)
+    along_x, along_y = _runs(np.diff(framed, axis=0)[:, 1:-1]), _runs(np.diff(framed, axis=1)[1:-1].T)
+    return np.concatenate([along_x[..., ::-1], along_y]).astype(float)
+
+
+def _runs(edges: np.ndarray) -> np.ndarray:
+    """Runs of true values in each row of (m, n): (k, [start, end], [row, column])."""
+    rows, columns = np.nonzero(np.diff(np.pad(edges, ((0, 0), (1, 1)))))
+    return np.stack([rows, columns], axis=-1).reshape(-1, 2, 2)

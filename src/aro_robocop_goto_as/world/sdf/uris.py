@@ -1,6 +1,5 @@
 """Find the files that URIs of models and meshes refer to, in the places where Gazebo Classic looks."""
 
-import functools
 import os
 from pathlib import Path
 from typing import Iterable, Iterator, List, Tuple
@@ -103,21 +102,11 @@ def _candidates(scheme: str, path: str, file: str) -> Iterator[Candidate]:
         yield os.path.expanduser(os.path.join("~", ".gazebo", "models", path)), "Gazebo's default"
     name, _, rest = path.partition("/")
     try:
-        yield os.path.join(_packages().get_path(name), rest), "in ROS_PACKAGE_PATH"
+        yield os.path.join(rospkg.RosPack.get_instance().get_path(name), rest), "in ROS_PACKAGE_PATH"
     except rospkg.ResourceNotFound:
         yield name, "no such package in ROS_PACKAGE_PATH"
     if scheme == "model":
         yield from _exported_candidates("gazebo_model_path", path)
-
-
-def _packages() -> rospkg.RosPack:
-    """The packages in ROS_PACKAGE_PATH, which are looked for once."""
-    return _packages_in(tuple(rospkg.get_ros_paths()))
-
-
-@functools.lru_cache(maxsize=1)
-def _packages_in(paths: Tuple[str, ...]) -> rospkg.RosPack:
-    return rospkg.RosPack(paths)
 
 
 def _exported_candidates(kind: str, path: str) -> Iterator[Candidate]:
@@ -125,7 +114,7 @@ def _exported_candidates(kind: str, path: str) -> Iterator[Candidate]:
 
     Not by rospkg's get_export, which refuses manifests that it finds imperfect and asks for rosdep.
     """
-    packages = _packages()
+    packages = rospkg.RosPack.get_instance()
     for name in packages.list():
         directory = packages.get_path(name)
         manifest = Path(directory, "package.xml")

@@ -144,9 +144,7 @@ def pose_of(element: Element, largest: float = MAX_COORDINATE) -> Pose3D:
     `gz sdf` writes a <pose> without text for a link that coincides with its joint.
     """
     pose = optional_child(element, "pose")
-    if pose is None:
-        return Pose3D()
-    if not text_of(pose):
+    if pose is None or not text_of(pose):
         return Pose3D()
     if pose.get("rotation_format") == "quat_xyzw":
         x, y, z, *quaternion = numbers(pose, 7, largest=largest)

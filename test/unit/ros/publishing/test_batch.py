@@ -10,14 +10,13 @@ import pytest
 import rospy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
+from subscriber_links import LONG, SHORT, received
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import HEADER, Field, PackedMessage, counter
 from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
-SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, of a subscriber that is to stand still
-LONG = struct.pack("ll", 60, 0)  # of one that reads, whenever it gets a processor
 READ_TIMEOUT = 60.0  # [s, wall] for a thread that reads
 
 
@@ -27,7 +26,6 @@ class Connection:
     endpoint_id, name = "/subscriber", "/topic"
 
     def __init__(self) -> None:
-        self.stat_bytes = self.stat_num_msg = 0
         self.closed = False
 
     def close(self) -> None:
@@ -50,12 +48,7 @@ class Subscriber:
 
     def received(self, size: int) -> bytes:
         """The next bytes."""
-        data = b""
-        while len(data) < size:
-            part = self.socket.recv(size - len(data))
-            assert part, "closed"
-            data += part
-        return data
+        return received(self.socket, size)
 
     def close(self) -> None:
         """Disconnect."""
@@ -80,8 +73,6 @@ def topic_of(*subscribers: Subscriber) -> Any:
     """Stands for a DirectPublisher with these subscribers."""
     impl = SimpleNamespace(
         is_latch=False,
-        seq=0,
-        message_data_sent=0,
         c_lock=threading.RLock(),
         connections=[one.connection for one in subscribers],
         remove_connection=lambda connection: connection.close(),
@@ -110,35 +101,18 @@ def scan(beams: int) -> PackedMessage:
     return PackedMessage(LaserScan(ranges=[1.0] * beams))
 
 
-def test_each_subscriber_gets_the_messages_of_its_topics_in_order(subscriber: Callable[..., Subscriber]) -> None:
+def test_each_subscriber_gets_the_messages_of_its_topics_in_order_also_of_steps_that_follow_at_once(
+    subscriber: Callable[..., Subscriber],
+) -> None:
     first, second = subscriber(), subscriber()
     both, one = topic_of(first, second), topic_of(second)
-    messages = [scan(10), PackedMessage(Clock()), scan(20)]
-    Batch([*zip((both, one), messages)], [(both, messages[2])]).send(0)
-    sizes, data = [message.size for message in messages], [message.data.tobytes() for message in messages]
-    assert first.received(sizes[0] + sizes[2]) == data[0] + data[2]
-    assert second.received(sum(sizes)) == b"".join(data)
-
-
-def test_messages_of_steps_that_follow_at_once_arrive_whole_and_in_order(subscriber: Callable[..., Subscriber]) -> None:
-    reader, message = subscriber(), counted(10)
-    batch = Batch([(topic_of(reader), message)])
-    sent = []
+    messages = [counted(10), PackedMessage(Clock()), counted(20)]
+    batch, of_first, of_second = Batch([*zip((both, one), messages)], [(both, messages[2])]), b"", b""
     for more in (True, True, False, True):
         batch.send(0, more)
-        sent.append(message.data.tobytes())
-    assert reader.received(4 * message.size) == b"".join(sent)
-
-
-def test_message_larger_than_the_sockets_buffer_arrives_whole(subscriber: Callable[..., Subscriber]) -> None:
-    reader, message = subscriber(), scan(1_000_000)
-    received: List[bytes] = []
-    thread = threading.Thread(target=lambda: received.append(reader.received(message.size)))
-    thread.start()
-    Batch([(topic_of(reader), message)]).send(0)
-    thread.join(READ_TIMEOUT)
-    assert received == [bytes(message.data)]
-    assert not reader.connection.closed
+        data = [message.data.tobytes() for message in messages]
+        of_first, of_second = of_first + data[0] + data[2], of_second + b"".join(data)
+    assert (first.received(len(of_first)), second.received(len(of_second))) == (of_first, of_second)
 
 
 def _gone(reader: Subscriber) -> None:

@@ -11,7 +11,7 @@ from typing import Callable, Iterator, List
 import pytest
 import rospy
 from sensor_msgs.msg import LaserScan
-from subscriber_links import Link
+from subscriber_links import LONG, SHORT, Link, received
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
@@ -19,8 +19,6 @@ from aro_robocop_goto_as.ros.publishing.publisher import DirectPublisher, publis
 from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
-SHORT = struct.pack("ll", 0, 100_000)  # [s], [us] a send timeout, for a stall
-LONG = struct.pack("ll", 60, 0)  # for a subscriber that reads, whenever it gets a processor
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
 NAMES = (f"/topic_{i}" for i in itertools.count())
 
@@ -82,17 +80,6 @@ def _set_timeout(link: Link, timeout: bytes) -> None:
     link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
 
 
-def _received(link: Link, size: int) -> bytes:
-    """The next bytes that a subscriber gets."""
-    link.socket.settimeout(60.0)
-    data = b""
-    while len(data) < size:
-        part = link.socket.recv(size - len(data))
-        assert part, "closed"
-        data += part
-    return data
-
-
 def _serialized(beams: int, seq: int) -> bytes:
     message = LaserScan(ranges=[1.0] * beams)
     message.header.seq = seq
@@ -111,26 +98,26 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
         (subscriber,) = latched.links
         assert subscriber.stands_still
         _set_timeout(link, LONG)
-        first, received = _serialized(many, 1), []
-        reading = threading.Thread(target=lambda: received.append(_received(link, len(first))))
+        first, read = _serialized(many, 1), []
+        reading = threading.Thread(target=lambda: read.append(received(link.socket, len(first))))
         reading.start()
         while subscriber.stands_still:
             resume()
         reading.join()
         sent = latched.impl.seq
         last = _serialized(10, sent)  # the third message, sent once more, for which there was room at last
-        assert sent > 3 and received == [first] and _received(link, len(last)) == last
+        assert sent > 3 and read == [first] and received(link.socket, len(last)) == last
         assert latched.impl.connections == [link.connection]
         resume()
         latched.impl.publish(LaserScan())
-        assert _received(link, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
+        assert received(link.socket, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
     finally:
         latched.unregister()
 
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
     sim, sent = simulator(scan_profile="lds02"), []
-    lds02 = SensorTopics(0, sim, lambda: None)
+    lds02 = SensorTopics(0, sim)
     for beams in (230, 231, 230, 229, 230):
         sim.observed.scan.ranges = sim.observed.scan.ranges_of(beams)
         message = lds02.packed("scan")

@@ -3,9 +3,10 @@
 import struct
 from io import BytesIO
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
+import pytest
 from genpy import Message, Time
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from hypothesis import given
@@ -14,15 +15,17 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, LaserScan
 from std_msgs.msg import Header
+from support import drive
 from tf2_msgs.msg import TFMessage
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, yaw_of
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
 from aro_robocop_goto_as.ros.sim import sensor_topics as packed
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 NUMBER = st.floats(-1e6, 1e6)
 POSE = st.builds(Pose2D, NUMBER, NUMBER, st.floats(-3.0, 3.0))
@@ -92,14 +95,25 @@ def test_joint_states(angles: "tuple[float, float]", speeds: "tuple[float, float
     assert filled(packed.packed_joint_state(np.array(angles), np.array(speeds)), stamp) == expected
 
 
-@given(NAME, st.lists(NUMBER, min_size=10, max_size=10).map(np.array), STAMP)
-def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]") -> None:
-    orientation, rates, force = (np.diag([variance] * 3).ravel().tolist() for variance in (1e-6, 0.1**2, 0.2**2))
+@given(NAME, st.lists(NUMBER, min_size=10, max_size=10).map(np.array), STAMP, st.booleans())
+def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]", real: bool) -> None:
+    variances = (0.0025, 0.02, 0.04) if real else (1e-6, 0.1**2, 0.2**2)  # those of a TurtleBot3's firmware
+    orientation, rates, force = (np.diag([variance] * 3).ravel().tolist() for variance in variances)
     expected = Imu(
         *(Header(0, Time(*stamp), frame), Quaternion(*sample[:4]), orientation),
         *(Vector3(*sample[4:7]), rates, Vector3(*sample[7:]), force),
     )
-    assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), False, sample), stamp) == sent(expected)
+    assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), real, sample), stamp) == sent(expected)
+
+
+def test_odometry_of_a_real_robot_has_no_covariances(simulator: Callable[..., Simulator]) -> None:
+    body = packed.SensorTopics(0, simulator(covariances="real")).packed("odom").body()  # type: ignore[union-attr]
+    odom = Odometry().deserialize(body)
+    assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
+
+
+def test_each_sensor_has_its_place_among_the_messages_of_a_step(simulator: Callable[..., Simulator]) -> None:
+    assert {*packed.TOPICS, "camera", "tf"} == set(simulator().observed.by_name)
 
 
 @given(st.lists(st.tuples(NAME, NAME, POSE), min_size=1, max_size=4), STAMP)
@@ -107,3 +121,21 @@ def test_transforms(entries: "list[tuple[str, str, Pose2D]]", stamp: "tuple[int,
     transforms: list[TransformStamped] = [convert.to_transform(*entry, Time(*stamp)) for entry in entries]
     message = packed.packed_transforms([(parent, child, np.array(pose)) for parent, child, pose in entries])
     assert filled(message, stamp) == sent(TFMessage(transforms))
+
+
+def test_transforms_lead_from_the_map_to_where_the_robot_is_if_localization_is_true(
+    simulator: Callable[..., Simulator],
+) -> None:
+    sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, drive="kinematic")
+    message = packed.packed_transforms(packed.SensorTopics(0, sim).transforms(sim.params.topics))
+    drive(sim, Twist2D(0.2, 1.0), 0.9, ["odom", "tf"])
+    filled(message, (0, 0))
+    sent = sorted(TFMessage().deserialize(message.body()).transforms, key=lambda t: t.header.frame_id)
+    map_from_odom, odom_from_base = (
+        Pose2D(
+            t.transform.translation.x, t.transform.translation.y, yaw_of(convert.from_quaternion(t.transform.rotation))
+        )
+        for t in sent
+    )
+    assert compose(map_from_odom, odom_from_base) == pytest.approx(sim.world_from_footprint(), abs=1e-6)
+    assert map_from_odom.x < -0.001

@@ -4,38 +4,18 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.world.grid_map.edges import edges_of_cells
-
-
-def edges_one_by_one(occupied):
-    """Every cell edge between an occupied and another cell, as a set of ((x, y), (x, y)) in cells."""
-    rows, columns = occupied.shape
-    found = set()
-    for row in range(rows):
-        for column in range(columns):
-            sides = {
-                (0, -1): ((0, 0), (1, 0)),
-                (0, 1): ((0, 1), (1, 1)),
-                (-1, 0): ((0, 0), (0, 1)),
-                (1, 0): ((1, 0), (1, 1)),
-            }
-            for (dx, dy), (start, end) in sides.items():
-                x, y = column + dx, row + dy
-                beyond = 0 <= x < columns and 0 <= y < rows and occupied[y, x]
-                if occupied[row, column] and not beyond:
-                    found.add(((column + start[0], row + start[1]), (column + end[0], row + end[1])))
-    return found
+from aro_robocop_goto_as.world.grid_map.reader import edges_of_cells
 
 
 @given(st.integers(1, 7), st.integers(1, 7), st.data())
 def test_outline_is_all_edges_of_occupied_regions_in_maximal_segments(rows, columns, data):
-    occupied = np.array(data.draw(st.lists(st.booleans(), min_size=rows * columns, max_size=rows * columns)))
-    occupied = occupied.reshape(rows, columns)
-    pieces = []
-    segments = edges_of_cells(occupied)
-    for (x, y), (x_end, y_end) in segments.astype(int).tolist():
-        along = range(x, x_end) if y == y_end else range(y, y_end)
-        pieces += [((k, y), (k + 1, y)) if y == y_end else ((x, k), (x, k + 1)) for k in along]
-    assert len(pieces) == len(set(pieces)) and set(pieces) == edges_one_by_one(occupied)
-    level = [tuple(map(tuple, s.tolist())) for s in segments if s[0, 1] == s[1, 1]]
-    assert not {start for start, _ in level} & {end for _, end in level}, "two pieces of one wall"
+    flags = data.draw(st.lists(st.booleans(), min_size=rows * columns, max_size=rows * columns))
+    occupied = np.array(flags).reshape(rows, columns)
+    segments = [(tuple(start), tuple(end)) for start, end in edges_of_cells(occupied).tolist()]
+    for axis in (0, 1):  # a ray from a cell's centre along the axis crosses an odd number of edges: the cell is occupied
+        across = [(start, end) for start, end in segments if start[axis] == end[axis]]
+        for row, column in np.ndindex(rows, columns):
+            cell = (column + 0.5, row + 0.5)
+            ahead = [s[axis] > cell[axis] and s[1 - axis] < cell[1 - axis] < e[1 - axis] for s, e in across]
+            assert sum(ahead) % 2 == occupied[row, column]
+        assert not {start for start, _ in across} & {end for _, end in across}, "two pieces of one wall"

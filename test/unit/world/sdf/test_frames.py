@@ -1,43 +1,10 @@
 """Poses compose through models, links, frames and joints."""
 
 import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
 from sdf_files import SPHERE, collision, model, world_file
 
 from aro_robocop_goto_as.geometry import Pose3D, rotation_matrix
 from aro_robocop_goto_as.world.load import load_world
-
-coordinate = st.floats(-10.0, 10.0)
-
-
-angle = st.floats(-7.0, 7.0)
-
-
-six_numbers = st.tuples(coordinate, coordinate, coordinate, angle, angle, angle)
-
-
-def matrix(x, y, z, roll, pitch, yaw):
-    """The (4, 4) transform of SDF's six numbers: rotations about the fixed x, y, z in that order, then a shift."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
-    about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    transform = np.eye(4)
-    transform[:3, :3] = about_z @ about_y @ about_x
-    transform[:3, 3] = x, y, z
-    return transform
-
-
-@given(six_numbers, six_numbers, six_numbers)
-def test_poses_of_model_link_and_collision_compose(tmp_path_factory, in_world, in_model, in_link):
-    tags = [f"<pose>{' '.join(map(repr, pose))}</pose>" for pose in (in_world, in_model, in_link)]
-    body = model(tags[1] + collision(SPHERE, pose=tags[2]), pose=tags[0])
-    (obstacle,) = load_world(world_file(tmp_path_factory.getbasetemp(), body)).obstacles
-    expected = matrix(*in_world) @ matrix(*in_model) @ matrix(*in_link)
-    np.testing.assert_allclose(obstacle.pose.position, expected[:3, 3], atol=1e-9)
-    np.testing.assert_allclose(rotation_matrix(obstacle.pose.orientation), expected[:3, :3], atol=1e-9)
-
 
 RELATIVE = "<pose relative_to='{}'>1 0 0 0 0 0</pose>"
 
