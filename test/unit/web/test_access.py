@@ -53,4 +53,4 @@ def test_loopback_addresses_are_told_from_those_that_others_reach() -> None:
 
 def test_a_server_on_all_addresses_is_opened_at_localhost() -> None:
     assert {url(host, 80) for host in ("127.0.0.1", "::1", "0.0.0.0", "::")} == {"http://localhost:80"}
-    assert url("192.168.1.5", "8090") == "http://192.168.1.5:8090"
+    assert url("192.168.1.5", 8090) == "http://192.168.1.5:8090"

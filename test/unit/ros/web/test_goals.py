@@ -108,9 +108,9 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
     part._on_status(0.0, GoalStatusArray(status_list=[status]))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
+    assert part._show_goal("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+    assert part._show_goal("red") == [("goal", "ACTIVE (0.30, 0.20)")]
 
 
 def test_a_goal_that_waits_for_its_server_is_shown_and_can_be_cancelled():
