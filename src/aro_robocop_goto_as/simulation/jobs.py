@@ -31,7 +31,7 @@ class Clock:
 class Jobs:
     """Any thread may use `post`, `call` and `wait_for`; all else is for the owner's thread."""
 
-    def __init__(self, clock: Clock, stopped: Callable[[], bool]) -> None:
+    def __init__(self, clock: Clock, stopped: Callable[[], bool] = lambda: False) -> None:
         """`stopped`: whether the owner's loop has ended, so that nobody will run jobs any more."""
         self._clock = clock
         self._stopped = stopped
