@@ -67,7 +67,7 @@ def test_latched_message_is_the_one_that_was_sent_last() -> None:
 
 @given(st.sampled_from(sorted(PROFILES)), NAME, STAMP, st.integers(2, 400), st.randoms(use_true_random=False))
 def test_scan(profile: str, frame: str, stamp: "tuple[int, int]", beams: int, random: "object") -> None:
-    spec = PROFILES[profile].spec.with_samples(beams)
+    spec = PROFILES[profile].with_samples(beams)
     ranges = np.zeros(beams)
     message = packed.packed_scan(spec, frame, ranges, counter())
     ranges[:] = [random.choice([0.0, np.inf, -np.inf, random.uniform(0.1, 30.0)]) for _ in range(beams)]  # type: ignore[attr-defined]
