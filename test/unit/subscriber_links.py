@@ -35,15 +35,16 @@ def received(end: socket.socket, size: int) -> bytes:
 @pytest.fixture(name="connect")
 def connected_by_hand() -> Iterator[Callable[..., Link]]:
     """Connects one more subscriber to a topic, as rospy's server does after the handshake."""
-    server, ends = socket.create_server(("127.0.0.1", 0)), []
+    server = socket.create_server(("127.0.0.1", 0))
     names = (f"/subscriber_{i}" for i in itertools.count())
+    ends = [socket.create_connection(server.getsockname())]
 
     def connect(topic: rospy.Publisher) -> Link:
-        ends.append(socket.create_connection(server.getsockname()))
         connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
         connection.set_socket(server.accept()[0], next(names))
+        ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number
         topic.impl.add_connection(connection)
-        return Link(connection, ends[-1])
+        return Link(connection, ends[-2])
 
     yield connect
     for end in (server, *ends):

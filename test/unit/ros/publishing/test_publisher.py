@@ -4,6 +4,7 @@ import socket
 import struct
 import threading
 import weakref
+from types import SimpleNamespace
 from typing import Callable, Iterator, List
 
 import pytest
@@ -46,6 +47,27 @@ def test_descriptors_of_gone_subscribers_are_closed(
     while scans.get_num_connections():
         Batch([(scans, SCAN)]).send(0)
     assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
+
+
+def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(
+    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
+) -> None:
+    scans, new = topic(), []
+    gone, slow = connect(scans), connect(scans)
+    number = gone.connection.fileno()
+    gone.connection.socket.shutdown(socket.SHUT_RDWR)
+
+    def send(rest: memoryview, _flags: int) -> int:
+        new.append(connect(scans).connection)
+        scans.impl.check()  # as one of rospy's threads does twice a second
+        return len(rest)
+
+    second = scans.links[1]
+    kept, second.socket = second.socket, SimpleNamespace(send=send)
+    Batch([(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))]).send(0)  # more than a socket takes at once
+    assert [connection.fileno() for connection in new] == [number]
+    assert scans.impl.connections == [slow.connection, *new]
+    kept.close()
 
 
 def _set_timeout(link: Link, timeout: bytes) -> None:
