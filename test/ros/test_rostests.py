@@ -11,10 +11,7 @@ DEADLINE = 800.0  # [s, wall] for one .test file; each <test> in it has a shorte
 FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
 LONG = ("faults", "lab", "server", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
-SLOW = (
-    *("bridge", "bridge_waits", "commands", "faults", "figures", "navigation", "time_and_pose"),
-    "two_robots",
-)
+SLOW = ("bridge", "bridge_waits", "commands", "faults", "figures", "navigation", "time_and_pose", "two_robots")
 
 
 def run_rostest(test_file, directory):
