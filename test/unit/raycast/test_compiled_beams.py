@@ -83,6 +83,19 @@ def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
     assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 
 
+@given(coordinates, coordinates, st.integers(0, 7))
+def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_show(
+    x: float, y: float, eighth: int
+) -> None:
+    corners = [(i, j) for i in range(-12, 13, 4) for j in range(-12, 13, 4)]
+    walls = [((i, j), (i + di, j + dj)) for i, j in corners for di, dj in ((0.5, 0.0), (0.0, 0.5))]
+    cut, fan = cut_of(np.array(walls, float), np.zeros((0, 3))), Fan(0.0, math.pi / 36, 72)
+    pose = np.array([[x, y, eighth * math.pi / 4]])
+    every = fan.cast(pose, cut)
+    cut.tiles = Tiles(cut.segments)
+    assert fan.cast(pose, cut).tobytes() == every.tobytes()
+
+
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
