@@ -13,9 +13,12 @@ from ..shapes import Box, Cylinder, Geometry, PlacedShape, Sphere
 from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
 BASE = "base_link"
+_SIZES = ("box", "cylinder", "sphere")
 # What holds numbers in links and joints: each tag's attributes, and how many numbers each attribute has.
-_SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}
-_FIGURES = {
+_NUMBERS = {
+    "box": {"size": 3},
+    "cylinder": {"radius": 1, "length": 1},
+    "sphere": {"radius": 1},
     "axis": {"xyz": 3},
     "inertia": {"ixx": 1, "ixy": 1, "ixz": 1, "iyy": 1, "iyz": 1, "izz": 1},
     "mass": {"value": 1},
@@ -75,7 +78,7 @@ class _Urdf:
         self.joints = {joint.get("name"): joint for joint in root.findall("joint")}
         self.joint_to = {_end_of(joint, "child"): joint for joint in root.findall("joint")}
         for element in (*root.iterfind("link//*"), *root.iterfind("joint//*")):
-            for name, count in {**_SIZES, **_FIGURES}.get(element.tag, {}).items():
+            for name, count in _NUMBERS.get(element.tag, {}).items():
                 self.check_numbers(element, name, count)
 
     def error(self, what: str) -> RobotModelError:

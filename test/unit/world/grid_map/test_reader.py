@@ -59,10 +59,7 @@ def test_outline_is_all_edges_of_occupied_regions_in_maximal_segments(rows, colu
     flags = data.draw(st.lists(st.booleans(), min_size=rows * columns, max_size=rows * columns))
     occupied = np.array(flags).reshape(rows, columns)
     segments = [(tuple(start), tuple(end)) for start, end in edges_of_cells(occupied).tolist()]
-    for axis in (
-        0,
-        1,
-    ):  # a ray from a cell's centre along the axis crosses an odd number of edges: the cell is occupied
+    for axis in (0, 1):  # a ray along it from the centre of an occupied cell crosses an odd number of edges
         across = [(start, end) for start, end in segments if start[axis] == end[axis]]
         for row, column in np.ndindex(rows, columns):
             cell = (column + 0.5, row + 0.5)
