@@ -28,7 +28,7 @@ class _Body:
 
     body: int
     wheels: List[int]
-    base_from_inertial: Pose3D  # Bullet gives the pose of a body's centre of mass
+    base_from_inertial: Pose3D
     targets: List[float]  # of the wheel motors [rad/s]
     resting_steps: int = 0
     parked: bool = False
@@ -84,7 +84,7 @@ class BulletEngine:
     def _load(self, model: RobotModel) -> _Body:
         """Create a robot's body at the origin."""
         client = self.client
-        body = load_urdf(model, client)
+        body, base_from_inertial = load_urdf(model, client)
         joints = {}
         for index in range(pybullet.getNumJoints(body, physicsClientId=client)):
             info = pybullet.getJointInfo(body, index, physicsClientId=client)
@@ -95,8 +95,7 @@ class BulletEngine:
             pybullet.setCollisionFilterGroupMask(
                 body, link, ROBOT_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client
             )
-        inertial = Pose3D(*pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[3:5])
-        return _Body(body, [joints[name] for name in WHEEL_JOINTS], inertial, [0.0, 0.0])
+        return _Body(body, [joints[name] for name in WHEEL_JOINTS], base_from_inertial, [0.0, 0.0])
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere, at rest; its wheels keep their angles."""

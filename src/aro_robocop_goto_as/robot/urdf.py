@@ -41,7 +41,6 @@ def load_robot(path: str, figures: ModelFigures) -> RobotModel:
             wheel_radius=urdf.wheel_radius(left),
             wheel_separation=urdf.wheel_separation(left, right),
             footprint_from_base=footprint_from_base,
-            base_from_inertial=_origin(urdf.link(BASE).find("inertial")),
             base_from_scan=urdf.pose_of("base_scan", BASE),
             base_from_imu=urdf.pose_of("imu_link", BASE),
             base_from_camera=urdf.pose_of(CAMERA_FRAME, BASE) if CAMERA_FRAME in urdf.joint_to else None,

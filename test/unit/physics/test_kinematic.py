@@ -13,7 +13,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.shapes import Box, Cylinder
+from aro_robocop_goto_as.shapes import Box, Cylinder, Plane
 from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
@@ -45,9 +45,13 @@ def _drive(engine: KinematicEngine, steps: int, *velocities: Tuple[float, float]
     engine.advance(0, steps)
 
 
+PLANE = Obstacle("plane", Pose3D((1.99, 0.0, 0.0)), Plane((-1.0, 0.0, 0.0)))  # too long for the tiles of an index
+
+
+@pytest.mark.parametrize("wall", [_box(2.0, 0.0, 0.0, 0.02, 4.0), PLANE])
 @pytest.mark.parametrize("v", [0.1, 1.0, 1e4])
-def test_robot_stops_in_contact_with_a_wall_at_any_speed(v: float) -> None:
-    engine = _kinematics(_world(_box(2.0, 0.0, 0.0, 0.02, 4.0)), ORIGIN)
+def test_robot_stops_in_contact_with_a_wall_at_any_speed(wall: Obstacle, v: float) -> None:
+    engine = _kinematics(_world(wall), ORIGIN)
     _drive(engine, int(2.5 / v * 30) + 2, (v, 0.0))
     assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
     assert engine.touching(0) and engine.fleet.twists[0, 0] == pytest.approx(0.0, abs=1e-3)

@@ -75,6 +75,11 @@ def test_unreadable_mesh_is_refused_with_the_line_that_uses_it(tmp_path, name):
     assert message.startswith(f"{path}:3: in 'm/l/c': {tmp_path / name}") and named in message
 
 
+def test_mesh_with_no_extent_along_an_axis_is_refused(tmp_path):
+    (tmp_path / "t.obj").write_bytes(CORNERS + b"f 1 2 3\n")
+    assert "<scale> is '1 0 1'" in raised_by(mesh_world(tmp_path, "t.obj", "<scale>1 0 1</scale>"))
+
+
 A, B, C = (0, 0, 0), (1, 0, 0), (0, 0, 1)
 
 

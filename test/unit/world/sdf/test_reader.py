@@ -6,6 +6,7 @@ import pytest
 from sdf_files import BOX, SPHERE, collision, model, raised_by, sdf_file, world_file
 
 from aro_robocop_goto_as.geometry import Pose2D
+from aro_robocop_goto_as.shapes import Box, Cylinder, Plane, Sphere
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.sdf import reader
 
@@ -100,6 +101,20 @@ READ = {  # case: (body from line 3 on, {obstacle: its position [m]}, what is sa
         {},
         ("<population> 'cans' in <world> is left out (line 3)", "<stat> in <world> is left out (line 3)"),
     ),
+    "a state that moves models and links": (
+        "".join(f"<model name='{name}'><static>1</static>{BOX}</model>" for name in "ab")
+        + """<state world_name="w"><sim_time>1 2</sim_time><iterations>3</iterations><insertions/><deletions/>
+        <model name="a"><static>1</static><pose frame="">1 2 3 0 0 0</pose><scale>1 1 1</scale><joint name="j"/></model>
+        <model name="b"><pose>9 9 9 0 0 0</pose><link name="l"><pose>4 5 6 0 0 0</pose><wrench/></link>
+        </model><model name="gone"><pose>0 0 0 0 0 0</pose></model><light name="sun"/></state>""",
+        {"a/l/c": (1, 2, 3), "b/l/c": (4, 5, 6)},
+        (),
+    ),
+    "a state that scales a model": (
+        model(collision(SPHERE)) + "<state><model name='m'><scale>1 2  1</scale></model></state>",
+        {"m/l/c": (0, 0, 0)},
+        ("<scale> 1 2  1 in the state of 'm' is left out (line 5)",),
+    ),
     "insertions and deletions of a state": (
         "<state><insertions><model/></insertions><deletions>m</deletions>\n<modle/></state>",
         {},
@@ -119,6 +134,19 @@ def test_what_can_be_simulated_is_read_and_the_rest_is_listed_with_its_line(tmp_
     assert list(found) == [*positions, "last/l/c"]
     assert [found[name] for name in positions] == [pytest.approx(position) for position in positions.values()]
     assert (world.ignored, world.approximated) == ((), said)
+
+
+def test_each_geometry_is_read_with_its_dimensions(tmp_path):
+    shapes = {
+        "box": ("<box><size>1 2e-1 +.3</size></box>", Box((1.0, 0.2, 0.3))),
+        "cylinder": ("<cylinder><length>2.</length><radius>0.5</radius></cylinder>", Cylinder(0.5, 2.0)),
+        "sphere": (SPHERE, Sphere(0.5)),
+        "plane": ("<plane><normal>0 3 4</normal><size>1 1</size></plane>", Plane((0.0, 0.6, 0.8))),
+        "level": ("<plane/>", Plane((0.0, 0.0, 1.0))),
+    }
+    body = model("".join(collision(xml, name) for name, (xml, _) in shapes.items()))
+    obstacles = load_world(world_file(tmp_path, body)).obstacles
+    assert [(o.name, o.geometry) for o in obstacles] == [(f"m/l/{name}", shape) for name, (_, shape) in shapes.items()]
 
 
 def test_oldest_version_may_have_empty_frames_and_the_last_of_several_static_counts(tmp_path):
