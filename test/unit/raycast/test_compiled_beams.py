@@ -105,8 +105,7 @@ def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     owners = np.array([i % len(footprints) for i in range(len(bodies))], np.int64)
     planes = [ScanPlane(cut, bodies.reshape(-1, 3), owners) for cut in walls]
     plane_of = [data.draw(st.integers(0, len(planes) - 1)) for _ in robots]
-    scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]))
-    scene.footprints[:] = footprints
+    scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]), np.array(footprints))
     together = fan.scan(scene, robots, 5.0)
     order = data.draw(st.permutations(robots))
     assert fan.scan(scene, order, 5.0).tobytes() == together[order].tobytes()
@@ -125,7 +124,9 @@ def test_scanner_inside_a_circle_sees_its_far_side() -> None:
 
 
 def test_scan_of_an_unknown_robot_or_from_a_pose_that_is_not_finite_is_refused() -> None:
-    scene = Scene([ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)))
+    scene = Scene(
+        [ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)), np.zeros((2, 3))
+    )
     for robot in (-1, 2, 2**40):
         with pytest.raises(ValueError, match="^robots: "):
             LAB.scan(scene, [0, robot])
