@@ -8,12 +8,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from command import SETUP_TIMEOUT, environment, robocop
+from command import ROOT, SETUP_TIMEOUT, environment, make_program, robocop
 from fake_index import builds, source_release
 
 from aro_robocop_goto_as.process.ports import free_port
 
-ROOT = Path(__file__).resolve().parents[2]
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
 
 
@@ -70,11 +69,6 @@ def checkout(tmp_path):
 def index(tmp_path):
     """Settings for pip: an index that has a source release of pybullet and no wheel."""
     return source_release(tmp_path / "index")
-
-
-def make_program(path, script):
-    path.write_text(script)
-    path.chmod(0o755)
 
 
 def in_copy(root, *arguments, **settings):

@@ -8,7 +8,7 @@ import argparse
 import os
 import sys
 from pathlib import Path
-from typing import List, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
 import rosgraph
@@ -22,7 +22,8 @@ from ...geometry import rotation_matrix
 from ...names import RVIZ_LOG, prefixed
 from ...probes import x_display
 from ..node_main import answer_help, leave_name_to_another
-from .rviz_config import SHARE, Observed, adapted
+from ..share import share
+from .rviz_config import Observed, adapted
 
 ABOUT = "RViz, configured for the running system. Options that it does not have itself are passed on to RViz."
 OPTIONS = "[--frame FIXED_FRAME] [--config FILE] [--wait SECONDS] [--trail]"
@@ -36,7 +37,7 @@ START_TIMEOUT = 1.0  # [s, wall] for map -> odom, which localization:=none does 
 UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
 
-def main(arguments: Optional[List[str]] = None) -> None:
+def main() -> None:
     """Replace this process by RViz, which is started again if it crashes."""
     answer_help(ABOUT, OPTIONS, others=True)
     parser = argparse.ArgumentParser(prog="robocop_rviz.py", add_help=False)
@@ -44,7 +45,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--config", default="")  # empty: made for the system
     parser.add_argument("--wait", type=float, default=0.0)  # [s] for a simulator that is being started
     parser.add_argument("--trail", action="store_true")  # of odometry: no server is there that publishes one
-    options, rest = parser.parse_known_args(arguments)
+    options, rest = parser.parse_known_args()
     if not x_display.answers():
         print("robocop: no usable display; RViz is not started", file=sys.stderr, flush=True)
         os.execvp("setpriv", IDLE)
@@ -52,7 +53,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     seen = observe(options.frame, options.wait, not options.trail)
     config = options.config or _written(adapted(seen))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
-    again = str(SHARE / "launch" / "restart_after_crash")
+    again = f"{share()}/launch/restart_after_crash"
     log = os.environ.get(RVIZ_LOG)
     if log:
         with open(log, "ab") as stream:
