@@ -7,7 +7,7 @@ https://wiki.ros.org/ROS/Master_API, https://wiki.ros.org/ROS/Slave_API, https:/
 import contextlib
 import io
 import os
-import select
+import selectors
 import socket
 import struct
 import threading
@@ -76,8 +76,7 @@ class Client:
         """`topics`: their rates [Hz]; none of them has a publisher yet. `uri`: the master's."""
         self.links: Dict[str, Link] = {}  # by topic
         self._rates, self._master = topics, rosgraph.Master(CALLER, uri)
-        self._by_number: Dict[int, Link] = {}  # not closed before the end, so that no file descriptor is reused
-        self._epoll = select.epoll()
+        self._selector = selectors.DefaultSelector()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -90,14 +89,14 @@ class Client:
         self._thread.join()
         for link in self.links.values():
             link.connection.close()
-        self._epoll.close()
+        self._selector.close()
 
     def _run(self) -> None:
         while not self._ended.wait(PAUSE):
-            for number, _ in self._epoll.poll(POLL):
-                self._by_number[number].read()
-                if not self._by_number[number].is_open:
-                    self._epoll.unregister(number)
+            for key, _ in self._selector.select(POLL):
+                key.data.read()
+                if not key.data.is_open:
+                    self._selector.unregister(key.fileobj)
 
     def reads_all(self) -> bool:
         """Connect to publishers that the master has come to know; return whether each topic has had a message."""
@@ -106,8 +105,7 @@ class Client:
                 if topic in self._rates and topic not in self.links:
                     with contextlib.suppress(ConnectionRefusedError):  # a node that died without unregistering
                         link = self.links[topic] = Link(connect(self._master.lookupNode(nodes[0]), topic))
-                        self._by_number[link.connection.fileno()] = link
-                        self._epoll.register(link.connection, select.EPOLLIN)
+                        self._selector.register(link.connection, selectors.EVENT_READ, link)
         return len(self.links) == len(self._rates) and all(link.newest()[0] for link in self.links.values())
 
     @property
