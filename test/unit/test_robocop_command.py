@@ -203,8 +203,8 @@ def test_without_python_commands_install_nothing_in_a_dry_run(on_system, tmp_pat
 
 # As apt 2.6 prints it with APT::Status-Fd, shortened; it fails once, as without package lists.
 APT = """#!/bin/sh
-[ -e {0}/updated ] || {{ touch {0}/updated; exit 100; }}
-case "$*" in *" update") exit ;; esac
+case "$*" in *" update") touch {0}/updated; exit ;; esac
+[ -e {0}/updated ] || exit 100
 cat <<END
 Need to get 8791 kB of archives.
 dlstatus:2:13.8379:Retrieving file 2 of 2

@@ -121,6 +121,15 @@ def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_p
         assert ("hand_ins (the folder is empty)" in done.stderr) is ("--unsafe" in words)
 
 
+@pytest.mark.parametrize(
+    "command, script, parts",
+    [("grade", "robocop_grade.py", "hosting grade"), ("grade-class", "robocop_grade_class.py", "hosting grade class")],
+)
+def test_grader_gets_what_it_needs_and_its_arguments(command, script, parts):
+    started, _, messages = dry_run(command, "hand_ins", "--unsafe")
+    assert started.endswith(f"/{script} hand_ins --unsafe") and f"would set up: run {parts}\n" in messages
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("command", [("run", "rviz:=false"), ("goto", "1", "0")])
 def test_port_that_never_answers_is_reported_within_seconds(command):
