@@ -9,9 +9,9 @@ from systems import System
 
 DEADLINE = 800.0  # [s, wall] for one .test file; each <test> in it has a shorter time-limit.
 FILES = {path.stem: path for path in Path(__file__).resolve().parent.glob("nodes/*.test")}
-LONG = ("faults", "lab", "server", "time_and_pose")
+LONG = ("faults", "lab", "time_and_pose")
 ROSTEST = "import rostest; rostest.rostestmain()"  # the same as the program of this name
-SLOW = ("bridge", "bridge_waits", "commands", "faults", "figures", "navigation", "time_and_pose", "two_robots")
+SLOW = ("commands", "faults", "figures", "navigation", "time_and_pose", "two_robots")
 
 
 def run_rostest(test_file, directory):

@@ -42,11 +42,11 @@ def from_quaternion(q: Quaternion, unset_is_level: bool = False) -> Tuple[float,
     return x, y, z, w
 
 
-def require_near(where: str = "", **position: float) -> None:
-    """Raise FrameError unless a position is finite and within MAX_COORDINATE; `where` is the end of the sentence."""
+def require_near(**position: float) -> None:
+    """Raise FrameError unless a position is finite and within MAX_COORDINATE."""
     if not all(abs(value) <= MAX_COORDINATE for value in position.values()):  # true for NaN
         got = " ".join(f"{axis} {value}" for axis, value in position.items())
-        raise FrameError(f"expected finite numbers within +-{MAX_COORDINATE:g} m, got {got}{where}")
+        raise FrameError(f"expected finite numbers within +-{MAX_COORDINATE:g} m, got {got}")
 
 
 def from_pose_msg(pose: Pose, unset_is_level: bool = False) -> Pose2D:

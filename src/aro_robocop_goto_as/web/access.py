@@ -2,7 +2,7 @@
 
 import ipaddress
 import os
-from typing import Sequence, Union
+from typing import Sequence
 from urllib.parse import urlsplit
 
 LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
@@ -53,7 +53,7 @@ def default_host() -> str:
     return os.environ.get(HOST_VARIABLE) or "127.0.0.1"
 
 
-def url(host: str, port: Union[int, str]) -> str:
+def url(host: str, port: int) -> str:
     """Where a browser on this machine finds a server that listens on this address, or on all addresses."""
     return f"http://{'localhost' if is_loopback(host) or host in ANY_ADDRESS else host}:{port}"
 

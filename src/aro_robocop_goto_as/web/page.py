@@ -89,9 +89,8 @@ class Cameras:
     def _turn(self, camera: Any) -> np.ndarray:
         """Show the corners; returns the camera's position."""
         width, height = camera.image_width, camera.image_height
-        position, look_at = view_of(
-            self._corners, width / height if width and height else DESK
-        )  # a hidden page has none
+        aspect = width / height if width and height else DESK  # a hidden page has no size
+        position, look_at = view_of(self._corners, aspect)
         camera.position = position
         camera.look_at = look_at  # after the position, which moves it as well
         return position

@@ -86,27 +86,23 @@ def _options(shape: Shape) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     raise ValueError(f"no shape of the kind {kind!r}")
 
 
+@dataclass
 class _Drawn:
     """A shape in the scene, with the handle of viser, and the shape and the pose that were sent last."""
 
-    def __init__(self, handle: Any, shape: Shape, pose: Pose3D) -> None:
-        self.handle = handle
-        self._shape = shape
-        self._pose = pose
-
-    @property
-    def placed(self) -> Placed:
-        return self._shape, self._pose
+    handle: Any
+    shape: Shape
+    pose: Pose3D
 
     def move(self, pose: Pose3D) -> None:
-        new, old = (*pose.position, *pose.orientation), (*self._pose.position, *self._pose.orientation)
+        new, old = (*pose.position, *pose.orientation), (*self.pose.position, *self.pose.orientation)
         if any(abs(a - b) > MIN_CHANGE for a, b in zip(new, old)):
             self.handle.position, self.handle.wxyz = pose.position, _wxyz(pose)
-            self._pose = pose
+            self.pose = pose
 
     def restyle(self, new: Shape) -> bool:
         """Change what can be changed in place; False if the shape has to be drawn anew."""
-        old, self._shape = self._shape, new
+        old, self.shape = self.shape, new
         if old == new:
             return True
         kept = {name: getattr(new, name) for name in CHANGEABLE.get(new.kind, ())}
@@ -145,7 +141,7 @@ class PageScene:
 
     def shapes(self, group: str) -> Group:
         """What a group shows, in the fixed frame; any thread may ask."""
-        return {key: drawn.placed for key, drawn in list(self._groups.get(group, {}).items())}
+        return {key: (drawn.shape, drawn.pose) for key, drawn in list(self._groups.get(group, {}).items())}
 
     def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:
         where = {"position": pose.position, "wxyz": _wxyz(pose)}

@@ -3,16 +3,17 @@
 from typing import Dict, Optional, Tuple
 
 import numpy as np
-from lxml import etree
 
 from ..errors import RobotModelError, WorldError
 from ..geometry import Pose3D, Vector3
+from ..reading import Element, parse_xml, reading
 from ..world.sdf.meshes import load_triangles
 from ..world.sdf.uris import locate
 from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape, color_of
 
 Look = Tuple[Color, float]  # colour, opacity
 PLAIN: Look = ((150, 150, 155), 1.0)  # of a visual without a colour
+NAME = "robot_description"  # in messages
 MESHES = ("package://", "file://")  # where a description may take meshes from
 
 
@@ -21,27 +22,20 @@ def read_links(text: str) -> Dict[str, Shape]:
 
     Meshes that can't be found or read are left out, too. RobotModelError if the description is not a URDF.
     """
-    try:
-        root = etree.fromstring(
-            text.encode(), etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True)
-        )
-    except (etree.XMLSyntaxError, UnicodeError) as error:
-        raise RobotModelError(f"robot_description is not XML: {error}") from error
-    if root.tag != "robot":
-        raise RobotModelError(f"robot_description: expected <robot>, got <{root.tag}>")
-    try:
+    with reading(NAME, RobotModelError, "a URDF"):
+        root = parse_xml(text.encode(), NAME, RobotModelError)
+        if root.tag != "robot":
+            raise RobotModelError(f"{NAME}: expected <robot>, got <{root.tag}>")
         looks = {material.get("name"): _look(material, {}) for material in root.iterfind("material")}
         placed = {
             link.get("name", ""): [_placed(visual, looks) for visual in link.iterfind("visual")]
             for link in root.iterfind("link")
         }
-    except ValueError as error:
-        raise RobotModelError(f"robot_description: {error}") from error
     links = {name: tuple(part for part in parts if part is not None) for name, parts in placed.items()}
     return {name: Shape(BODY, parts=parts) for name, parts in links.items() if parts}
 
 
-def _placed(visual: "etree._Element", looks: Dict[Optional[str], Look]) -> Optional[Placed]:
+def _placed(visual: Element, looks: Dict[Optional[str], Look]) -> Optional[Placed]:
     origin, geometry = visual.find("origin"), visual.find("geometry/*")
     if geometry is None:
         return None
@@ -50,7 +44,7 @@ def _placed(visual: "etree._Element", looks: Dict[Optional[str], Look]) -> Optio
     return None if shape is None else (shape, Pose3D.from_xyz_rpy(_vector(xyz), _vector(rpy)))
 
 
-def _shape(geometry: "etree._Element", look: Look) -> Optional[Shape]:
+def _shape(geometry: Element, look: Look) -> Optional[Shape]:
     if geometry.tag == "box":
         return Shape(BOX, _vector(geometry.get("size", "")), *look)
     if geometry.tag in ("cylinder", "sphere"):
@@ -69,7 +63,7 @@ def _shape(geometry: "etree._Element", look: Look) -> Optional[Shape]:
     return Shape(MESH, color=look[0], opacity=look[1], points=corners)
 
 
-def _look(material: "Optional[etree._Element]", looks: Dict[Optional[str], Look]) -> Look:
+def _look(material: Optional[Element], looks: Dict[Optional[str], Look]) -> Look:
     """A material's own look, else the look of the robot's material of that name."""
     color = None if material is None else material.find("color")
     if color is None:

@@ -1,6 +1,5 @@
 """Whether a goal is outside the walls around the robot."""
 
-import enum
 from typing import Iterable, Tuple
 
 import numpy as np
@@ -17,14 +16,6 @@ CELL = 0.05  # [m] narrower openings let nothing pass
 MAX_CELLS = 1000  # per side; larger ones beyond it
 
 
-class Reach(enum.Enum):
-    """Where ways lead from a point."""
-
-    OPEN = "beyond all obstacles"
-    ENCLOSED = "not beyond some obstacles"
-    NOWHERE = "an obstacle is in the point's own cell, as beside a wall where cells are large"
-
-
 def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles: Iterable[Placed]) -> bool:
     """Return whether obstacles enclose the robot, and not the goal; both x, y [m]. Never where the world has no walls.
 
@@ -32,7 +23,10 @@ def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles:
     """
     world = World("", tuple(Obstacle("", pose, _geometry(shape)) for shape, pose in obstacles), Pose2D(), (), "")
     section = CrossSection(world, HEIGHT)
-    return _reach(section, *goal) is Reach.OPEN and _reach(section, *robot) is Reach.ENCLOSED
+    if not _reached(section, *goal)[0, 0]:
+        return False
+    within = _reached(section, *robot)  # no cell at all if a wall is in the robot's own one, as where cells are large
+    return bool(within.any()) and not within[0, 0]
 
 
 def _geometry(shape: Shape) -> Geometry:
@@ -48,9 +42,6 @@ def _geometry(shape: Shape) -> Geometry:
     raise ValueError(f"no obstacle of the kind {shape.kind!r}")
 
 
-def _reach(section: CrossSection, x: float, y: float) -> Reach:
-    """Where ways lead from a point: the grid's first cell is beyond all obstacles."""
-    grid = occupancy_of(section.segments, section.circles, [Pose2D(x, y)], CELL, MAX_CELLS)
-    if grid.cells[0, 0] == FREE:
-        return Reach.OPEN
-    return Reach.ENCLOSED if (grid.cells == FREE).any() else Reach.NOWHERE
+def _reached(section: CrossSection, x: float, y: float) -> np.ndarray:
+    """Whether ways lead from a point to the cells (rows, columns) of a grid; its first cell is beyond all obstacles."""
+    return occupancy_of(section.segments, section.circles, [Pose2D(x, y)], CELL, MAX_CELLS).cells == FREE

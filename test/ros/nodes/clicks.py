@@ -15,11 +15,11 @@ class Clicks:
         self._topic = rospy.Publisher(f"{namespace}/move_base_simple/goal", PoseStamped, queue_size=100)
         wait_for_subscriber(self._topic, bridge)
 
-    def click(self, x, y, frame, stamp=None):
-        """A 2D Nav Goal at x, y [m] in a frame, by default stamped with the time of now."""
+    def click(self, x, y, frame):
+        """A 2D Nav Goal at x, y [m] in a frame, stamped with the time of now."""
         message = PoseStamped()
         message.header.frame_id = frame
-        message.header.stamp = rospy.Time.now() if stamp is None else stamp
+        message.header.stamp = rospy.Time.now()
         message.pose.position.x, message.pose.position.y = x, y
         message.pose.orientation.w = 1.0
         self._topic.publish(message)

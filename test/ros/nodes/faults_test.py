@@ -1,16 +1,13 @@
 """Whatever node ends, each goal ends once, the robot stops, and the next goal is reached.
 
-What goes wrong with odometry, scans and goals is in server_ends_test.py.
+What goes wrong with odometry, scans and goals is in server_test.py and test/unit/ros/server.
 """
 
 import psutil
-import rospy
-from actionlib_msgs.msg import GoalID
-from clicks import Clicks
-from harness import ACTION, BRIDGE, SERVER, SIMULATOR, SystemTest, script, wait_for, wait_for_connection
+from harness import ACTION, SERVER, SIMULATOR, SystemTest, script, wait_for, wait_for_connection
 from systems import Process
 
-SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py", BRIDGE: "robocop_rviz_goto_ac.py"}
+SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py"}
 MODE = ("_sync:=lockstep", "_real_time_factor:=10", "_drive:=kinematic", "_lockstep_timeout:=0.5", "_world:=empty")
 TOPICS = {  # that each node sends to this one, and that it receives
     SIMULATOR: (("odom", "ground_truth_odom"), ()),
@@ -18,7 +15,6 @@ TOPICS = {  # that each node sends to this one, and that it receives
         ("cmd_vel", "/rosout", *(f"{ACTION}/{name}" for name in ("status", "feedback", "result"))),
         (f"{ACTION}/goal", f"{ACTION}/cancel"),
     ),
-    BRIDGE: ((f"{BRIDGE}/status", f"{ACTION}/goal"), ("move_base_simple/goal",)),
 }
 FAR = (2.0, 0.0)  # in odom [m]: free way for ten simulated seconds
 MAX_GROWTH = 3  # threads, and files: those of a connection that is being opened
@@ -32,7 +28,6 @@ class Faults(SystemTest):
         for node in SCRIPTS:
             cls.start(node)
         super().setUpClass()
-        cls.clicks = Clicks()
 
     @classmethod
     def start(cls, node):
@@ -74,12 +69,6 @@ class Faults(SystemTest):
         self.robot.wait_until_it_drives(0.1)
         return goal
 
-    def click(self):
-        """The goal that the bridge makes of a 2D Nav Goal far ahead."""
-        sent = len(self.goals.of_others())
-        self.clicks.click(*FAR, "map")
-        return wait_for(lambda: self.goals.of_others()[sent:], "a goal from the bridge")[-1]
-
     def test_server_is_killed(self):
         goal = self.drive()
         self.nodes[SERVER].kill()
@@ -108,24 +97,6 @@ class Faults(SystemTest):
         self.assertRegex(self.nodes[SERVER].output, r"CLOCK: simulated time was set back from \d+\.\d to \d+\.\d s")
         self.restart(SERVER)
         self.goals.clear()  # also the error in the log
-
-    def test_bridge_is_killed_and_its_goal_goes_on(self):
-        goal = self.click()
-        self.robot.wait_until_it_drives(0.1)
-        self.nodes[BRIDGE].kill()
-        self.nodes[BRIDGE].wait_for_exit()
-        self.robot.wait_until_it_drives(0.1)
-        self.restart(BRIDGE)
-        self.assertNotEqual(self.click().id, goal.id)
-
-    def test_cancels_of_every_kind_in_quick_succession(self):
-        self.drive()
-        for number in range(40):
-            goal = self.goals.send(0.5, 0.01 * number)
-            self.goals.cancel_topic.publish(GoalID(rospy.Time(), (goal.id, "unknown", "")[number % 3]))
-            self.goals.cancel_topic.publish(GoalID(rospy.Time.now(), ""))  # all up to now
-        goal.cancel()
-        self.assertNotIn("REACHED", goal.result().result.message)
 
     def test_goals_leave_no_threads_or_files_behind(self):
         before = self.usage()

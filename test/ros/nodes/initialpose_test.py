@@ -1,16 +1,14 @@
-#!/usr/bin/env python3
 """RViz's 2D Pose Estimate moves the robot; odometry continues, so map -> odom changes by the jump."""
 
 import math
 
 import rospy
 import tf2_ros
-from clicks import Clicks
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from harness import SIMULATOR, SystemTest, distance, run, wait_for, wait_for_subscriber
+from harness import SIMULATOR, SystemTest, distance, wait_for, wait_for_subscriber
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.ros.convert import from_pose_msg, to_quaternion
+from aro_robocop_goto_as.ros.convert import to_quaternion
 
 SPAWN = Pose2D(-0.7, 0.2, 0.5)  # of the launch file
 
@@ -19,7 +17,6 @@ class Initialpose(SystemTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.clicks = Clicks()
         cls.buffer = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.buffer)
         cls.topic = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
@@ -35,13 +32,8 @@ class Initialpose(SystemTest):
 
     def wait_until_it_is_at(self, pose):
         """Wait until the robot is at a pose."""
-        start = len(self.robot.truth)
-        there = from_pose_msg(
-            self.robot.truth.wait_for(
-                lambda m: distance(from_pose_msg(m.pose.pose), pose) < 0.005, f"the robot at {pose}", start
-            ).pose.pose
-        )
-        self.assertAlmostEqual(there.yaw, pose.yaw, delta=0.01)
+        wait_for(lambda: distance(self.robot.pose(), pose) < 0.005, f"the robot at {pose}")
+        self.assertAlmostEqual(self.robot.pose().yaw, pose.yaw, delta=0.01)
 
     def map_from_base(self):
         """The pose of base_footprint in map, by TF."""
@@ -69,7 +61,3 @@ class Initialpose(SystemTest):
         refusal = "its frame is 'base_scan'; expected 'map'"
         self.goals.log.wait_for(lambda m: "initialpose refused" in m.msg and refusal in m.msg, "a refusal")
         self.assertLess(distance(self.robot.pose(), here), 0.001)
-
-
-if __name__ == "__main__":
-    run(Initialpose)

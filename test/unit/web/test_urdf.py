@@ -31,8 +31,8 @@ def test_a_description_is_read_with_its_colours_and_without_meshes_that_are_not_
 @pytest.mark.parametrize(
     "urdf, reason",
     [
-        ("", "not XML"),
-        ("<robot", "not XML"),
+        ("", "not well-formed XML"),
+        ("<robot", "not well-formed XML"),
         ("<sdf/>", "expected <robot>, got <sdf>"),
         (URDF.replace("1 2 3", "1 2"), "robot_description"),
         (URDF.replace('"0.5"', '"wide"'), "robot_description"),

@@ -33,10 +33,6 @@ class Received:
     period_ns: float  # the shortest so far
     clearance: Optional[float]  # [m] to the nearest obstacle ahead, of a scan that has a beam ahead
 
-    def age(self) -> float:
-        """ROS time [s] since its arrival."""
-        return rospy.get_rostime().to_sec() - self.at
-
 
 def _received(message: Any, previous: Optional[Received], clearance: Optional[float] = None) -> Received:
     stamp_ns, period_ns = message.header.stamp.to_nsec(), math.inf
@@ -108,7 +104,8 @@ class Inputs:
         return f"no {what} on {rospy.resolve_name(name)} {since} (limit {self._tuning.params.data_timeout:g} s)"
 
     def _is_recent(self, received: Optional[Received]) -> bool:
-        return received is not None and received.age() <= self._tuning.params.data_timeout
+        now, limit = rospy.get_rostime().to_sec(), self._tuning.params.data_timeout
+        return received is not None and now - received.at <= limit
 
     def read(self) -> Optional[Tuple[Pose2D, float]]:
         """Pose in odom and clearance ahead [m]; None without recent messages.

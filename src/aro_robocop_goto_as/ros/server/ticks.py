@@ -34,7 +34,6 @@ class Ticks:
         self._ticks, self._span_ns = ticks, seconds * NANOSECONDS  # so many ticks in so much time [ns], exactly
         self._inputs, self._on_set_back = inputs, on_set_back
         self._has_joined = False
-        self._has_warned = False
         self._changed = threading.Condition()
         self._clock = rospy.Time()
         self._is_simulated = rospy.get_param("/use_sim_time", False)
@@ -58,14 +57,11 @@ class Ticks:
 
     def _warn_of_two_clocks(self) -> None:
         """Warn once if two nodes publish /clock: time jumps between their times."""
-        if self._has_warned:
-            return
         with contextlib.suppress(OSError, rosgraph.MasterException):
             nodes = [node for topic in published_topics() if topic.name == "/clock" for node in topic.publishers]
             if len(nodes) > 1:
-                self._has_warned = True
                 text = "%s publish /clock, so time jumps: end all but one (rosbag play: without --clock)"
-                rospy.logwarn(text, " and ".join(sorted(nodes)))
+                rospy.logwarn_once(text, " and ".join(sorted(nodes)))
 
     def wake(self) -> None:
         """Wake the thread that waits, so that it looks for an interruption."""

@@ -126,7 +126,7 @@ class Goals(Part):
             estimate.pose.covariance = convert.diagonal(variances)
             requests.publish(where, "initialpose", estimate)
 
-    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox, robot: str) -> None:
         self._robot, self._feedback, self._executing, self._newest = robot, None, None, None
         self._status = inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
@@ -165,12 +165,8 @@ class Goals(Part):
         if self._executing is False:
             self._feedback = None
         answering = connected if not state.recorded else self._executing is not None
-        if self._robot == self.context.state.now.selected:
-            self.context.state.change(executing=self._executing, answering=answering)
-        else:  # of the robot that was chosen just now nothing is known yet
-            self.context.state.change(executing=None, answering=False)
-        self._draw_goal(state.selected)
-        rows = self._goal_rows(state.selected)
+        self.context.state.change(executing=self._executing, answering=answering)
+        rows = self._show_goal(state.selected)
         if self._feedback is not None:
             feedback = self._feedback
             errors = f"{feedback.position_error:.2f} m, {feedback.angle_error:.2f} rad"
@@ -184,22 +180,20 @@ class Goals(Part):
             lines = (self._ended(ended, several) for ended in self._history.latest)
             self._history_html.content = text.history(lines)
 
-    def _goal_rows(self, robot: str) -> List[Tuple[str, str]]:
-        """The newest goal's state, as actionlib names it, and its position."""
-        if self._newest is None:
-            return []
-        goal = self._history.position(self._newest.goal_id.id)
-        where = "" if goal is None else f" {self.context.place(robot, *goal)}"
-        return [("goal", f"{STATES.get(self._newest.status, '')}{where}")]
+    def _show_goal(self, robot: str) -> List[Tuple[str, str]]:
+        """The newest goal's state, as actionlib names it, and its position.
 
-    def _draw_goal(self, robot: str) -> None:
-        """Draw the newest goal, unless the server publishes markers, as this package's does with its own tolerance."""
-        drawn, newest = MarkerStore(), self._newest
-        goal = None if newest is None else self._history.position(newest.goal_id.id)
-        if newest is not None and goal is not None and not self.context.scene.draws("server"):
-            color = markers.goal_color(STATES.get(newest.status) in UNFINISHED, newest.status == GoalStatus.SUCCEEDED)
-            drawn.apply(MarkerArray(markers.goal(TOLERANCE, *goal, self.context.frame_of(robot, "odom"), color)))
+        It is drawn, unless the server publishes markers, as this package's does with its own tolerance.
+        """
+        drawn, newest, rows = MarkerStore(), self._newest, []
+        if newest is not None:
+            state, goal = STATES.get(newest.status, ""), self._history.position(newest.goal_id.id)
+            rows = [("goal", f"{state} {self.context.place(robot, *goal)}" if goal else state)]
+            if goal is not None and not self.context.scene.draws("server"):
+                color = markers.goal_color(state in UNFINISHED, newest.status == GoalStatus.SUCCEEDED)
+                drawn.apply(MarkerArray(markers.goal(TOLERANCE, *goal, self.context.frame_of(robot, "odom"), color)))
         self.context.scene.show("goal", drawn.placed(self.context.locate))
+        return rows
 
     def _ended(self, ended: Ended, several: bool) -> Tuple[bool, str]:
         outcome, colon, message = text.short(ended.message).partition(": ")

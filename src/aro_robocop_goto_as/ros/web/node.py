@@ -21,7 +21,7 @@ from .. import markers
 from ..node_main import answer_help, end_with_master, node
 from .goals import Goals
 from .part import Context, Inbox, Part
-from .plots import PLOTTED, Plot
+from .plots import plots
 from .replay import Replay
 from .requests import Requests
 from .robots import Robots
@@ -73,8 +73,7 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
         if live and LAB.is_file():
             context.server.gui.add_html(text.link("/lab.md", "The lab, step by step"))
     with tabs.add_tab("Plots"):
-        for plotted in PLOTTED:
-            parts.append(Plot(context, plotted))
+        parts += plots(context)
     with tabs.add_tab("View"):
         parts.append(View(context))
     return parts
@@ -95,8 +94,8 @@ class WebNode:
         cameras = Cameras(server)
         self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
-        self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
-        self._detailed: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
+        self._always, self._shown = Inbox(), Inbox()
+        self._robot: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
         self._asked = 0.0  # [s, wall] when the parts asked the master last
         self._visitors = threading.Event()  # a browser has come or gone
         server.on_client_connect(lambda _: self._visitors.set())
@@ -104,11 +103,10 @@ class WebNode:
 
     def run(self) -> None:
         """Serve until shutdown."""
-        rospy.on_shutdown(self._end)
         while not rospy.is_shutdown():
             visited = bool(self._server.get_clients())
             self._connect(visited)
-            for inbox in (self._system, self._detail, self._always):  # feedback before the result
+            for inbox in (self._shown, self._always):  # feedback before the result
                 inbox.deliver()
             if visited:
                 with self._server.atomic():
@@ -123,24 +121,15 @@ class WebNode:
         """Subscribe to the shown topics, if anybody looks. Only this needs the ROS master, and may wait for it."""
         state = self._state.now
         wanted = state.selected if visited else None
-        if wanted is None:
-            self._system.close()
-        elif self._detailed is None:
-            for part in self._parts:
-                part.subscribe(self._system)
-        if wanted != self._detailed:
-            self._detailed = wanted
-            self._detail.close()
+        if wanted != self._robot:
+            self._robot = wanted
+            self._shown.close()
             for part in self._parts if wanted is not None else ():
-                part.subscribe_to_robot(self._detail, state.selected)
+                part.subscribe(self._shown, state.selected)
         if time.monotonic() - self._asked >= ASK_PERIOD:
             self._asked = time.monotonic()
             for part in self._parts:
                 part.ask_master(self._state.now, self._always)
-
-    def _end(self) -> None:
-        for part in self._parts:
-            part.end()
 
 
 def main() -> None:

@@ -85,11 +85,11 @@ class Part:
     def __init__(self, context: Context) -> None:
         self.context = context
 
-    def subscribe(self, inbox: Inbox) -> None:
-        """Subscribe to topics of the system; called when a browser opens the page."""
+    def subscribe(self, inbox: Inbox, robot: str) -> None:
+        """Forget the previous robot, and subscribe to topics of the system and of the newly selected robot.
 
-    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        """Forget the previous robot, and subscribe to the topics of the newly selected robot."""
+        Called also when the first browser opens the page.
+        """
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
         """Ask the ROS master as needed, and subscribe to topics that are received also without a browser.
@@ -99,6 +99,3 @@ class Part:
 
     def show(self, state: PageState) -> None:
         """Show the received messages in panel and scene."""
-
-    def end(self) -> None:
-        """Do what has to be done before topics are closed."""

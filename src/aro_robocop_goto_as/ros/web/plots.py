@@ -2,8 +2,7 @@
 
 import time
 from collections import deque
-from dataclasses import dataclass
-from typing import Any, Callable, Deque, Dict, Iterable, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, List, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Twist
@@ -15,6 +14,7 @@ from ...web.state import PageState
 from .part import Context, Inbox, Part
 
 Sample = Tuple[float, float, float]  # time [s] and two figures
+Texts = Tuple[str, str, str]  # title, labels of the figures
 Figures = Callable[[Any], Tuple[float, float]]  # a message -> its two figures
 
 SPAN = 30.0  # [s, wall] that a plot of a running system shows
@@ -32,43 +32,19 @@ TIME: Dict[str, Any] = {
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
 
 
-@dataclass(frozen=True)
-class Plotted:
-    """A topic of a robot, and the figures of its messages that are plotted."""
-
-    texts: Tuple[str, str, str]  # title, labels of the figures
-    topic: str
-    kind: Any
-    figures: Figures
-
-
-def _errors(message: GoToPositionActionFeedback) -> Tuple[float, float]:
-    return message.feedback.position_error, message.feedback.angle_error
-
-
-def _velocities(message: Twist) -> Tuple[float, float]:
-    return message.linear.x, message.angular.z
-
-
-PLOTTED = (
-    Plotted(("errors", "position [m]", "angle [rad]"), f"{ACTION}/feedback", GoToPositionActionFeedback, _errors),
-    Plotted(("cmd_vel", "v [m/s]", "w [rad/s]"), "cmd_vel", Twist, _velocities),
-)
-
-
 class Plot(Part):
-    """The last seconds until now; sent only while there is something in them."""
+    """The last seconds until now of a topic's figures; sent only while there is something in them."""
 
-    def __init__(self, context: Context, plotted: Plotted) -> None:
+    def __init__(self, context: Context, texts: Texts, topic: str, kind: Any, figures: Figures) -> None:
         super().__init__(context)
-        self._plotted = plotted
-        title, *labels = plotted.texts
+        self._topic, self._kind, self._figures = topic, kind, figures
+        title, *labels = texts
         # Dots, not lines, which would join the end of a goal with the start of the next.
         dots = ({"show": True, "size": 2.5, "width": 1, "stroke": color, "fill": color} for color in COLORS)
-        figures = ({"label": label, "width": 0, "points": style} for label, style in zip(labels, dots))
+        series = ({"label": label, "width": 0, "points": style} for label, style in zip(labels, dots))
         self._handle = context.server.gui.add_uplot(
             columns((), 0.0),
-            ({"label": "t [s]"}, *figures),
+            ({"label": "t [s]"}, *series),
             title=title,
             scales={"x": {"time": False, "range": (-SPAN, 0.0)}, "y": {"range": AROUND_ZERO}},
             axes=(TIME, {"size": 42, "space": 16}),
@@ -81,14 +57,14 @@ class Plot(Part):
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
-    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox, robot: str) -> None:
         if robot != self._robot:
             self._robot, self._changed = robot, True
             self._samples.clear()
-        inbox.subscribe(absolute(robot, self._plotted.topic), self._plotted.kind, self._on_message, None)
+        inbox.subscribe(absolute(robot, self._topic), self._kind, self._on_message, None)
 
     def _on_message(self, at: float, message: Any) -> None:
-        self._samples.append((at, *self._plotted.figures(message)))
+        self._samples.append((at, *self._figures(message)))
 
     def show(self, state: PageState) -> None:
         now = time.monotonic()
@@ -97,6 +73,21 @@ class Plot(Part):
             while self._samples and now - self._samples[0][0] > SPAN:
                 self._samples.popleft()
             self._handle.data = columns(self._samples, now)
+
+
+def plots(context: Context) -> List[Plot]:
+    """The two plots of a robot."""
+    errors, velocities = ("errors", "position [m]", "angle [rad]"), ("cmd_vel", "v [m/s]", "w [rad/s]")
+    return [
+        Plot(
+            context,
+            errors,
+            f"{ACTION}/feedback",
+            GoToPositionActionFeedback,
+            lambda message: (message.feedback.position_error, message.feedback.angle_error),
+        ),
+        Plot(context, velocities, "cmd_vel", Twist, lambda message: (message.linear.x, message.angular.z)),
+    ]
 
 
 def columns(samples: Iterable[Sample], now: float) -> Tuple[np.ndarray, ...]:

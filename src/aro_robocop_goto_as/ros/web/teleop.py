@@ -1,5 +1,6 @@
 """The buttons and keys that drive a robot while they are held."""
 
+import contextlib
 import threading
 import time
 from typing import Any, Callable, Dict
@@ -49,8 +50,6 @@ class Teleop(Part):
         super().__init__(context)
         self._dead_man = DeadMan()
         self._wake = threading.Condition()
-        self._publishers: Dict[str, rospy.Publisher] = {}  # by robot
-        self._used = 0.0  # [s, wall] when the last command was sent
         gui = context.server.gui
         with gui.add_folder("Drive", visible=context.state.now.live):
             gui.add_html(CROSS)
@@ -65,6 +64,7 @@ class Teleop(Part):
                 command = gui.add_command(label, hotkey=key, description="drives while the key is held")
                 command.on_trigger(hold)
         context.server.on_client_disconnect(self._on_release)
+        rospy.on_shutdown(self.end)
         threading.Thread(target=self._run, daemon=True).start()
 
     def _holder(self, twist: Twist2D) -> Callable[[Any], Any]:
@@ -103,22 +103,19 @@ class Teleop(Part):
         wait_until(lambda: not self._dead_man.active, END_TIMEOUT)
 
     def _run(self) -> None:
+        publishers: Dict[str, rospy.Publisher] = {}  # by robot
+        used = 0.0  # [s, wall] when the last command was sent
         while True:
-            self._step()
-
-    def _step(self) -> None:
-        with self._wake:
-            self._wake.wait(PERIOD if self._dead_man.active else IDLE_TIMEOUT if self._publishers else None)
-            command = self._dead_man.command(time.monotonic())
-        if command is not None:
-            self._used = time.monotonic()
-            if command.robot not in self._publishers:
-                topic = absolute(command.robot, "cmd_vel")
-                self._publishers[command.robot] = rospy.Publisher(topic, Twist, queue_size=1)
-            try:
-                self._publishers[command.robot].publish(convert.to_twist_msg(command.twist))
-            except rospy.ROSException as error:  # the node is shutting down
-                rospy.logdebug("cmd_vel: %s", error)
-        elif time.monotonic() - self._used >= IDLE_TIMEOUT:
-            while self._publishers:
-                self._publishers.popitem()[1].unregister()
+            with self._wake:
+                self._wake.wait(PERIOD if self._dead_man.active else IDLE_TIMEOUT if publishers else None)
+                command = self._dead_man.command(time.monotonic())
+            if command is not None:
+                used = time.monotonic()
+                if command.robot not in publishers:
+                    topic = absolute(command.robot, "cmd_vel")
+                    publishers[command.robot] = rospy.Publisher(topic, Twist, queue_size=1)
+                with contextlib.suppress(rospy.ROSException):  # the node is shutting down
+                    publishers[command.robot].publish(convert.to_twist_msg(command.twist))
+            elif time.monotonic() - used >= IDLE_TIMEOUT:
+                while publishers:
+                    publishers.popitem()[1].unregister()

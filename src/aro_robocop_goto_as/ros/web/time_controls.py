@@ -34,18 +34,15 @@ class TimeControls(Part):
 
         async def on_update(event: Any) -> None:  # a coroutine: in viser's thread pool it could come late
             if event.client is not None:
-                self._moved_at = time.monotonic()
-                self._set_factor(event.target.value)
+                self._moved_at, factor = time.monotonic(), event.target.value
+                config = Config(doubles=[DoubleParameter("real_time_factor", factor)])
+                call(f"factor {factor:g}", "set_parameters", Reconfigure, config)
 
         self._factor.on_update(on_update)
 
     def _reset(self) -> None:
         self.context.requests.call("reset", "reset", Reset, 0)
         self.context.state.change(resets=self.context.state.now.resets + 1)
-
-    def _set_factor(self, factor: float) -> None:
-        config = Config(doubles=[DoubleParameter("real_time_factor", factor)])
-        self.context.requests.call(f"factor {factor:g}", "set_parameters", Reconfigure, config)
 
     def show(self, state: PageState) -> None:
         self._folder.visible = state.live and state.simulated

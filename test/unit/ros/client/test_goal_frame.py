@@ -1,6 +1,7 @@
 """Which transform a goal in another frame gets."""
 
 import functools
+import math
 import re
 
 import pytest
@@ -72,6 +73,13 @@ def test_goal_without_a_frame_is_taken_in_the_default_one_with_a_warning(transfo
     made, warnings = transformer({})
     assert made.resolve(PoseStamped()).x == 0.0
     assert len(warnings) == 1 and warnings[0].startswith("goal without frame_id; assuming the default ")
+
+
+def test_goal_that_is_no_position_is_refused(transformer):
+    pose = click(15)
+    pose.pose.position.y = math.nan
+    with pytest.raises(FrameError, match="expected finite numbers within"):
+        transformer({15: 1.0})[0].resolve(pose)
 
 
 @pytest.mark.parametrize("odometry", [None, odometry_at(5.0, "other")])

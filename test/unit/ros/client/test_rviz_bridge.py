@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionResult
 from geometry_msgs.msg import Point, PoseStamped
 
@@ -21,18 +21,25 @@ class System:
 
     def __init__(self, monkeypatch):
         self.topics, self.calls, self.statuses = {}, [], []
-        self.on_cancel = self.wait_for_result = self.stop_tracking_goal = lambda: None
+        self.on_cancel = self.on_status = self.wait_for_result = self.stop_tracking_goal = lambda: None
+        self.is_up = True
         self.get_state = lambda: GoalStatus.ACTIVE
         checks = iter([False] * CHECKS)
         monkeypatch.setattr(rospy, "is_shutdown", lambda: next(checks, True))
         monkeypatch.setattr(rospy, "Subscriber", lambda name, _, callback, **__: self.topics.update({name: callback}))
-        monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: SimpleNamespace(publish=self.statuses.append))
+        monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: SimpleNamespace(publish=self.publish))
         monkeypatch.setattr(rospy, "Timer", lambda *_, **__: None)
         monkeypatch.setattr(rviz_bridge.actionlib, "SimpleActionClient", lambda *_: self)
-        monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: True)
+        monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: self.is_up)
+        monkeypatch.setattr(rviz_bridge.discovery, "absence", lambda action: "absent")
+        monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda action: "advice")
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
         monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *_: transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())
+
+    def publish(self, status):
+        self.statuses.append(status)
+        self.on_status()
 
     def resolve(self, pose):
         if pose.pose.position.x < 0.0:
@@ -64,6 +71,42 @@ def test_click_is_sent_once_in_the_servers_frame(system):
     system.bridge.run()
     assert system.calls == ["goal 11"]
     assert system.statuses == ["goal x 1.00 y 0.00 in map is ACTIVE"]
+
+
+def test_goal_waits_for_a_server_that_is_missing_and_the_status_says_so_and_later_what_to_do(system, monkeypatch):
+    system.is_up = False
+    system.bridge.report()
+    monkeypatch.setattr(rviz_bridge, "SERVER_TIMEOUT", 0.0)
+    system.on_status = lambda: setattr(system, "is_up", True)
+    system.click(1.0)
+    system.bridge.run()
+    assert system.calls == ["goal 11"]
+    goal = "goal x 1.00 y 0.00 in map"
+    assert system.statuses == ["absent", f"absent; {goal} waits for it; advice", f"{goal} is ACTIVE"]
+
+
+@pytest.mark.parametrize("goal_id, sent", [("", []), ("another", ["goal 11"])])
+def test_goal_that_waits_for_its_server_is_dropped_when_all_goals_are_cancelled(system, goal_id, sent):
+    system.is_up = False
+
+    def cancel():
+        system.topics["robocop_goto_as/cancel"](GoalID(id=goal_id))
+        system.is_up = True
+
+    system.on_status = cancel
+    system.click(1.0)
+    system.bridge.run()
+    assert system.calls == sent
+
+
+def test_with_ignore_goal_frame_the_numbers_are_sent_as_they_are_with_a_warning(system, monkeypatch):
+    warnings = []
+    monkeypatch.setattr(rospy, "logwarn_once", lambda text, *values: warnings.append(text % values))
+    system.bridge.p = BridgeParams(ignore_goal_frame=True)
+    system.click(1.0)
+    system.bridge.run()
+    assert system.calls == ["goal 1"]
+    assert [text.split(":")[0] for text in warnings] == ["ignore_goal_frame is set"]
 
 
 def test_newer_click_cancels_the_goal_before_its_own_is_sent(system):

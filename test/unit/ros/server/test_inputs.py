@@ -70,7 +70,7 @@ def test_odometry_or_valid_scans_that_have_been_missing_for_more_than_a_second_a
             server.receive_odom(now)
         if ahead is not None:
             server.receive_scan(now, ahead)
-        assert server.inputs.missing(now, started=1.5, accepted=0.0) == missing
+        assert server.inputs.missing(now, started=1.5, accepted=99.0) == missing
 
 
 def test_data_from_before_the_goal_is_not_used_and_the_goal_has_a_second_for_newer_data(server):

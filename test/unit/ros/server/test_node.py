@@ -115,6 +115,14 @@ def test_goal_that_is_no_position_is_aborted_at_once_and_the_robot_stays(system,
     assert system.speeds == [0.0]
 
 
+def test_goal_that_got_stuck_names_the_other_nodes_that_command_the_robot(system, monkeypatch):
+    commanding = {"/x": ["/teleop", rospy.get_name()], "/y": ["/other"]}
+    monkeypatch.setattr(node.master, "publishers", lambda uri, topic: commanding)
+    execution = node.GoalExecution(GoToPositionGoal(), system.node.inputs)
+    system.node.set_terminal_state(execution, node.Ending(node.Outcome.STUCK, "no progress"))
+    assert system.ended == [("aborted", False, "STUCK: no progress; /x is also published by /teleop")]
+
+
 def test_cancel_ends_the_goal_while_the_clock_stands(system):
     text = "PREEMPTED: goal x 1.00 y 0.00 stopped after 0.0 s: it was cancelled"
     assert system.execute(system.cancel) == [("preempted", False, text)]

@@ -3,7 +3,7 @@
 from unittest.mock import MagicMock
 
 import pytest
-from actionlib_msgs.msg import GoalStatus, GoalStatusArray
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 
 from aro_robocop_goto_as.geometry import Pose2D, lifted
@@ -21,7 +21,7 @@ def made(**state):
     context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
     part, inbox = goals.Goals(context), MagicMock()
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
-    part.subscribe_to_robot(inbox, "red")
+    part.subscribe(inbox, "red")
     return part, context
 
 
@@ -55,8 +55,9 @@ def test_a_click_is_a_goal_in_the_frame_of_the_scene():
 
 @pytest.mark.parametrize("mode", [goals.SEND_GOAL, goals.PLACE_ROBOT])
 def test_a_click_outside_of_the_walls_is_answered_and_requests_nothing(mode, monkeypatch):
-    monkeypatch.setattr(goals, "is_outside", lambda goal, robot, obstacles: (goal, robot) == ((1.0, 2.0), (0.0, 0.0)))
+    monkeypatch.setattr(goals, "is_outside", lambda *arguments: arguments == ((1.0, 2.0), (0.0, 0.0), ["wall"]))
     part, context = made()
+    context.scene.shapes.return_value = {("world", 0): "wall", ("robots", 0): "robot"}
     part._mode.value = mode
     part._on_click(CLICK)
     assert "(1.00, 2.00): outside of the walls, nothing was sent" in context.state.now.answer
@@ -108,9 +109,19 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
     part._on_status(0.0, GoalStatusArray(status_list=[status]))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
+    assert part._show_goal("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
-    assert part._goal_rows("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+    assert part._show_goal("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+
+
+def test_a_goal_that_has_ended_is_no_longer_shown_when_robots_are_placed_anew():
+    part, context = made()
+    ended = GoalStatusArray(status_list=[GoalStatus(GoalID(id="goal"), GoalStatus.SUCCEEDED, "")])
+    for resets, is_shown in ((0, True), (1, False), (1, False)):
+        context.state.change(resets=resets)
+        part._on_status(0.0, ended)  # as its server does for some seconds
+        part.show(context.state.now)
+        assert ("SUCCEEDED" in part._feedback_html.content) == is_shown
 
 
 def test_a_goal_that_waits_for_its_server_is_shown_and_can_be_cancelled():

@@ -6,7 +6,7 @@ import pytest
 from geometry_msgs.msg import Twist
 
 from aro_robocop_goto_as.ros.web import plots
-from aro_robocop_goto_as.ros.web.plots import PLOTTED, SPAN, Plot
+from aro_robocop_goto_as.ros.web.plots import SPAN
 from aro_robocop_goto_as.web.state import PageState
 
 
@@ -20,7 +20,7 @@ def context():
 def test_a_plot_goes_on_to_now_when_nothing_more_is_received_and_forgets_what_is_older_than_it_shows(
     context, monkeypatch
 ):
-    plot, now = Plot(context, PLOTTED[1]), [100.0]
+    plot, now = plots.plots(context)[1], [100.0]
     monkeypatch.setattr(plots.time, "monotonic", lambda: now[0])
     plot._on_message(100.0, Twist())
     plot._on_message(110.0, Twist())

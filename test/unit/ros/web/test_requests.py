@@ -1,6 +1,5 @@
 """Visitors' requests: what one of them fails with is its answer, and the next one is served."""
 
-import pytest
 from waiting import wait_for
 
 from aro_robocop_goto_as.ros.web import requests
@@ -23,19 +22,12 @@ class Service:
         return self
 
 
-@pytest.mark.parametrize(
-    "problem, answer",
-    [
-        (requests.rospy.ROSException("timeout exceeded"), "timeout exceeded"),
-        (requests.rospy.ServiceException("no such robot"), "no such robot"),
-    ],
-)
-def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch, problem, answer):
-    Service(monkeypatch, [problem])
+def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch):
+    Service(monkeypatch, [requests.rospy.ServiceException("no such robot")])
     state = SharedState(PageState())
     made = requests.Requests(state)
     made.call("pause", "pause", object)
-    wait_for(lambda: state.now.answer == f"pause: {answer}", "the failure is the answer")
+    wait_for(lambda: state.now.answer == "pause: no such robot", "the failure is the answer")
     made.call("continue", "unpause", object)
     wait_for(lambda: not state.now.answer, "the next request is served")
 
