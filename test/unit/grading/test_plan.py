@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from grading_records import LIMITS, PLAN
+from grading_records import LIMITS, PLAN, PLAN_FILE
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -24,7 +24,7 @@ NUMBERS = st.floats(-100.0, 100.0).map(lambda number: round(number, 3))
 
 
 def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
-    plan = load(PLAN)
+    plan = PLAN
     points = {
         part: round(sum(check.points for check in plan.checks if check.part == part and not check.extra), 6)
         for part in ("server", "bridge")
@@ -38,11 +38,11 @@ def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each
 
 
 def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
-    section = PLAN.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
+    section = PLAN_FILE.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
     lines = [re.fullmatch(r"  #(\w+): (\S+) +# \S.*", line) for line in section]
-    assert all(lines) and yaml.safe_load(PLAN.read_text())["limits"] is None
+    assert all(lines) and yaml.safe_load(PLAN_FILE.read_text())["limits"] is None
     assert {line[1]: float(line[2]) for line in lines if line} == dataclasses.asdict(LIMITS)
-    assert load(PLAN).limits == LIMITS
+    assert PLAN.limits == LIMITS
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
     ],
 )
 def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
-    text = PLAN.read_text()
+    text = PLAN_FILE.read_text()
     assert old in text
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
     with pytest.raises((PlanError, ParameterError), match=error):
@@ -106,9 +106,9 @@ def test_outline_of_a_block_is_that_of_its_shape_where_it_stands() -> None:
 
 def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:
     lists = "packages: {debian: [python3-scipy, g++], pypi: ['numpy-stl==3.1', filterpy]}"
-    (tmp_path / "plan.yaml").write_text(PLAN.read_text().replace("packages:", lists))
+    (tmp_path / "plan.yaml").write_text(PLAN_FILE.read_text().replace("packages:", lists))
     assert load(tmp_path / "plan.yaml").packages == Packages(("python3-scipy", "g++"), ("numpy-stl==3.1", "filterpy"))
-    assert load(PLAN).packages == Packages()
+    assert PLAN.packages == Packages()
 
 
 @given(SEEDS, st.tuples(NUMBERS, NUMBERS).map(sorted))
@@ -136,8 +136,8 @@ def test_empty_range_is_refused_with_its_place() -> None:
 
 @pytest.mark.parametrize("seed", [1, 2, MAX_SEED])
 def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
-    middle, chosen = load(PLAN), load(PLAN, seed)
-    assert chosen == load(PLAN, seed)
+    middle, chosen = PLAN, load(PLAN_FILE, seed)
+    assert chosen == load(PLAN_FILE, seed)
     for before, after in zip(middle.scenarios, chosen.scenarios):
         assert (before.steps, before.obstacles) != (after.steps, after.obstacles), before.name
 
@@ -145,4 +145,4 @@ def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(se
 @pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
 def test_seed_out_of_bounds_is_refused(seed: int) -> None:
     with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {MAX_SEED}"):
-        load(PLAN, seed)
+        load(PLAN_FILE, seed)

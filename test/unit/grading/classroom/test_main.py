@@ -5,12 +5,13 @@ import sys
 import time
 
 import pytest
-from class_records import PLAN, keep, keep_report
+from grading_records import PLAN, keep, keep_grade
 
 from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
+from robocop_grading.judge import Grade
 from robocop_grading.plan_file import MAX_SEED
 from robocop_hosting.workspace import exclusive
 
@@ -49,7 +50,7 @@ def group(tmp_path):
     hand_ins = {name: f"digest of {name}" for name in ("anna", "ben", "carl.zip", "řehoř")}
     results = Results(tmp_path, {})
     keep(results, "anna", 0.5)
-    keep_report(results, "ben", {"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]})
+    keep_grade(results, Grade("ben", (), ("ben.rar: a .rar file",)))
 
     def make(again=()):
         return Class(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
