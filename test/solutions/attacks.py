@@ -51,17 +51,6 @@ for pid in [*range(2, 400), PID]:
         except OSError:
             pass
 """
-FORGE = """
-import os
-for name in ('server-left.json', 'server-start.json', 'report.json', '../report.json'):
-    try:
-        os.makedirs(FOLDER + '/out', exist_ok=True)
-        with open(FOLDER + '/out/' + name, 'w') as f:
-            f.write('{}')
-        print('wrote', name, flush=True)
-    except OSError as error:
-        print('refused', name, error, flush=True)
-"""
 ENDLESS = """
 import threading
 def spin():

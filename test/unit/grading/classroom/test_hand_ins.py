@@ -66,12 +66,12 @@ def test_a_folder_without_hand_ins_is_refused(tmp_path):
         collect(tmp_path / "nothing")
 
 
-TIMEOUT = 20.0  # [s, wall]; reading 150,000 entries takes minutes
+TIMEOUT = 20.0  # [s, wall]; reading 100,000 entries takes minutes
 
 
 def test_zip_with_too_many_entries_is_refused_soon(tmp_path):
     with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive:
-        for index in range(150_000):
+        for index in range(100_000):
             archive.writestr(zipfile.ZipInfo(f"{index}"), b"")
     started = time.monotonic()
     assert problem_of(tmp_path / "eve.zip") == "expected at most 5000 files and folders"

@@ -48,11 +48,6 @@ def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):
     assert f"graded: {file}" in as_text(grade, {}).splitlines()
 
 
-def test_folder_is_created_with_its_parents(tmp_path):
-    assert report.make_report_folder(tmp_path / "a" / "b").is_dir()
-    assert report.make_report_folder(tmp_path / "a" / "b").is_dir(), "it may exist"
-
-
 def test_folder_that_can_not_be_created_is_refused_with_its_name(tmp_path):
     (tmp_path / "file").write_text("")
     for folder in (Path("/proc/x"), tmp_path / "file", tmp_path / "file" / "below"):
