@@ -82,7 +82,7 @@ class Runner:
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
         else:
-            command = self.sandbox.node_command(command, node_environment, reads, home)
+            command = self.sandbox.command_inside(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
         cpu_time = math.inf if self.sandbox is None else float(MAX_CPU_TIME)

@@ -28,7 +28,6 @@ from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
 from ..texts import printable_lines
-from .child_errors import send_child_errors_to
 from .hand_ins import collect
 from .results import WAITING, Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
@@ -154,7 +153,6 @@ def grade_class(args: argparse.Namespace) -> Class:
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
-        send_child_errors_to(out / WORKERS_LOG)
         workers = args.workers or len(os.sched_getaffinity(0))
         grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
     return group
@@ -215,8 +213,9 @@ def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], Non
     group.write(running=bool(group.waiting))
     try:
         if group.waiting:
-            from .cluster import connected, done  # importing dask takes half a second
+            from .cluster import connected, done, send_child_errors_to  # importing dask takes half a second
 
+            send_child_errors_to(group.results.folder / WORKERS_LOG)
             paths = [group.folder / name for name in group.waiting]
             with connected(scheduler, min(workers, len(paths))) as client:
                 for path, problem in done(client, task, paths):

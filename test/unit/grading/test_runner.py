@@ -1,6 +1,5 @@
 """How the grader interprets a session's output, with a shell in place of the session."""
 
-
 import pytest
 from grading_records import PLAN
 

@@ -1,9 +1,6 @@
 """What counts as a hand-in of a class, and when it has changed; test_unpacking.py tests what is in one."""
 
 import os
-import time
-import zipfile
-from pathlib import Path
 
 import pytest
 
@@ -64,15 +61,3 @@ def test_a_folder_without_hand_ins_is_refused(tmp_path):
         collect(tmp_path)
     with pytest.raises(GradingError, match="expected a folder with a folder, a zip or tar archive, or a Python file"):
         collect(tmp_path / "nothing")
-
-
-TIMEOUT = 20.0  # [s, wall]; reading 100,000 entries takes minutes
-
-
-def test_zip_with_too_many_entries_is_refused_soon(tmp_path):
-    with zipfile.ZipFile(tmp_path / "eve.zip", "w") as archive:
-        for index in range(100_000):
-            archive.writestr(zipfile.ZipInfo(f"{index}"), b"")
-    started = time.monotonic()
-    assert problem_of(tmp_path / "eve.zip") == "expected at most 5000 files and folders"
-    assert time.monotonic() - started < TIMEOUT

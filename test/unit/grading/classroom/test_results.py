@@ -8,22 +8,29 @@ from grading_records import PLAN, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.classroom.results import Check, Result, Results, page
+from robocop_grading.checks import Failed
+from robocop_grading.classroom.results import Result, Results, page
 from robocop_grading.classroom.table import table
+from robocop_grading.judge import CheckResult, Outcome
+
+
+def judged(name, part, points, cause="", extra=False):
+    """The result of a check."""
+    failure, outcome = Failed("", "", 0.0, cause), Outcome.FAILED if cause else Outcome.PASSED
+    return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure if cause else None)
+
 
 RESULTS = (
     Result(
         "=anna",
         (
-            Check("cancel", "server", "failed", 0.0, "<cause> at 1.5"),
-            Check("action_server", "server", "passed", 0.5),
-            Check("goal_frame", "bridge", "passed", 1.0, extra=True),
+            judged("cancel", "server", 0.0, "<cause> at 1.5"),
+            judged("action_server", "server", 0.5),
+            judged("goal_frame", "bridge", 1.0, extra=True),
         ),
-        (),
-        9.0,
     ),
-    Result("ben", (Check("cancel", "server", "failed", 0.0, "<cause> at -3"),), ("=cmd",), 9.0),
-    Result("carl", (), ("nothing to grade",), 9.0),
+    Result("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
+    Result("carl", (), ("nothing to grade",)),
 )
 
 
@@ -70,7 +77,7 @@ def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
 
 @given(st.text(), st.text())
 def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
-    text = table([Result(name, (), (problem,), 1.0)], PLAN, {name: problem})
+    text = table([Result(name, (), (problem,))], PLAN, {name: problem})
     assert len(read(text)) == 2
     for separator in ",;\t":
         for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):

@@ -46,6 +46,13 @@ def encrypted(files):
     return bytes(raw)
 
 
+def long_list(files):
+    """A zip with these files that says that its list of entries is very long."""
+    raw = bytearray(zipped(files))
+    raw[-10:-6] = (2**23).to_bytes(4, "little")
+    return bytes(raw)
+
+
 def link(name, target, kind=tarfile.SYMTYPE):
     """A link in a tar archive."""
     info = tarfile.TarInfo(name)
@@ -130,6 +137,7 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
         ({"a.zip": lambda: zipped({SERVER: bytes(10_001)})}, "a.zip: larger than 64 MB"),
         (dict.fromkeys(["a.zip", "b.zip"], lambda: zipped({SERVER: bytes(6_000)})), "b.zip: larger than 64 MB"),
         ({"a.zip": lambda: encrypted({SERVER: b"pass"})}, "encrypted, password required"),
+        ({"a.zip": lambda: long_list(ONE)}, "a.zip: expected at most 5000 files"),
         ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 64 MB"),
         ({"a.tgz": lambda: tarred({"build/x": bytes(1024**2)}, "gz")}, "a.tgz: larger than 1 MB"),
         (
