@@ -54,51 +54,37 @@ REMOVABLE = (ast.Expr, ast.Assign, ast.AugAssign, ast.Return, ast.Break, ast.Con
 # -- mutants --
 
 
-def _changes(node):
-    """The changes of a node: the name of a field of it, and another value of the field."""
-    for name in ("body", "orelse", "finalbody"):
-        block = getattr(node, name, None)
-        for number, statement in enumerate(block if isinstance(block, list) else ()):
-            if isinstance(statement, REMOVABLE):
-                yield name, [*block[:number], ast.Pass(), *block[number + 1 :]]
-    if isinstance(node, (ast.If, ast.While)):
-        yield "test", ast.UnaryOp(ast.Not(), node.test)
-    elif isinstance(node, ast.Compare):
-        for number, operator in enumerate(node.ops):
-            for other in OTHERS.get(type(operator), ()):
-                yield "ops", [*node.ops[:number], other(), *node.ops[number + 1 :]]
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        yield "operand", ast.UnaryOp(ast.Not(), node.operand)
-    elif isinstance(node, (ast.BinOp, ast.BoolOp, ast.UnaryOp)):
-        yield from (("op", other()) for other in OTHERS.get(type(node.op), ()))
-    elif isinstance(node, (ast.Attribute, ast.Name)):
-        name = "attr" if isinstance(node, ast.Attribute) else "id"
-        yield from ((name, FUNCTIONS[it]) for it in [getattr(node, name)] if it in FUNCTIONS)
-    elif isinstance(node, ast.Constant) and node.value != "__main__":
-        yield from (("value", other) for other in _other_values(node.value))
-
-
-def _other_values(value):
-    if isinstance(value, bool):
-        return (not value,)
-    if isinstance(value, (int, str)):
-        return (value + (1 if isinstance(value, int) else "x"),)
-    return ((2.0 * value, 0.5 * value) if value else (1.0,)) if isinstance(value, float) else ()
+def _others(node, field, value):
+    """What may stand in place of the value of a node's field, or of an entry of a list there."""
+    if type(value) in OTHERS:
+        return [other() for other in OTHERS[type(value)]]
+    if isinstance(value, REMOVABLE):
+        return [ast.Pass()]
+    if field == "test" or field == "operand" and isinstance(node.op, ast.Not):
+        return [ast.UnaryOp(ast.Not(), value)]
+    if field in ("attr", "id"):
+        return [FUNCTIONS[value]] if value in FUNCTIONS else []
+    if not isinstance(node, ast.Constant) or field != "value" or value == "__main__":
+        return []
+    if isinstance(value, (bool, int, str)):
+        return [not value if isinstance(value, bool) else value + "x" if isinstance(value, str) else value + 1]
+    return ([2.0 * value, 0.5 * value] if value else [1.0]) if isinstance(value, float) else []
 
 
 def mutants(base):
     """The programs that differ in one place from a solution."""
     tree, found = ast.parse(RIGHT[base]), set()
-    original = ast.unparse(tree)
-    for node in list(ast.walk(tree)):
-        for name, other in list(_changes(node)):
-            before = getattr(node, name)
-            setattr(node, name, other)
+    original, places = ast.unparse(tree), [(node, *it) for node in ast.walk(tree) for it in ast.iter_fields(node)]
+    for node, field, value in places:
+        entries = value if isinstance(value, list) else [value]
+        for number, other in [(n, other) for n, it in enumerate(entries) for other in _others(node, field, it)]:
+            changed = [*entries[:number], other, *entries[number + 1 :]]
+            setattr(node, field, changed if isinstance(value, list) else other)
             with contextlib.suppress(SyntaxError, ValueError):
                 text = ast.unparse(ast.fix_missing_locations(tree))
                 compile(text, base, "exec")
                 found.add(text)
-            setattr(node, name, before)
+            setattr(node, field, value)
     return sorted(found - {original})
 
 

@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import difflib
 import hashlib
 import os
 import random
@@ -17,6 +16,7 @@ from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
+from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
@@ -196,9 +196,7 @@ def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str
     """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
     names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
     for name in {*names} - {*hand_ins}:
-        close = difflib.get_close_matches(name, hand_ins, 1)
-        advice = f"; did you mean {close[0]}?" if close else ""
-        raise GradingSetupError(f"--again {name}: no hand-in of this name{advice}")
+        raise GradingSetupError(f"--again {name}: no hand-in of this name{did_you_mean(name, hand_ins)}")
     return {*names}
 
 
