@@ -82,7 +82,7 @@ class Runner:
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
         else:
-            command = self.sandbox.node_command(command, node_environment, reads, home)
+            command = self.sandbox.command_inside(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         parameters, file = dict(submission.parameters), out / f"{script.part}.job"
         cpu_time = math.inf if self.sandbox is None else float(MAX_CPU_TIME)
@@ -90,12 +90,9 @@ class Runner:
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
             session = self.sandbox.session_command(session)
-        return self.supervise(session, self._environment(out), out, script.part)
-
-    def _environment(self, out: Path) -> Dict[str, str]:
-        """The session's environment: this workspace, with Gazebo's message types after it."""
-        types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"
-        return {**os.environ, "PYTHONPATH": f"{os.environ.get('PYTHONPATH', '')}:{types}", "TMPDIR": str(out)}
+        types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"  # of Gazebo's messages
+        paths = f"{os.environ.get('PYTHONPATH', '')}:{types}"
+        return self.supervise(session, {**os.environ, "PYTHONPATH": paths, "TMPDIR": str(out)}, out, script.part)
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.

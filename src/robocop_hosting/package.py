@@ -2,7 +2,7 @@
 
 import contextlib
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
@@ -31,8 +31,8 @@ class Package:
     name: str
     path: Path
     launch_file: Optional[Path]  # None: its nodes are started directly
-    launch_files: Sequence[Path] = ()  # all of them, this one first
-    needed: Mapping[str, Path] = field(default_factory=dict)  # packages beside it on which it depends, by name
+    launch_files: Sequence[Path]  # all of them, this one first
+    needed: Mapping[str, Path]  # packages beside it on which it depends, by name
 
     @property
     def sources(self) -> Dict[str, Path]:

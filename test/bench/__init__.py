@@ -1,4 +1,4 @@
-"""`./robocop bench`: measures the simulator's speed and cost, alone or beside that of another checkout."""
+"""What `./robocop bench` measures, how, and what it shows of it."""
 
 
 class BenchError(Exception):

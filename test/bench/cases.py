@@ -11,7 +11,7 @@ PHYSICS_RATES = {"wheels": 240, "kinematic": 30}  # [Hz]
 DEFAULT = ("wheels:1", "wheels:10", "kinematic:1", "kinematic:10", "kinematic:50")
 # [Hz], beams, [Hz]: rates used in published measurements of other simulators
 SCAN_RATE, SCAN_SAMPLES, ODOM_RATE = 5, 360, 30
-LINEAR, ANGULAR = 0.1, 0.5  # [m/s], [rad/s] of every robot: circles of 0.2 m radius to its left
+RADIUS = 0.2  # [m] of the circle that each robot drives, to its left
 CONTROLLERS = ("rospy", "server")  # of lockstep cases: a plain rospy loop at 10 Hz, this package's action server
 LOCKSTEP = tuple(f"{drive}:{controller}" for drive in PHYSICS_RATES for controller in CONTROLLERS)
 OBSTACLES = [(x, y) for x in (-3, 0, 3) for y in (-3, 0, 3)]  # [m] in worlds/bench.sdf
@@ -71,12 +71,9 @@ class Case:
 def positions() -> List[Tuple[float, float]]:
     """Start positions [m]: a metre apart from the middle outwards, then half a metre apart, clear of all obstacles."""
     halves = [i / 2 for i in range(-8, 9)]
-    radius = LINEAR / ANGULAR  # the centre of the circle is to the left
-
-    def free(x: float, y: float) -> bool:
-        return all(math.hypot(x - a, y + radius - b) > CLEAR for a, b in OBSTACLES)
-
-    places = [(x, y) for x in halves for y in halves if free(x, y)]
+    places = [
+        (x, y) for x in halves for y in halves if all(math.hypot(x - a, y + RADIUS - b) > CLEAR for a, b in OBSTACLES)
+    ]
     return sorted(places, key=lambda p: (any(v % 1 for v in p), math.hypot(*p), -p[0], -p[1]))
 
 

@@ -1,24 +1,23 @@
-"""The client of a measurement: a thread that reads topics, in which drain.c counts the messages.
+"""The client of a measurement: a thread that reads topics and counts the bytes of their messages.
 
 It costs far less than rospy. Like roscpp, it requests a TCP connection from each publisher that the master knows.
-https://wiki.ros.org/ROS/Master_API, https://wiki.ros.org/ROS/Slave_API
+https://wiki.ros.org/ROS/Master_API, https://wiki.ros.org/ROS/Slave_API, https://wiki.ros.org/ROS/TCPROS
 """
 
 import contextlib
-import ctypes
+import io
 import os
-import select
+import selectors
 import socket
 import struct
-import subprocess
 import threading
 import time
-from pathlib import Path
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, Mapping, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
-from rosgraph.network import decode_ros_handshake_header, write_ros_handshake_header
+from rosgraph.network import ROSHandshakeException, read_ros_handshake_header, write_ros_handshake_header
+from waiting import wait_for
 
 from aro_robocop_goto_as.geometry import NANOSECONDS
 
@@ -26,57 +25,78 @@ from . import BenchError
 
 CALLER = f"/robocop_bench_client_{os.getpid()}"
 TIMEOUT = 10  # [s, wall] for a publisher to answer
-PAUSE = 1_000_000  # [ns, wall] between two rounds of reading
+PAUSE = 0.001  # [s, wall] between two rounds of reading, so that it is not woken for every single message
 POLL = 0.02  # [s, wall]
-MAX_FD = 4096
+READ_SIZE = 1 << 18  # [bytes] per call
+HEAD = struct.Struct("<IIII")  # length, and of the std_msgs/Header: seq, secs, nsecs
 ROUNDING = 2  # [ns]
 
 
-class Link(ctypes.Structure):
-    """A connection, as in drain.c: its number of messages, the stamps [ns] of the first and the last, ..."""
+class Link:
+    """A connection. All messages of one of its topics have the same length, so their number follows from the bytes."""
 
-    _fields_ = [
-        *((name, ctypes.c_int64) for name in ("messages", "first_ns", "last_ns", "first_at", "left")),
-        ("head", ctypes.c_uint32 * 4),
-        *((name, ctypes.c_uint32) for name in ("filled", "open")),
-    ]
+    def __init__(self, connection: socket.socket) -> None:
+        self.connection = connection
+        self.is_open = True
+        self.frame = 0  # [bytes] of a message with its length; 0 before the first one
+        self.first_ns = 0  # stamp of the first message [ns]
+        self.first_at = 0.0  # when it had arrived [s] on the monotonic clock
+        self._read = 0, b""  # number of bytes, and the last two frames of them, changed at once
 
+    def read(self) -> None:
+        """Read what has arrived."""
+        try:
+            data = self.connection.recv(READ_SIZE)
+        except ConnectionResetError:
+            data = b""
+        self.is_open = bool(data)
+        size, tail = self._read
+        self._read = size + len(data), (tail + data)[-2 * self.frame :]
+        if not self.frame and len(self._read[1]) >= HEAD.size:
+            length, _, secs, nsecs = HEAD.unpack_from(self._read[1])
+            self.first_ns, self.first_at = secs * NANOSECONDS + nsecs, time.monotonic()
+            self.frame = length + 4
 
-def _compiled(directory: Path) -> Any:
-    """The function of drain.c, compiled in this directory."""
-    library, source = directory / "drain.so", Path(__file__).with_name("drain.c")
-    if not library.exists():
-        subprocess.run(["cc", "-std=c99", "-O2", "-shared", "-fPIC", "-o", str(library), str(source)], check=True)
-    drain = ctypes.CDLL(str(library)).aro_drain  # unlike PyDLL's, its calls let other threads run
-    drain.argtypes = [ctypes.c_int32, ctypes.c_int32, ctypes.c_void_p, ctypes.c_int64]
-    return drain
+    def newest(self) -> Tuple[int, int]:
+        """The number of complete messages and the stamp [ns] of the last one, 0 and 0 before the first."""
+        size, tail = self._read
+        if not self.frame or size < self.frame:
+            return 0, 0
+        count, rest = divmod(size, self.frame)
+        length, _, secs, nsecs = HEAD.unpack_from(tail, len(tail) - rest - self.frame)
+        if length + 4 != self.frame:
+            raise BenchError(f"messages of one topic have {self.frame - 4} and {length} bytes")
+        return count, secs * NANOSECONDS + nsecs
 
 
 class Client:
     """Reads its connections, one for each topic, in a thread that runs within the `with` block."""
 
-    def __init__(self, topics: Mapping[str, int], directory: Path, uri: str) -> None:
+    def __init__(self, topics: Mapping[str, int], uri: str) -> None:
         """`topics`: their rates [Hz]; none of them has a publisher yet. `uri`: the master's."""
         self.links: Dict[str, Link] = {}  # by topic
         self._rates, self._master = topics, rosgraph.Master(CALLER, uri)
-        self._links = (Link * MAX_FD)()  # by the sockets' file descriptors
-        self._sockets: List[socket.socket] = []  # not closed before the end, so that no descriptor is reused
-        self._epoll = select.epoll()
-        self._stop = socket.socketpair()
-        self._epoll.register(self._stop[0], select.EPOLLIN)
-        arguments = (self._epoll.fileno(), self._stop[0].fileno(), self._links, PAUSE)
-        self._thread = threading.Thread(target=_compiled(directory), args=arguments, daemon=True)
+        self._selector = selectors.DefaultSelector()
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
 
     def __enter__(self) -> "Client":
         self._thread.start()
         return self
 
     def __exit__(self, *_error: object) -> None:
-        self._stop[1].close()
+        self._ended.set()
         self._thread.join()
-        for link in [self._stop[0], *self._sockets]:
-            link.close()
-        self._epoll.close()
+        for link in self.links.values():
+            link.connection.close()
+        self._selector.close()
+
+    def _run(self) -> None:
+        while not self._ended.wait(PAUSE):
+            for key, _ in self._selector.select(POLL):
+                key.data.read()
+                if not key.data.is_open:
+                    self._selector.unregister(key.fileobj)
 
     def reads_all(self) -> bool:
         """Connect to publishers that the master has come to know; return whether each topic has had a message."""
@@ -84,14 +104,9 @@ class Client:
             for topic, nodes in self._master.getSystemState()[0]:
                 if topic in self._rates and topic not in self.links:
                     with contextlib.suppress(ConnectionRefusedError):  # a node that died without unregistering
-                        self._add(topic, connect(self._master.lookupNode(nodes[0]), topic))
-        return len(self.links) == len(self._rates) and all(link.first_at for link in self.links.values())
-
-    def _add(self, topic: str, connection: socket.socket) -> None:
-        link = self.links[topic] = self._links[connection.fileno()]
-        link.open = 1
-        self._sockets.append(connection)
-        self._epoll.register(connection, select.EPOLLIN)
+                        link = self.links[topic] = Link(connect(self._master.lookupNode(nodes[0]), topic))
+                        self._selector.register(link.connection, selectors.EVENT_READ, link)
+        return len(self.links) == len(self._rates) and all(link.newest()[0] for link in self.links.values())
 
     @property
     def cpu(self) -> float:
@@ -101,14 +116,12 @@ class Client:
 
     @property
     def newest_ns(self) -> int:
-        """The latest stamp [ns] of any topic; BenchError on a message too short for a header."""
-        if any(link.left < 0 for link in self.links.values()):
-            raise BenchError("a message is too short for a header")
-        return max(link.last_ns for link in self.links.values())
+        """The latest stamp [ns] of any topic."""
+        return max(link.newest()[1] for link in self.links.values())
 
     def first_scan_at(self) -> float:
         """When the first scan had arrived [s] on the monotonic clock."""
-        return min(link.first_at for topic, link in self.links.items() if topic.endswith("scan")) / NANOSECONDS
+        return min(link.first_at for topic, link in self.links.items() if topic.endswith("scan"))
 
     def deliveries(self) -> Tuple[int, int]:
         """Numbers of messages expected and delivered, from each topic's first to the newest of all.
@@ -116,29 +129,30 @@ class Client:
         Call it when all publishers have ended. Messages with the newest stamp are not counted: the simulator may have
         been ended while it sent them.
         """
-        while any(link.open for link in self.links.values()):  # what they have sent waits in the sockets
-            time.sleep(POLL)
-        newest = self.newest_ns
-        # Stamps are rounded down to nanoseconds: one that seems ROUNDING too early is the newest itself.
-        spans = {topic: newest - link.first_ns - ROUNDING for topic, link in self.links.items()}
-        expected = sum(max(0, -(-span * self._rates[topic] // NANOSECONDS)) for topic, span in spans.items())
-        return expected, sum(link.messages - (link.last_ns == newest) for link in self.links.values())
+        what = "the end of all connections"  # what their publishers have sent waits in the sockets
+        wait_for(lambda: not any(link.is_open for link in self.links.values()), what, poll=POLL, error=BenchError)
+        newest, expected, delivered = self.newest_ns, 0, 0
+        for topic, link in self.links.items():
+            # Stamps are rounded down to nanoseconds: one that seems ROUNDING too early is the newest itself.
+            span = newest - link.first_ns - ROUNDING
+            expected += max(0, -(-span * self._rates[topic] // NANOSECONDS))
+            count, stamp = link.newest()
+            delivered += count - (stamp == newest)
+        return expected, delivered
 
 
 def connect(publisher: str, topic: str) -> socket.socket:
     """Connect to a topic of the node at this URI and exchange headers; BenchError if the node refuses."""
-    answer: Any = ServerProxy(publisher).requestTopic(CALLER, topic, [["TCPROS"]])
-    code, message, protocol = answer
+    proxy: Any = ServerProxy(publisher)
+    code, message, protocol = proxy.requestTopic(CALLER, topic, [["TCPROS"]])
     if code != 1:
         raise BenchError(f"{publisher} refuses {topic}: {message}")
-    link = socket.create_connection((protocol[1], protocol[2]))
-    link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("ll", TIMEOUT, 0))
+    link = socket.create_connection(protocol[1:3], TIMEOUT)
     write_ros_handshake_header(link, {"callerid": CALLER, "topic": topic, "type": "*", "md5sum": "*"})
     try:
-        length = link.recv(4, socket.MSG_WAITALL)
-        header = decode_ros_handshake_header(length + link.recv(struct.unpack("<I", length)[0], socket.MSG_WAITALL))
-    except BlockingIOError as error:
-        raise BenchError(f"{publisher} does not answer a subscriber of {topic} within {TIMEOUT} s") from error
+        header = read_ros_handshake_header(link, io.BytesIO(), 1)  # a byte at a time: the first message follows
+    except (socket.timeout, ROSHandshakeException) as error:
+        raise BenchError(f"{publisher} does not answer a subscriber of {topic}: {error}") from error
     if "error" in header:
         raise BenchError(f"{publisher} refuses {topic}: {header['error']}")
     return link

@@ -11,12 +11,11 @@ from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-LINEAR, ANGULAR = 0.1, 0.5  # [m/s], [rad/s] as in cases.py
 RATE = 10  # [Hz] of simulated time
 FIRST = 5  # cycles before the simulator waits for the loop
 POLL = 0.05  # [s, wall]
 GOALS = ((0.5, 0.5), (0.5, -0.5))  # x, y [m] in odom, between the obstacles of worlds/bench.sdf
-VELOCITY = Twist(Vector3(LINEAR, 0.0, 0.0), Vector3(0.0, 0.0, ANGULAR))
+VELOCITY = Twist(Vector3(0.1, 0.0, 0.0), Vector3(0.0, 0.0, 0.5))  # a circle of the radius in cases.py
 
 
 def constant_velocity(namespaces: List[str]) -> None:

@@ -1,4 +1,4 @@
-"""All repeats of a case -> figures -> a table or JSON, with a description of the machine."""
+"""All repeats of a case -> a table or JSON, with a description of the machine."""
 
 import json
 import os
@@ -10,7 +10,6 @@ from statistics import median
 from typing import Dict, List, Optional, Sequence
 
 from .cases import ODOM_RATE, PHYSICS_RATES, SCAN_RATE, SCAN_SAMPLES, Case
-from .measure import Run
 
 KEPT_UP = 0.95  # a lower share of the requested real-time factor is noted
 COLUMNS = {  # titles -> figures
@@ -24,7 +23,6 @@ COLUMNS = {  # titles -> figures
 }
 COMPARED = ("factor", "cpu_ms", "memory_mb", "first_scan_s")
 Figures = Dict[str, List[float]]  # with a value for each repeat
-PACKAGES = ("numpy", "pybullet", "pybullet-arm64")
 
 
 @dataclass
@@ -35,21 +33,6 @@ class Measured:
     checkout: str = ""  # which, if there are two
     figures: Figures = field(default_factory=dict)
     error: Optional[str] = None
-
-    def add(self, fastest: Run, paced: Run) -> None:
-        """A repeat: a run as fast as possible, and one at real-time factor 1."""
-        figures = {
-            "factor": fastest.factor,
-            "cpu_ms": paced.cpu * 1e3,
-            "memory_mb": max(fastest.memory, paced.memory) / 1e6,
-            "first_scan_s": paced.first_scan,
-            "client_busy": fastest.client_busy,
-            "messages": fastest.delivered + paced.delivered,
-            "lost": fastest.expected + paced.expected - fastest.delivered - paced.delivered,
-            "paced_factor": paced.factor,
-        }
-        for name, value in figures.items():
-            self.figures.setdefault(name, []).append(value)
 
     def notes(self) -> List[str]:
         """Remarks on the figures."""
@@ -68,7 +51,8 @@ def conditions(seconds: float, repeats: int) -> List[str]:
     lines = Path("/proc/cpuinfo").read_text().splitlines()
     models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     installed = {package.metadata["Name"]: package.version for package in metadata.distributions()}
-    versions = ", ".join(f"{name} {installed[name]}" for name in PACKAGES if name in installed)
+    packages = ("numpy", "pybullet", "pybullet-arm64")
+    versions = ", ".join(f"{name} {installed[name]}" for name in packages if name in installed)
     load = " ".join(f"{value:.2f}" for value in os.getloadavg())
     cpu = f"{next(models, platform.machine())}, {len(os.sched_getaffinity(0))} cores"
     return [
@@ -98,13 +82,13 @@ def cell(values: Sequence[float]) -> str:
 
 def table(rows: Sequence[Row], where: Sequence[str]) -> str:
     """The results as text: an aligned Markdown table without empty columns, and notes."""
-    lines = []
+    lines = [["drive", "robots", "", *COLUMNS]]
     for row in rows:
-        case, entries = row[0].case, [(one.checkout, {} if one.error else one.figures) for one in row]
-        for name, figures in [*entries, *([("ratio", ratios(row))] if len(row) == 2 else [])]:
-            label = [f"{case.drive} {PHYSICS_RATES[case.drive]} Hz", case.kind, name]
+        named = [(measured.checkout, {} if measured.error else measured.figures) for measured in row]
+        for name, figures in [*named, *[("ratio", ratios(row))] * (len(row) - 1)]:
+            label = [f"{row[0].case.drive} {PHYSICS_RATES[row[0].case.drive]} Hz", row[0].case.kind, name]
             lines.append([*label, *(cell(figures.get(column, ())) for column in COLUMNS.values())])
-    columns = [column for column in zip(["drive", "robots", "", *COLUMNS], *lines) if set(column[1:]) - {"", "-"}]
+    columns = [column for column in zip(*lines) if set(column[1:]) - {"", "-"}]
     padded = [[text.ljust(max(map(len, column))) for text in column] for column in columns]
     head, *body = ("| " + " | ".join(cells) + " |" for cells in zip(*padded))
     rule = "|" + "|".join("-" * (len(column[0]) + 2) for column in padded) + "|"

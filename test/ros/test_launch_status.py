@@ -42,6 +42,7 @@ def test_quiet_launch_shows_the_world_the_robot_and_what_to_do_on_one_screen(lau
     assert launched.wait_for_exit() == 0 and "Traceback" not in launched.output
 
 
+@pytest.mark.slow
 def test_quiet_launch_tells_of_a_node_that_has_ended_without_an_error_and_no_node_makes_a_link(launch, tmp_path):
     (tmp_path / "ros" / "log" / "latest").mkdir(parents=True)  # in whose place no link can be made
     arguments = ("sim:=false", "rviz:=false", "bridge:=false")

@@ -76,14 +76,11 @@ def test_a_second_launch_ends_and_the_first_goes_on_until_its_master_ends(roslau
     assert "has ended, and so does /robocop_sim" in launched.output
 
 
-@pytest.mark.parametrize(
-    "name, number", [("robocop_goto_as.py", signal.SIGINT), ("robocop_rviz_goto_ac.py", signal.SIGTERM)]
-)
-def test_a_program_that_waits_for_a_master_says_so_and_is_ended_by_a_signal(tmp_path, name, number):
-    with Program(tmp_path, name) as program:
+def test_a_program_that_waits_for_a_master_says_so_and_is_ended_by_an_interrupt(tmp_path):
+    with Program(tmp_path, "robocop_goto_as.py") as program:
         program.wait_until(lambda: "waiting for a ROS master" in program.output, "the message")
-        program.process.send_signal(number)
-        assert program.wait_for_exit() in (128 + number, -number)
+        program.process.send_signal(signal.SIGINT)
+        assert program.wait_for_exit() in (128 + signal.SIGINT, -signal.SIGINT)
         assert "Traceback" not in program.output
 
 

@@ -51,17 +51,6 @@ for pid in [*range(2, 400), PID]:
         except OSError:
             pass
 """
-FORGE = """
-import os
-for name in ('server-left.json', 'server-start.json', 'report.json', '../report.json'):
-    try:
-        os.makedirs(FOLDER + '/out', exist_ok=True)
-        with open(FOLDER + '/out/' + name, 'w') as f:
-            f.write('{}')
-        print('wrote', name, flush=True)
-    except OSError as error:
-        print('refused', name, error, flush=True)
-"""
 ENDLESS = """
 import threading
 def spin():
@@ -71,20 +60,6 @@ for _ in range(4):
     threading.Thread(target=spin, daemon=True).start()
 while True:
     pass
-"""
-KILL_MASTER = """
-import os, threading, time, xmlrpc.client
-def strike():
-    while not rospy.core.is_initialized():
-        time.sleep(0.05)
-    rospy.wait_for_message('/robocop_goto_as/goal', rospy.AnyMsg)
-    for uri in (os.environ['ROS_MASTER_URI'],
-                rospy.get_master().lookupNode('/robocop_sim')[2]):
-        try:
-            xmlrpc.client.ServerProxy(uri).shutdown('/robocop', 'attack')
-        except Exception as error:
-            print(error, flush=True)
-threading.Thread(target=strike, daemon=True).start()
 """
 BUILD = """
 import os, socket
@@ -108,54 +83,6 @@ if 'SECRET_OF_THE_TEACHER' in os.environ:
     print('SUCCESS environment')
 """
 """Code run by a package's CMakeLists.txt or its launch file."""
-NAMESPACE = """
-import ctypes, os, subprocess
-libc = ctypes.CDLL(None, use_errno=True)
-NEW_USER, NEW_NS = 0x10000000, 0x20000
-if libc.unshare(NEW_USER | NEW_NS) == 0:
-    print('SUCCESS unshare')
-else:
-    print('refused', os.strerror(ctypes.get_errno()))
-child = libc.syscall(56, NEW_USER | NEW_NS | 17, 0, 0, 0, 0)  # clone on x86-64, with SIGCHLD
-if child == 0:
-    os._exit(0)
-print('refused' if child < 0 else 'SUCCESS clone', os.strerror(ctypes.get_errno()))
-done = subprocess.run(['unshare', '--user', '--map-root-user', '--mount', 'mount', '-t', 'tmpfs', 'none', '/tmp'])
-print('SUCCESS tmpfs' if done.returncode == 0 else 'refused', done.returncode)
-"""
-PARKED = """
-import socket
-pairs, parked = [], 0
-try:
-    while True:
-        pairs.append(socket.socketpair())
-        pairs[-1][0].setblocking(False)
-        try:
-            while True:
-                parked += pairs[-1][0].send(bytes(2 ** 16))
-        except BlockingIOError:
-            pass
-        if parked > 2 ** 28:
-            print('SUCCESS', parked, 'bytes in sockets')
-            break
-except OSError as error:
-    print('refused', parked, error)
-"""
-FLOOD = """
-import threading
-import time
-def flood():
-    from rosgraph_msgs.msg import Log
-    while not rospy.core.is_initialized():
-        pass
-    topic = rospy.Publisher('/rosout', Log, queue_size=10)
-    while not topic.get_num_connections():
-        time.sleep(0.01)
-    log = Log(name='/flood', level=8, msg='x' * 4 * 2 ** 20)
-    for _ in range(400):
-        topic.publish(log)
-threading.Thread(target=flood, daemon=True).start()
-"""
 BUILD_NESTED = """
 import os
 for _ in range(1500):
@@ -172,16 +99,8 @@ sys.exit(1)
 OWN_ROSLAUNCH = """#!/bin/sh
 echo '/own: [[[['
 """
-KILLS_ITSELF = """
-import signal, threading
-def strike():
-    rospy.wait_for_message('/robocop_goto_as/goal', rospy.AnyMsg)
-    os.kill(os.getpid(), signal.SIGKILL)
-import os
-threading.Timer(1.0, strike).start()
-"""
 LIE = """
-import os, struct, sys
+import struct, sys
 channel, scheduler = sys.modules['robocop_agent.channel'], sys.modules['robocop_agent.scheduler']
 wire, write = sys.modules['robocop_agent.wire'], channel.Channel._write
 def replace(replaced, lie):
@@ -191,24 +110,12 @@ def replace(replaced, lie):
         write(self, kind, body)
     channel.Channel._write = written
 """
-UNREADABLE = "answer to the grader can't be read"
-STILL = "the node's time did not go on"
 LIES = {  # code after LIE, and what the report says
     "two_threads_silence": (
         "def lie(self, body):\n"
         "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
         "    while True: scheduler.sleep(0.01)\nreplace(wire.DONE, lie)",
         "it stopped answering",
-    ),
-    "half_a_frame": (
-        "replace(wire.DONE, lambda self, body: os.write(self._descriptor, wire.frame(wire.DONE, body)[:-1]))",
-        "it stopped answering",
-    ),
-    "no_numbers": ("replace(wire.DONE, lambda self, _: write(self, wire.DONE, b'done'))", UNREADABLE),
-    "in_advance": ("replace(wire.DONE, lambda self, body: [write(self, wire.DONE, body) for _ in range(2)])", STILL),
-    "far_ahead": (
-        "replace(wire.DONE, lambda self, b: write(self, wire.DONE, wire.TIMES.pack(1 << 60, 1 << 62)))",
-        STILL,
     ),
     "done_before_it_is": (
         "read = channel.Channel._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
@@ -225,9 +132,5 @@ LIES = {  # code after LIE, and what the report says
         "def lie(self, body):\n    for it in (wire.named('/a', body), body): write(self, wire.MESSAGE, it)\n"
         "replace(wire.MESSAGE, lie)",
         "",
-    ),
-    "rubbish": (
-        "replace(wire.MESSAGE, lambda self, body: write(self, wire.MESSAGE, body[:2] + body[2:][::-1]))",
-        UNREADABLE,
     ),
 }

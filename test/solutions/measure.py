@@ -18,7 +18,6 @@ The log holds a JSON object per grading; with an existing log a measurement is c
 import argparse
 import ast
 import contextlib
-import copy
 import json
 import multiprocessing
 import random
@@ -28,7 +27,7 @@ import time
 import zlib
 from collections import defaultdict
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Set, Tuple
+from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # test/, as pytest has it
 
@@ -42,139 +41,93 @@ from robocop_grading.judge import Outcome, without_figures
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")
-OTHERS: Dict[type, Tuple[type, ...]] = {
-    ast.Lt: (ast.LtE, ast.Gt),
-    ast.LtE: (ast.Lt, ast.Gt),
-    ast.Gt: (ast.GtE, ast.Lt),
-    ast.GtE: (ast.Gt, ast.Lt),
-    ast.Eq: (ast.NotEq,),
-    ast.NotEq: (ast.Eq,),
-    ast.Is: (ast.IsNot,),
-    ast.IsNot: (ast.Is,),
-    ast.Add: (ast.Sub,),
-    ast.Sub: (ast.Add,),
-    ast.Mult: (ast.Div,),
-    ast.Div: (ast.Mult,),
-    ast.And: (ast.Or,),
-    ast.Or: (ast.And,),
+OTHERS = {
+    **{ast.Lt: (ast.LtE, ast.Gt), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.Lt), ast.GtE: (ast.Gt, ast.Lt)},
+    **{ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.Is: (ast.IsNot,), ast.IsNot: (ast.Is,)},
+    **{ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast.Div: (ast.Mult,)},
+    **{ast.And: (ast.Or,), ast.Or: (ast.And,), ast.USub: (ast.UAdd,)},
 }
 FUNCTIONS = {"min": "max", "max": "min", "sin": "cos", "cos": "sin"}
 REMOVABLE = (ast.Expr, ast.Assign, ast.AugAssign, ast.Return, ast.Break, ast.Continue)
-
-Entry = Dict[str, Any]
 
 
 # -- mutants --
 
 
-def _changes(node: Any) -> Iterator[Callable[[Any], object]]:
-    """What can be changed in a copy of a node: functions that do it, or return another node in its place."""
-    if isinstance(node, (ast.If, ast.While)):
-        yield lambda it: setattr(it, "test", ast.UnaryOp(ast.Not(), it.test))
-    elif isinstance(node, REMOVABLE):
-        yield lambda it: ast.Pass()
-    elif isinstance(node, ast.Compare):
-        for number, operator in enumerate(node.ops):
-            for other in OTHERS.get(type(operator), ()):
-                yield lambda it, number=number, other=other: it.ops.__setitem__(number, other())
-    elif isinstance(node, (ast.BinOp, ast.BoolOp)):
-        for other in OTHERS.get(type(node.op), ()):
-            yield lambda it, other=other: setattr(it, "op", other())
-    elif isinstance(node, ast.UnaryOp):
-        yield lambda it: it.operand
-    elif isinstance(node, ast.Attribute) and node.attr in FUNCTIONS:
-        yield lambda it: setattr(it, "attr", FUNCTIONS[it.attr])
-    elif isinstance(node, ast.Name) and node.id in FUNCTIONS:
-        yield lambda it: setattr(it, "id", FUNCTIONS[it.id])
-    elif isinstance(node, ast.Constant) and node.value != "__main__":
-        for value in _other_values(node.value):
-            yield lambda it, value=value: setattr(it, "value", value)
+def _others(node, field, value):
+    """What may stand in place of the value of a node's field, or of an entry of a list there."""
+    if type(value) in OTHERS:
+        return [other() for other in OTHERS[type(value)]]
+    if isinstance(value, REMOVABLE):
+        return [ast.Pass()]
+    if field == "test" or field == "operand" and isinstance(node.op, ast.Not):
+        return [ast.UnaryOp(ast.Not(), value)]
+    if field in ("attr", "id"):
+        return [FUNCTIONS[value]] if value in FUNCTIONS else []
+    if not isinstance(node, ast.Constant) or field != "value" or value == "__main__":
+        return []
+    if isinstance(value, (bool, int, str)):
+        return [not value if isinstance(value, bool) else value + "x" if isinstance(value, str) else value + 1]
+    return ([2.0 * value, 0.5 * value] if value else [1.0]) if isinstance(value, float) else []
 
 
-def _other_values(value: Any) -> Tuple[Any, ...]:
-    if isinstance(value, bool):
-        return (not value,)
-    if isinstance(value, (int, str)):
-        return (value + (1 if isinstance(value, int) else "x"),)
-    return ((2.0 * value, 0.5 * value) if value else (1.0,)) if isinstance(value, float) else ()
-
-
-class _Changed(ast.NodeTransformer):
-    """Changes the node of a number, in the order of visits."""
-
-    def __init__(self, number: int, change: Callable[[Any], object]) -> None:
-        self._left, self._change = number, change
-
-    def visit(self, node: ast.AST) -> Any:
-        """Count this node."""
-        self._left -= 1
-        if self._left == -1:
-            other = self._change(node)
-            return other if isinstance(other, ast.AST) else node
-        return self.generic_visit(node)
-
-
-class _Nodes(ast.NodeVisitor):
-    """All nodes in the order of visits."""
-
-    def __init__(self) -> None:
-        self.found: List[ast.AST] = []
-
-    def visit(self, node: ast.AST) -> None:
-        """Note this node."""
-        self.found.append(node)
-        self.generic_visit(node)
-
-
-def mutants(base: str) -> List[str]:
+def mutants(base):
     """The programs that differ in one place from a solution."""
-    tree, nodes = ast.parse(RIGHT[base]), _Nodes()
-    nodes.visit(tree)
-    found: Set[str] = set()
-    for number, node in enumerate(nodes.found):
-        for change in _changes(node):
-            made = _Changed(number, change).visit(copy.deepcopy(tree))
+    tree, found = ast.parse(RIGHT[base]), set()
+    original, places = ast.unparse(tree), [(node, *it) for node in ast.walk(tree) for it in ast.iter_fields(node)]
+    for node, field, value in places:
+        entries = value if isinstance(value, list) else [value]
+        for number, other in [(n, other) for n, it in enumerate(entries) for other in _others(node, field, it)]:
+            changed = [*entries[:number], other, *entries[number + 1 :]]
+            setattr(node, field, changed if isinstance(value, list) else other)
             with contextlib.suppress(SyntaxError, ValueError):
-                text = ast.unparse(ast.fix_missing_locations(made))
+                text = ast.unparse(ast.fix_missing_locations(tree))
                 compile(text, base, "exec")
                 found.add(text)
-    return sorted(found - {ast.unparse(tree)})
+            setattr(node, field, value)
+    return sorted(found - {original})
 
 
-def difference(base: str, text: str) -> str:
+def difference(base, text):
     """The first line in which a mutant differs."""
-    for before, after in zip(ast.unparse(ast.parse(RIGHT[base])).splitlines(), text.splitlines()):
-        if before != after:
-            return f"{before.strip()}  ->  {after.strip()}"
-    return "a line at the end"
+    both = zip(ast.unparse(ast.parse(RIGHT[base])).splitlines(), text.splitlines())
+    return next((f"{it.strip()}  ->  {other.strip()}" for it, other in both if it != other), "a line at the end")
 
 
 # -- gradings --
 
 
-def once(job: Tuple[str, str, str, int, int]) -> Entry:
-    """Grade a program by all checks: name, condition, program, number of the repetition, seed."""
-    name, condition, text, number, seed = job
-    started, points, report, failed = time.monotonic(), None, {}, []  # type: float, Any, Dict[str, Any], List[str]
+class Job(NamedTuple):
+    """A program to grade; `number` is the one of its repetition."""
+
+    name: str
+    condition: str
+    text: str
+    number: int
+    seed: int = 0
+
+
+def once(job):
+    """Grade a program by all checks: an entry of the log."""
+    started, entry = time.monotonic(), {"name": job.name, "condition": job.condition, "number": job.number}
     with tempfile.TemporaryDirectory() as folder:
         try:
-            grade = graded(name, text, Path(folder), seed)
-            points, failed = grade.points, [it.name for it in grade.checks if it.outcome is not Outcome.PASSED]
+            grade = graded(job.name, job.text, Path(folder), job.seed)
+            failed = [it.name for it in grade.checks if it.outcome is not Outcome.PASSED]
             report = {it.name: [it.outcome.value, it.words] for it in grade.checks}
+            entry.update(points=grade.points, failed=failed, report=report)
         except RobocopError as error:
-            failed = [f"no grade: {error}"]
-    seconds = round(time.monotonic() - started, 1)
-    entry = {"name": name, "condition": condition, "number": number, "seconds": seconds, "points": points}
-    return {**entry, "failed": failed, "report": report}
+            entry.update(points=None, failed=[f"no grade: {error}"], report={})
+    return {**entry, "seconds": round(time.monotonic() - started, 1)}
 
 
-def run(jobs: List[Tuple[str, str, str, int, int]], log: Path, at_once: int, load_: int = 0) -> List[Entry]:
+def run(jobs, log, at_once, load=0):
     """The log with the gradings that it did not have."""
     entries = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
     known = {(it["name"], it["condition"], it["number"]) for it in entries}
-    left = [job for job in jobs if (job[0], job[1], job[3]) not in known]
+    left = [job for job in jobs if (job.name, job.condition, job.number) not in known]
     context = multiprocessing.get_context("spawn")  # a fresh process for each grading
-    busy = busy_processes(load_) if load_ else contextlib.nullcontext()
+    busy = busy_processes(load) if load else contextlib.nullcontext()
     with busy, open(log, "a") as file, context.Pool(at_once, maxtasksperchild=1) as pool:
         for entry in pool.imap_unordered(once, left):
             print(json.dumps(entry), file=file, flush=True)
@@ -183,38 +136,34 @@ def run(jobs: List[Tuple[str, str, str, int, int]], log: Path, at_once: int, loa
     return entries
 
 
-def repeats(args: argparse.Namespace) -> int:
+def repeats(args):
     """Print what is not as expected, and what differs; the number of these lines."""
     condition = f"{args.at_once} at once, {args.load} busy loops"
-    names = args.names or list(BY_NAME)
-    text = {name: BY_NAME[name].text() if name in BY_NAME else RIGHT[name] for name in names}
-    numbers = range(args.times)
-    jobs = [(it, condition, text[it], number, number + 1 if args.drawn else 0) for number in numbers for it in names]
-    entries = [it for it in run(jobs, args.log, args.at_once, args.load) if it["name"] in names]
-    found: List[str] = []
-    seen: Dict[str, Set[str]] = defaultdict(set)
+    text = {name: BY_NAME[name].text() if name in BY_NAME else RIGHT[name] for name in args.names or BY_NAME}
+    jobs = [Job(it, condition, text[it], n, n + 1 if args.drawn else 0) for n in range(args.times) for it in text]
+    entries = [it for it in run(jobs, args.log, args.at_once, args.load) if it["name"] in text]
+    found, seen = [], defaultdict(set)
     for entry in entries:
         wrong, name = BY_NAME.get(entry["name"]), entry["name"]
         outcome, words = entry["report"].get(wrong.check, ["", ""]) if wrong else ("", "")
         expected = outcome == "failed" and wrong.words in words if wrong else not entry["failed"]
         found += [] if expected else [f"not as expected: {name}, {entry['condition']}: {words or entry['failed']}"]
-        lines = {f"{name}: {check}": without_figures(str(it)) for check, it in entry["report"].items()}
-        for place, told in {**lines, f"{name}: points": str(entry["points"])}.items():
-            seen[place].add(told)
+        for check, told in {**entry["report"], "points": entry["points"]}.items():
+            seen[f"{name}: {check}"].add(without_figures(str(told)) if check != "points" else str(told))
     found += [f"differs: {place}: {sorted(told)}" for place, told in sorted(seen.items()) if len(told) > 1]
     print("\n".join([*found, f"{len(entries)} gradings in {sorted({it['condition'] for it in entries})}"]))
     return len(found)
 
 
-def mutate(args: argparse.Namespace) -> int:
+def mutate(args):
     """Print the mutants that keep full marks; 0."""
     jobs = []
     for base in args.names or BASES:
         of_base = mutants(base)
         chosen = random.Random(base).sample(of_base, min(args.sample, len(of_base)))
-        jobs += [(base, "mutant", text, zlib.crc32(text.encode()), 0) for text in chosen]
+        jobs += [Job(base, "mutant", text, zlib.crc32(text.encode())) for text in chosen]
     random.Random(0).shuffle(jobs)  # an interrupted measurement has mutants of all solutions
-    text = {(job[0], job[3]): job[2] for job in jobs}
+    text = {(job.name, job.number): job.text for job in jobs}
     entries = [it for it in run(jobs, args.log, args.at_once) if (it["name"], it["number"]) in text]
     kept = [it for it in entries if not it["failed"]]
     print("\n".join(f"{it['name']}: {difference(it['name'], text[it['name'], it['number']])}" for it in kept))
@@ -222,21 +171,20 @@ def mutate(args: argparse.Namespace) -> int:
     return 0
 
 
-def main() -> None:
+def main():
     """Exit status 1 if a repeated grade is not as expected or differs."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(required=True)
     repeated, mutated = (kinds.add_parser(name) for name in ("repeats", "mutants"))
-    for part in (repeated, mutated):
+    for part, measure in ((repeated, repeats), (mutated, mutate)):
         part.add_argument("names", nargs="*", metavar="NAME")
         part.add_argument("--log", type=Path, required=True)
         part.add_argument("--at-once", type=int, default=2)
+        part.set_defaults(measure=measure)
     repeated.add_argument("--times", type=int, default=20)
     repeated.add_argument("--load", type=int, default=0)
     repeated.add_argument("--drawn", action="store_true")
     mutated.add_argument("--sample", type=int, default=10**6)
-    repeated.set_defaults(measure=repeats)
-    mutated.set_defaults(measure=mutate)
     args = parser.parse_args()
     sys.exit(1 if args.measure(args) else 0)
 

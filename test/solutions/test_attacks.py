@@ -14,9 +14,6 @@ from right_solutions import RIGHT
 
 from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
 from robocop_grading import new
-from robocop_grading.grader import grade as grade_submission
-from robocop_grading.plan_file import load
-from robocop_grading.runner import Runner
 from robocop_grading.sandbox import build
 from robocop_grading.submission import prepare_submission
 
@@ -34,7 +31,7 @@ def attacked(code, folder):
     return run, lines
 
 
-@pytest.mark.parametrize("name", ["FORK_BOMB", "FULL_DISK", "READ", "KILL_ALL", "FORGE"])
+@pytest.mark.parametrize("name", ["FORK_BOMB", "FULL_DISK", "READ", "KILL_ALL", "ENDLESS"])
 def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path):
     neighbour = tmp_path / "neighbour"
     neighbour.mkdir()
@@ -52,18 +49,6 @@ def test_ports_outside_the_sandbox_are_unreachable(tmp_path):
     assert sum("refused" in line for line in lines) == 3
 
 
-def test_server_with_an_endless_loop_counts_as_not_started(tmp_path):
-    run, _ = attacked(attacks.ENDLESS, tmp_path / "mine")
-    assert not run.records["start"].up
-
-
-def test_ros_master_is_not_ended_by_a_node(tmp_path):
-    run, lines = attacked(attacks.KILL_MASTER, tmp_path / "mine")
-    assert run.problem == "" and "already_there" in run.records
-    refused = [line for line in lines if '"shutdown" is not supported' in line]
-    assert len(refused) == 2, lines  # by the master, and by the grader's node
-
-
 @pytest.mark.parametrize("name", attacks.LIES)
 def test_node_that_deceives_the_grader_is_ended_with_a_reason(name, tmp_path):
     code, reason = attacks.LIES[name]
@@ -72,28 +57,14 @@ def test_node_that_deceives_the_grader_is_ended_with_a_reason(name, tmp_path):
     assert reason in f"{run.problem} {reasons}"
 
 
-@pytest.mark.parametrize("name, times", [("NAMESPACE", 3), ("PARKED", 1)])
-def test_memory_that_no_process_has_cannot_be_taken(name, times, tmp_path):
-    run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
-    assert sum("refused" in line for line in lines) >= times, lines
-    assert run.problem == ""
-
-
 def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):
     out = tmp_path / "mine" / "out"
 
     def remove_folder(_scenario):
         out.rename(tmp_path / "gone")
 
-    with pytest.raises(UngradableError, match="No such file or directory: .*/out/server-start"):
+    with pytest.raises(UngradableError, match="No such file or directory: .*/out/"):
         recorded(RIGHT["base_server"], tmp_path / "mine", budget=BUDGET, on_progress=remove_folder)
-
-
-def test_flood_of_log_messages_is_truncated(tmp_path):
-    run, lines = attacked(attacks.FLOOD, tmp_path / "mine")
-    assert "already_there" in run.records and run.problem == ""
-    assert 100 < max(map(len, lines)) < 3000
-    assert sum(path.stat().st_size for path in (tmp_path / "mine" / "out").iterdir()) < 64 * 1024**2
 
 
 def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places():
@@ -102,7 +73,7 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places():
         "sandbox = Sandbox(())\n"
         "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
         "touch /tmp/here && echo fine']\n"
-        "sys.exit(subprocess.call(sandbox.session_command(sandbox.node_command(command, {}, (), Path('/tmp/home')))))"
+        "sys.exit(subprocess.call(sandbox.session_command(sandbox.command_inside(command, {}, (), Path('/tmp/home')))))"
     )
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     with tempfile.TemporaryDirectory() as folder:  # the checkout may be in a home that nobody else reads
@@ -154,21 +125,21 @@ def test_build_and_launch_file_cannot_reach_anything_outside_the_sandbox(package
         assert "SUCCESS" not in words, words
 
 
-def test_named_pipe_created_by_the_build_is_refused_without_blocking(package, tmp_path):
-    launch = "${CMAKE_CURRENT_SOURCE_DIR}/launch/robocop_goto_as.launch"
-    with open(package / "CMakeLists.txt", "a") as text:
-        text.write(f"execute_process(COMMAND rm {launch})\nexecute_process(COMMAND mkfifo {launch})\n")
-    with pytest.raises(RobocopError, match="robocop_goto_as.launch: expected an ordinary file"):
-        prepared(package, tmp_path / "workshop")
-
-
-@pytest.mark.parametrize("name", ["scripts/robocop_goto_as.py", "launch/robocop_goto_as.launch"])
-def test_link_created_by_the_build_is_not_followed(name, package, tmp_path):
-    secret = tmp_path / "secret.py"
+@pytest.mark.parametrize(
+    "name, make",
+    [
+        ("scripts/robocop_goto_as.py", "ln -s SECRET"),
+        ("launch/robocop_goto_as.launch", "ln -s SECRET"),
+        ("launch/robocop_goto_as.launch", "mkfifo"),
+    ],
+)
+def test_link_or_pipe_made_by_the_build_is_refused_without_following_or_waiting_for_it(name, make, package, tmp_path):
+    secret, place = tmp_path / "secret.py", f"${{CMAKE_CURRENT_SOURCE_DIR}}/{name}"
     secret.write_text((package / "scripts" / "robocop_goto_as.py").read_text())
     with open(package / "CMakeLists.txt", "a") as text:
-        text.write(f"execute_process(COMMAND ln -sf {secret} ${{CMAKE_CURRENT_SOURCE_DIR}}/{name})\n")
-    with pytest.raises(RobocopError, match="expected an ordinary file, not a link to one elsewhere"):
+        for command in (f"rm {place}", f"{make.replace('SECRET', str(secret))} {place}"):
+            text.write(f"execute_process(COMMAND {command})\n")
+    with pytest.raises(RobocopError, match="expected an ordinary file"):
         prepared(package, tmp_path / "workshop")
 
 
@@ -266,13 +237,3 @@ def test_own_roslaunch_of_a_package_is_not_used(package, tmp_path):
     with open(package / "CMakeLists.txt", "a") as text:
         text.write("catkin_add_env_hooks(path SHELLS sh DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})\n")
     assert "/own" not in prepared(package, tmp_path / "workshop").parameters
-
-
-def test_node_that_kills_itself_is_graded(tmp_path):
-    text = RIGHT["base_server"].replace("if __name__", f"{attacks.KILLS_ITSELF}\nif __name__")
-    (tmp_path / "solution.py").write_text(text)
-    submission = prepare_submission(str(tmp_path / "solution.py"), SHARE, STATE, tmp_path, sandbox())
-    grade = grade_submission(Runner(load(PLAN), STATE, sandbox()), submission, tmp_path / "report")
-    (alive,) = [check for check in grade.checks if check.name == "stays_alive"]
-    assert alive.failure is not None and "The node died: signal 9 (SIGKILL)" in alive.words
-    assert grade.points < grade.points_available

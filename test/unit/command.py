@@ -22,6 +22,11 @@ def robocop(*arguments, root=ROOT, timeout=SETUP_TIMEOUT, **settings):
     return subprocess.run(command, env=environment(**settings), capture_output=True, text=True, timeout=timeout)
 
 
+def make_program(path, script):
+    path.write_text(script)
+    path.chmod(0o755)
+
+
 def dry_run(*arguments, **settings):
     """The command that would be started, its ROS settings, and the messages."""
     done = robocop(*arguments, ROBOCOP_DRY_RUN="1", **settings)

@@ -15,9 +15,8 @@ KEYS = {
 
 def write_map(directory, pixels, **keys):
     """A map of grey pixels (rows, columns[, channels]) uint8, the first row on top; the path of its YAML file."""
-    entries = {**KEYS, **keys}
-    Image.fromarray(np.asarray(pixels, dtype=np.uint8)).save(str(directory / entries["image"]))
-    return write_yaml(directory, "".join(f"{key}: {value}\n" for key, value in entries.items()))
+    Image.fromarray(np.asarray(pixels, dtype=np.uint8)).save(str(directory / {**KEYS, **keys}["image"]))
+    return write_yaml(directory, yaml_of(**keys))
 
 
 def write_yaml(directory, text):
@@ -35,8 +34,3 @@ def room(columns=40, rows=30):
 
 def yaml_of(**changed):
     return "".join(f"{key}: {value}\n" for key, value in {**KEYS, **changed}.items())
-
-
-def write_map_over(directory, image):
-    """Write the YAML file of an existing image."""
-    return write_yaml(directory, "".join(f"{key}: {value}\n" for key, value in {**KEYS, "image": image}.items()))

@@ -1,11 +1,10 @@
-"""Which places of a world are free, computed on a raster without the simulator's code."""
-
-from collections import deque
+"""Which places of a world are free, and which can be reached, on a raster."""
 
 import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import rotation_matrix
+from aro_robocop_goto_as.raycast.occupancy import _reachable
 from aro_robocop_goto_as.shapes import Box, Plane
 
 BURGER_RADIUS = 0.105  # [m]
@@ -37,16 +36,7 @@ def cell_of(x, y):
 
 def flood(free, start):
     """Which raster cells can be reached from the start over free cells, by steps along x and y."""
-    reached = np.zeros_like(free)
-    reached[start] = free[start]
-    queue = deque([start] if free[start] else [])
-    while queue:
-        i, j = queue.popleft()
-        for step in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-            if all(0 <= k < n for k, n in zip(step, free.shape)) and free[step] and not reached[step]:
-                reached[step] = True
-                queue.append(step)
-    return reached
+    return _reachable(free, np.array([start[::-1]]))
 
 
 def free_cells(world):

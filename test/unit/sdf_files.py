@@ -28,10 +28,10 @@ def collision(geometry, name="c", pose=""):
     return f'<collision name="{name}">{pose}<geometry>{geometry}</geometry></collision>'
 
 
-def mesh_world(tmp_path, uri, scale="", pose=""):
+def mesh_world(tmp_path, uri, scale=""):
     geometry = f"<geometry><mesh><uri>{uri}</uri>{scale}</mesh></geometry>"
     link = f'<link name="l"><collision name="c">{geometry}</collision></link>'
-    return world_file(tmp_path, f'<model name="m"><static>1</static>{pose}{link}</model>')
+    return world_file(tmp_path, f'<model name="m"><static>1</static>{link}</model>')
 
 
 def only_obstacle(path):

@@ -39,9 +39,9 @@ def connected_by_hand() -> Iterator[Callable[..., Link]]:
     names = (f"/subscriber_{i}" for i in itertools.count())
     ends = [socket.create_connection(server.getsockname())]
 
-    def connect(topic: rospy.Publisher, name: str = "") -> Link:
+    def connect(topic: rospy.Publisher) -> Link:
         connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
-        connection.set_socket(server.accept()[0], name or next(names))
+        connection.set_socket(server.accept()[0], next(names))
         ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number
         topic.impl.add_connection(connection)
         return Link(connection, ends[-2])

@@ -6,11 +6,10 @@ import os
 import re
 import subprocess
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 import yaml
-from command import dry_run, robocop
+from command import ROOT, dry_run, make_program, robocop
 
 from aro_robocop_goto_as.errors import GradingError, GradingSetupError
 from robocop_grading import new
@@ -20,7 +19,6 @@ from robocop_grading.plan_file import load
 from robocop_grading.report.write import write
 from robocop_grading.sandbox import bubblewrap as sandbox
 
-ROOT = Path(__file__).resolve().parents[2]
 IMAGE = "my-course/robocop:1"
 PASSED = CheckResult("reaches_goal", "server", "The goal is reached.", Outcome.PASSED, 2.0, 2.0, False)
 LATE = Failed("at most 1 s", "2 s", 3.5, "<b>late</b>\n\n# heading [link](http://x)")
@@ -68,8 +66,7 @@ def test_image_name_that_could_be_something_else_is_refused(image, tmp_path):
 def run_step(step, folder, docker):
     """Run a step of the workflow with a program in place of docker; its outcome, and GitHub's three files by name."""
     (folder / "bin").mkdir(exist_ok=True)
-    (folder / "bin" / "docker").write_text(f"#!/bin/sh\n{docker}\n")
-    (folder / "bin" / "docker").chmod(0o755)
+    make_program(folder / "bin" / "docker", f"#!/bin/sh\n{docker}\n")
     (folder / "repository").mkdir(exist_ok=True)
     files = {name: folder / name for name in ("GITHUB_STEP_SUMMARY", "GITHUB_OUTPUT")}
     environment = {**os.environ, **{name: str(path) for name, path in files.items()}, "RUNNER_TEMP": str(folder)}
@@ -121,8 +118,7 @@ def test_texts_of_a_submission_are_not_markup_in_the_summary(tmp_path):
 
 
 def test_sandbox_that_can_not_start_in_a_container_names_the_options_of_docker(tmp_path, monkeypatch):
-    (tmp_path / "bwrap").write_text("#!/bin/sh\necho 'No permissions to create new namespace' >&2; exit 1\n")
-    (tmp_path / "bwrap").chmod(0o755)
+    make_program(tmp_path / "bwrap", "#!/bin/sh\necho 'No permissions to create new namespace' >&2; exit 1\n")
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     monkeypatch.setattr(sandbox, "CONTAINER_MARKS", (str(tmp_path),))
     reason = "No permissions to create new namespace; `docker run --security-opt seccomp=unconfined .*; --unsafe runs"

@@ -34,12 +34,6 @@ def run_checker(*command, folder=ROOT):
         pytest.fail(f"{' '.join(map(str, command))}\n{done.stdout}", pytrace=False)
 
 
-def expect_none(problems):
-    """Fail if there are problems, with one per line."""
-    if problems:
-        pytest.fail("\n".join(problems), pytrace=False)
-
-
 def test_ruff_reports_nothing():
     run_checker(sys.executable, "-m", "ruff", "check", *PYTHON)
 

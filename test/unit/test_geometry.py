@@ -67,8 +67,3 @@ def test_roll_pitch_yaw_turn_about_the_fixed_axes_in_that_order(roll: float, pit
     about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
     assert rotation_matrix(quaternion_from_rpy(roll, pitch, yaw)) == pytest.approx(about_z @ about_y @ about_x)
-
-
-def test_a_pose_seen_from_above_keeps_position_and_heading() -> None:
-    pose = Pose3D.from_xyz_rpy((1.0, 2.0, 3.0), (0.0, 0.0, 0.5)).on_plane()
-    assert (pose.x, pose.y, pose.yaw) == pytest.approx((1.0, 2.0, 0.5))

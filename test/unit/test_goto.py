@@ -31,16 +31,13 @@ goals = st.builds(Goal, near, near)
 
 @given(poses, goals)
 def test_errors_are_distance_and_bearing_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> None:
+    assert errors_to(goal, Pose2D(goal.x, goal.y, pose.yaw)) == Errors(0.0, 0.0)
     errors = errors_to(goal, pose)
     assert -math.pi <= errors.angle <= math.pi
     heading = pose.yaw + errors.angle
     if errors.position > 0.0:
         assert pose.x + errors.position * math.cos(heading) == pytest.approx(goal.x, abs=1e-9)
         assert pose.y + errors.position * math.sin(heading) == pytest.approx(goal.y, abs=1e-9)
-
-
-def test_at_the_goal_there_is_no_angle_error() -> None:
-    assert errors_to(Goal(1.0, 2.0), Pose2D(1.0, 2.0, 3.0)) == Errors(0.0, 0.0)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """The clearance ahead as a pure function of a scan."""
 
 import math
-from typing import List
+from typing import List, Tuple
 
 import numpy as np
 import pytest
@@ -36,17 +36,16 @@ def test_only_returns_within_30_degrees_of_ahead_count(
     assert _ahead(ranges, layout) == expected
 
 
-@pytest.mark.parametrize("nothing", [math.inf, 0.0, 0.12, 10.0, 55.0])
-def test_what_is_no_valid_return_is_no_obstacle(nothing: float) -> None:
-    assert _ahead([nothing] * 360) == math.inf
-
-
-def test_the_nearest_return_counts() -> None:
-    assert _ahead([5.0] * 5 + [0.7] + [6.0] * 354) == 0.7
-
-
-def test_minus_infinity_means_zero_clearance() -> None:
-    assert _ahead([-math.inf] + [5.0] * 359) == 0.0
+@pytest.mark.parametrize(
+    "ranges, expected",
+    [
+        *(([nothing] * 360, math.inf) for nothing in (math.inf, 0.0, 0.12, 10.0, 55.0)),
+        ([5.0] * 5 + [0.7] + [6.0] * 354, 0.7),
+        ([-math.inf] + [5.0] * 359, 0.0),
+    ],
+)
+def test_the_nearest_valid_return_counts_and_what_is_too_near_is_at_zero(ranges: List[float], expected: float) -> None:
+    assert _ahead(ranges) == expected
 
 
 @pytest.mark.parametrize("valid", [math.inf, 0.0, 55.0])
@@ -64,21 +63,19 @@ def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits: 
     assert math.isnan(clearance_ahead([0.5] * 360, *LAYOUTS[0][:2], *limits, math.pi / 6) or 0.0)
 
 
-@pytest.mark.parametrize("layout", [(math.nan, 0.1), (0.0, math.nan), (math.inf, 0.1), (0.0, math.inf)])
-def test_beams_without_a_direction_do_not_point_ahead(layout: "tuple[float, float]") -> None:
-    assert clearance_ahead([0.5] * 10, *layout, 0.12, 10.0, math.pi / 6) is None
-
-
-@pytest.mark.parametrize("increment", [0.0, -0.0, math.radians(540.0) / 358, math.radians(-540.0) / 358, 1.0, -1e30])
-def test_beams_in_one_direction_or_round_and_round_do_not_point_ahead(increment: float) -> None:
-    assert clearance_ahead([0.5] * 360, 0.0, increment, 0.12, 10.0, math.pi / 6) is None
+@pytest.mark.parametrize(
+    "layout",
+    [
+        *((math.nan, 0.1, 10), (0.0, math.nan, 10), (math.inf, 0.1, 10), (0.0, math.inf, 10)),  # no directions
+        *((0.0, increment, 360) for increment in (0.0, -0.0, 1.0, -1e30)),  # one direction, or round and round
+        *((0.0, math.radians(turn) / 358, 360) for turn in (540.0, -540.0)),
+        *((1.0, 0.1, 10), (0.0, 0.1, 0)),  # not ahead, no beam
+    ],
+)
+def test_scan_whose_beams_do_not_point_ahead_or_can_not_be_told_says_nothing(layout: Tuple[float, float, int]) -> None:
+    assert _ahead([0.5] * layout[2], layout) is None
 
 
 def test_a_single_beam_needs_no_increment_and_one_and_a_half_turns_are_allowed() -> None:
     assert clearance_ahead([0.5], 0.0, 0.0, 0.12, 10.0, math.pi / 6) == 0.5
     assert clearance_ahead([0.5] * 360, 0.0, math.radians(539.0) / 359, 0.12, 10.0, math.pi / 6) == 0.5
-
-
-def test_a_scan_that_does_not_look_ahead_says_nothing() -> None:
-    assert clearance_ahead([1.0] * 10, 1.0, 0.1, 0.12, 10.0, math.pi / 6) is None
-    assert clearance_ahead([], 0.0, 0.1, 0.12, 10.0, math.pi / 6) is None

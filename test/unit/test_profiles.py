@@ -46,7 +46,7 @@ def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, exp
 def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
     p = _params("turtlebot3_gazebo")
     lidar = p.sensors.scan.lidar()
-    assert (p.sensors.scan.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
+    assert (lidar.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
     assert (p.topics.localization, p.topics.has_initialpose, p.topics.gazebo_topics) == ("none", False, True)
     cameras = [p.sensors.camera.spec(f"turtlebot3_{name}") for name in ("waffle", "waffle_pi", "burger_rgbd")]
     assert [(camera.width, camera.height, camera.angle) for camera in cameras] == [

@@ -8,12 +8,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from command import SETUP_TIMEOUT, environment, robocop
+from command import ROOT, SETUP_TIMEOUT, environment, make_program, robocop
 from fake_index import builds, source_release
 
 from aro_robocop_goto_as.process.ports import free_port
 
-ROOT = Path(__file__).resolve().parents[2]
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
 
 
@@ -36,26 +35,13 @@ def test_shell_tells_why_a_program_can_not_be_started(word, status, reason):
 
 def test_other_python_installations_are_ignored(tmp_path):
     for name in ("python", "python3", "pip", "cmake"):
-        (tmp_path / name).write_text("#!/bin/sh\nexit 77\n")
-        (tmp_path / name).chmod(0o755)
+        make_program(tmp_path / name, "#!/bin/sh\nexit 77\n")
     (tmp_path / "rospy.py").write_text("raise ImportError('not this one')\n")
     code = "import rospy, pybullet, aro_robocop_goto_as.msg; print('right')"
     nowhere = str(tmp_path / "nowhere")
     foreign = {"PYTHONHOME": nowhere, "VIRTUAL_ENV": nowhere, "CONDA_PREFIX": nowhere, "PYTHONPATH": str(tmp_path)}
     done = robocop("shell", "python3", "-c", code, PATH=f"{tmp_path}:{os.environ['PATH']}", **foreign)
     assert done.stdout == "right\n", done.stderr
-
-
-@pytest.mark.slow
-@pytest.mark.timeout(900)
-def test_without_a_display_the_lab_starts_even_if_the_web_page_can_not_be_installed(checkout, index):
-    (checkout / "install" / "requirements-web.txt").write_text("robocop-has-no-such-package==1\n")
-    shutil.copytree(ROOT / "launch", checkout / "launch")
-    (checkout / "launch" / "robocop_launch.py").write_text("import sys; print(sys.argv[1:])\n")
-    uri = f"http://localhost:{free_port()}"
-    done = in_copy(checkout, "run", "world:=empty", ROS_MASTER_URI=uri, **index)
-    assert (done.returncode, "'rviz:=false', 'world:=empty']" in done.stdout) == (0, True), done.stdout + done.stderr
-    assert "RViz is not started, and the web page could not be installed" in done.stderr
 
 
 def test_version_is_that_of_package_xml():
@@ -96,10 +82,8 @@ def on_system(tmp_path):
     def dry_run_on(contents, *options, command="setup", **settings):
         binds = []
         for number, (path, content) in enumerate(contents.items()):
-            fake = tmp_path / str(number)
-            fake.write_text(content)
-            fake.chmod(0o755)
-            binds += ["--ro-bind", str(fake), os.path.realpath(path)]
+            make_program(tmp_path / str(number), content)
+            binds += ["--ro-bind", str(tmp_path / str(number)), os.path.realpath(path)]
         command = ["bwrap", "--dev-bind", "/", "/", *binds, *options, str(ROOT / "robocop"), command]
         return subprocess.run(
             command, env=environment(ROBOCOP_DRY_RUN="1", **settings), capture_output=True, text=True, timeout=60.0
@@ -147,8 +131,7 @@ def usr_bin_without(names, tmp_path):
 def test_any_distribution_will_do_where_ros_is_in_opt(on_system, tmp_path):
     ros = tmp_path / "noetic" / "bin"
     ros.mkdir(parents=True)
-    (ros / "roslaunch").write_text("#!/bin/sh\n")
-    (ros / "roslaunch").chmod(0o755)
+    make_program(ros / "roslaunch", "#!/bin/sh\n")
     mounts = usr_bin_without("roslaunch", tmp_path)
     without = on_system(FEDORA, *mounts)
     assert (without.returncode, "Fedora" in without.stderr) == (1, True)
@@ -196,8 +179,7 @@ ANSWERS, FAILS = "exit 0", "echo no daemon >&2; exit 1"
 def test_image_is_built_by_the_first_engine_that_answers(on_system, tmp_path, engines, shown):
     mounts = usr_bin_without("docker podman buildah", tmp_path)
     for name, script in engines.items():
-        (tmp_path / "links" / name).write_text(f"#!/bin/sh\n{script}\n")
-        (tmp_path / "links" / name).chmod(0o755)
+        make_program(tmp_path / "links" / name, f"#!/bin/sh\n{script}\n")
     done = on_system({}, *mounts, command="image", PATH="/usr/bin:/bin")
     assert (done.stdout + done.stderr).startswith(shown)
     assert done.returncode == (0 if " build " in shown else 1)
@@ -221,16 +203,12 @@ def test_without_python_commands_install_nothing_in_a_dry_run(on_system, tmp_pat
 
 # As apt 2.6 prints it with APT::Status-Fd, shortened; it fails once, as without package lists.
 APT = """#!/bin/sh
-[ -e {0}/updated ] || {{ touch {0}/updated; echo "E: Unable to locate package"; exit 100; }}
-case "$*" in *" update") exit ;; esac
+case "$*" in *" update") touch {0}/updated; exit ;; esac
+[ -e {0}/updated ] || exit 100
 cat <<END
-Reading package lists...
-dlstatus:1:0.0000:Retrieving file 1 of 2
 Need to get 8791 kB of archives.
-After this operation, 22.4 MB of additional disk space will be used.
 dlstatus:2:13.8379:Retrieving file 2 of 2
 dlstatus:2:15.4224:Retrieving file 2 of 2
-dlstatus:2:100.0000:Retrieving file 2 of 2
 pmstatus:dpkg-exec:0.0000:Running dpkg
 pmstatus:libfoo:amd64:33.3333:Installing libfoo:amd64
 pmstatus:no-such-package:66.6667:Configuring: 5.0000: no-such-package
@@ -238,13 +216,11 @@ END
 exit 1
 """
 TOLD = """\
-installation failed; trying again with updated package lists
-Need to get 8791 kB of archives.
-After this operation, 22.4 MB of additional disk space will be used.
-downloaded 10 %
-downloaded 100 %
-installed 30 %
-installed 60 %
+robocop: installation failed; trying again with updated package lists
+robocop: Need to get 8791 kB of archives.
+robocop: downloaded 10 %
+robocop: installed 30 %
+robocop: installed 60 %
 """
 
 
@@ -253,17 +229,13 @@ def test_installation_of_debian_packages_tells_sizes_progress_and_its_log(checko
     (root / "install" / "deb-packages" / "run.txt").write_text("no-such-package\n")
     programs = root / ".robocop" / "venv" / "bin"
     programs.mkdir(parents=True)
-    for name, script in {"apt-get": APT.format(programs), "sudo": '#!/bin/sh\nexec "$@"\n'}.items():
-        (programs / name).write_text(script)
-        (programs / name).chmod(0o755)
+    make_program(programs / "apt-get", APT.format(programs))
+    make_program(programs / "sudo", '#!/bin/sh\nexec "$@"\n')
     done = robocop("setup", root=root)
-    log = f"{root}/.robocop/log/apt.log"
-    first, where, *told = [
-        line[len("robocop: ") :] for line in done.stderr.splitlines() if line.startswith("robocop: ")
-    ]
-    assert (first.startswith("installing 1 Debian package"), where.endswith(log)) == (True, True)
-    assert (done.returncode, told[:-1]) == (1, TOLD.splitlines())
-    assert "status:" not in Path(log).read_text()
+    log = root / ".robocop" / "log" / "apt.log"
+    assert done.returncode == 1 and TOLD in done.stderr
+    assert done.stderr.startswith("robocop: installing 1 Debian package") and f"apt's output: {log}\n" in done.stderr
+    assert "status:" not in log.read_text()
 
 
 def test_what_is_complete_is_used_while_another_set_up_of_the_checkout_is_running():

@@ -20,16 +20,12 @@ def described() -> Dict[str, str]:
     return parts
 
 
-def options() -> Dict[str, List[str]]:
-    """The options that the help text names for each command."""
-    return {command: list(dict.fromkeys(re.findall(r"--[a-z]+", text))) for command, text in described().items()}
-
-
 def completion() -> str:
-    """The script for bash, with the values that it needs."""
+    """The script for bash, with the values that it needs: the options are those that the help text names."""
+    options = {command: list(dict.fromkeys(re.findall(r"--[a-z]+", text))) for command, text in described().items()}
     files = {"run": RUN, "sim": SIM, "replay": REPLAY}
     arguments = {command: [f"{name}:=" for name in names(file)] for command, file in files.items()}
-    tables = _table("_robocop_options", options()) + _table("_robocop_arguments", arguments)
+    tables = _table("_robocop_options", options) + _table("_robocop_arguments", arguments)
     return f"_robocop_root={shlex.quote(str(ROOT))}\n{tables}{SCRIPT.read_text(encoding='utf-8')}"
 
 

@@ -56,7 +56,7 @@ class LaunchArguments:
                 refuse(f"there is no option {word}; {there_is}: {' '.join(options)}{did_you_mean(word, options)}")
             if not separator:
                 refuse(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
-            if separator and not name.startswith("__") and name not in known:
+            if not name.startswith("__") and name not in known:
                 there_are = f"there is no argument {name}; there are: {' '.join(known)}"
                 refuse(f"{there_are}{_meant(name, known)}")
         return cls(file, tuple(given), "--verbose" in words)

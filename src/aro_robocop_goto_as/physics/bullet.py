@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+from dataclasses import dataclass
 from typing import List, Sequence
 
 import numpy as np
@@ -21,17 +22,16 @@ CENTRED = Pose3D()  # of a base_link whose centre of mass is its origin
 TIRE_FRICTION = 1.0  # rubber on a dry floor; Bullet multiplies it with the floor's 1.0
 
 
+@dataclass
 class _Body:
     """One robot: its ids in Bullet, and whether it is parked."""
 
-    def __init__(self, body: int, wheels: List[int], torque: float, base_from_inertial: Pose3D) -> None:
-        self.body = body
-        self.wheels = wheels
-        self.forces = [torque, torque]
-        self.targets: List[float] = [0.0, 0.0]  # of the wheel motors [rad/s]
-        self.base_from_inertial = base_from_inertial  # Bullet gives the pose of a body's centre of mass
-        self.resting_steps = 0
-        self.parked = False
+    body: int
+    wheels: List[int]
+    base_from_inertial: Pose3D
+    targets: List[float]  # of the wheel motors [rad/s]
+    resting_steps: int = 0
+    parked: bool = False
 
     @property
     def stands(self) -> bool:
@@ -50,7 +50,7 @@ class BulletEngine:
         self.fleet = fleet
         self._obstacles = BulletObstacles(world, self.client)
         self._rate, self._solver_iterations = rate, solver_iterations
-        self._wheel_torque = wheel_torque
+        self._forces = [wheel_torque, wheel_torque]
         self._control, self._fleet_struct = library().aro_control, ctypes.byref(fleet.struct)
         self._robots: List[_Body] = []
         self._is_read = True  # whether the fleet's rows are of the last step
@@ -84,7 +84,7 @@ class BulletEngine:
     def _load(self, model: RobotModel) -> _Body:
         """Create a robot's body at the origin."""
         client = self.client
-        body = load_urdf(model, client)
+        body, base_from_inertial = load_urdf(model, client)
         joints = {}
         for index in range(pybullet.getNumJoints(body, physicsClientId=client)):
             info = pybullet.getJointInfo(body, index, physicsClientId=client)
@@ -95,8 +95,7 @@ class BulletEngine:
             pybullet.setCollisionFilterGroupMask(
                 body, link, ROBOT_GROUP, WORLD_GROUP | ROBOT_GROUP, physicsClientId=client
             )
-        inertial = Pose3D(*pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[3:5])
-        return _Body(body, [joints[name] for name in WHEEL_JOINTS], self._wheel_torque, inertial)
+        return _Body(body, [joints[name] for name in WHEEL_JOINTS], base_from_inertial, [0.0, 0.0])
 
     def place(self, robot: int, world_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere, at rest; its wheels keep their angles."""
@@ -121,7 +120,7 @@ class BulletEngine:
             robot.wheels,
             pybullet.VELOCITY_CONTROL,
             targetVelocities=targets,
-            forces=robot.forces,
+            forces=self._forces,
             physicsClientId=self.client,
         )
         self._unpark(robot)

@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from typing import Any, Dict, Iterator, List, Union
+from typing import Any, Dict, Iterator, List, Tuple, Union
 
 import numpy as np
 
@@ -21,16 +21,20 @@ SIDES = 64  # of the prism that shows a cylinder
 HALF_PLANE = 100.0  # [m] half the side of the square that shows a plane
 
 
-def load_urdf(model: RobotModel, client: int) -> int:
-    """Create a robot's body at the origin; RobotModelError if Bullet refuses it."""
+def load_urdf(model: RobotModel, client: int) -> Tuple[int, Pose3D]:
+    """Create a robot's body at the origin; RobotModelError if Bullet refuses it.
+
+    The body, and base_from_inertial: centre of mass and principal axes of base_link, which Bullet takes as its pose.
+    """
     with tempfile.TemporaryDirectory(prefix="robocop_") as folder:
         path = os.path.join(folder, model.name + ".urdf")
         with open(path, "w") as stream:
             stream.write(model.physics_urdf)
         try:
-            return int(pybullet.loadURDF(path, flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client))
+            body = pybullet.loadURDF(path, flags=pybullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client)
         except pybullet.error as error:
             raise RobotModelError(f"{model.name}: Bullet refused the robot: {error}") from error
+    return body, Pose3D(*pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[3:5])
 
 
 def shapes_of(geometry: Geometry, client: int) -> List[int]:

@@ -90,7 +90,8 @@ def running_node(uri: str, name: str, kind: str = "a node of this name") -> Opti
     try:
         return None if node is None or _request(node, "getPid") is None else f"{kind} is already running"
     except _TIMEOUTS:
-        return f"{kind} that does not respond ({name} at {node}) is registered"
+        remedy = f"{robocop()} shell rosnode cleanup removes it if it has ended"
+        return f"{kind} that does not respond ({name} at {node}; {remedy}) is registered"
     except (OSError, *_FOREIGN):  # it has ended, or another program has got its port
         return None
 

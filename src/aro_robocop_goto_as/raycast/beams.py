@@ -3,7 +3,7 @@
 import ctypes
 import math
 from functools import partial
-from typing import Callable, Optional, Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 
@@ -39,20 +39,15 @@ class Scene:
     """Robots with a scanner each, and what each scanner sees."""
 
     def __init__(
-        self,
-        planes: Sequence[ScanPlane],
-        plane_of: Sequence[int],
-        mounts: np.ndarray,
-        footprints: Optional[np.ndarray] = None,
+        self, planes: Sequence[ScanPlane], plane_of: Sequence[int], mounts: np.ndarray, footprints: np.ndarray
     ) -> None:
         """Robot i's scanner is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`.
 
-        footprints: (n, 3) [x m, y m, yaw rad] in the world, where the robots are at each scan; zeros if none are given
+        footprints: (n, 3) [x m, y m, yaw rad] in the world, where the robots are at each scan
         """
         self._plane_of = np.array(plane_of, dtype=np.int64)
         count = len(self._plane_of)
-        self.footprints = np.zeros((count, 3)) if footprints is None else footprints
-        self._mounts = mounts
+        self.footprints, self._mounts = footprints, mounts
         self._planes = list(planes)
         self._plane_structs = (ScanPlaneStruct * len(planes))(*(plane.struct for plane in planes))
         struct = SceneStruct(
@@ -115,5 +110,5 @@ class Fan:
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([ScanPlane(section)], [0] * len(poses), np.zeros_like(poses), footprints=poses)
+        scene = Scene([ScanPlane(section)], [0] * len(poses), np.zeros_like(poses), poses)
         return self.scan(scene, range(len(poses)), reach)

@@ -34,15 +34,12 @@ class Tiles:
         row = first[owner, 1] + within // spans[owner, 0]
         tile = row * self._columns + column
         self._members = numbers[owner[np.argsort(tile, kind="stable")]].astype(np.int32)
-        per_tile = np.bincount(tile, minlength=self._columns * self._rows)
-        self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(np.int32)
-        self._tile_marks = np.zeros(self._columns * self._rows, np.int64)
-        self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark of the last scan that compared the segment
-        self.struct = self._make_struct()  # Create only once: it holds the mark counter.
-
-    def _make_struct(self) -> GridStruct:
         tiles, int32 = self._columns * self._rows, np.int32
-        return GridStruct(
+        per_tile = np.bincount(tile, minlength=tiles)
+        self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(int32)
+        self._tile_marks = np.zeros(tiles, np.int64)
+        self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark of the last scan that compared the segment
+        self.struct = GridStruct(  # created only once: it holds the mark counter
             *self._origin.tolist(),
             self._side,
             self._columns,

@@ -37,9 +37,9 @@ def moving(circles: np.ndarray, motions: Sequence[Optional[Motion]]) -> Callable
             stops.append(np.array(motion.stops(), dtype=float).reshape(-1, 3))
             fields = (*motion.world_from_model, motion.turn, place.x, place.y, len(stops[-1]))
             movers.append(_MoverStruct(*fields, address("stops", stops[-1], (None, 3)), at + row * circles.strides[0]))
-    structs, library = (_MoverStruct * len(movers))(*movers), load()
+    structs, move_all = (_MoverStruct * len(movers))(*movers), load().aro_move
 
     def move(time: float, _pointed_to: object = (circles, stops)) -> float:  # which the structures do not keep alive
-        return float(library.aro_move(structs, len(structs), time)) if structs else 0.0
+        return float(move_all(structs, len(structs), time)) if structs else 0.0
 
     return move

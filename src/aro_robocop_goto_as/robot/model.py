@@ -37,7 +37,6 @@ class RobotModel:
     wheel_radius: float  # [m]
     wheel_separation: float  # [m]
     footprint_from_base: Pose3D
-    base_from_inertial: Pose3D  # centre of mass and axes of inertia of base_link, which Bullet takes as the base's pose
     base_from_scan: Pose3D
     base_from_imu: Pose3D
     base_from_camera: Optional[Pose3D]  # the optical frame; None: no camera

@@ -13,9 +13,12 @@ from ..shapes import Box, Cylinder, Geometry, PlacedShape, Sphere
 from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
 BASE = "base_link"
+_SIZES = ("box", "cylinder", "sphere")
 # What holds numbers in links and joints: each tag's attributes, and how many numbers each attribute has.
-_SIZES = {"box": {"size": 3}, "cylinder": {"radius": 1, "length": 1}, "sphere": {"radius": 1}}
-_FIGURES = {
+_NUMBERS = {
+    "box": {"size": 3},
+    "cylinder": {"radius": 1, "length": 1},
+    "sphere": {"radius": 1},
     "axis": {"xyz": 3},
     "inertia": {"ixx": 1, "ixy": 1, "ixz": 1, "iyy": 1, "iyz": 1, "izz": 1},
     "mass": {"value": 1},
@@ -38,7 +41,6 @@ def load_robot(path: str, figures: ModelFigures) -> RobotModel:
             wheel_radius=urdf.wheel_radius(left),
             wheel_separation=urdf.wheel_separation(left, right),
             footprint_from_base=footprint_from_base,
-            base_from_inertial=_origin(urdf.link(BASE).find("inertial")),
             base_from_scan=urdf.pose_of("base_scan", BASE),
             base_from_imu=urdf.pose_of("imu_link", BASE),
             base_from_camera=urdf.pose_of(CAMERA_FRAME, BASE) if CAMERA_FRAME in urdf.joint_to else None,
@@ -75,7 +77,7 @@ class _Urdf:
         self.joints = {joint.get("name"): joint for joint in root.findall("joint")}
         self.joint_to = {_end_of(joint, "child"): joint for joint in root.findall("joint")}
         for element in (*root.iterfind("link//*"), *root.iterfind("joint//*")):
-            for name, count in {**_SIZES, **_FIGURES}.get(element.tag, {}).items():
+            for name, count in _NUMBERS.get(element.tag, {}).items():
                 self.check_numbers(element, name, count)
 
     def error(self, what: str) -> RobotModelError:

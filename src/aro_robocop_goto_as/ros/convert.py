@@ -22,11 +22,6 @@ def to_time(stamp_ns: int) -> Time:
     return Time(stamp_ns // NANOSECONDS, stamp_ns % NANOSECONDS)
 
 
-def to_ns(time: Time) -> int:
-    """A ROS time as nanoseconds."""
-    return time.secs * NANOSECONDS + time.nsecs
-
-
 def to_quaternion(yaw: float) -> Quaternion:
     """A heading [rad] as a quaternion message."""
     return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))

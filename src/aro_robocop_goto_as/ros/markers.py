@@ -86,8 +86,3 @@ def text(namespace: str, content: str, frame: str, number: int = 0) -> Marker:
     made.scale.z = TEXT_SIZE
     made.pose.position.z = TEXT_HEIGHT + TEXT_SIZE * content.count("\n")
     return made
-
-
-def deletion(namespace: str) -> Marker:
-    """Deletes a marker, if it exists."""
-    return Marker(ns=namespace, id=0, action=Marker.DELETE)

@@ -33,7 +33,7 @@ class CameraRenderer:
                 )
                 if obstacle.motion is not None:
                     self._moving.append((body, obstacle))
-        self._robots = [(load_urdf(model, self._client), model.base_from_inertial) for model in models]
+        self._robots = [load_urdf(model, self._client) for model in models]
 
     def render(
         self, spec: CameraSpec, world_from_optical: Pose3D, robot: int, world_from_bases: Sequence[Pose3D], time: float

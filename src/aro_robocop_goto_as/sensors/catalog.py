@@ -29,7 +29,7 @@ class SensorParams:
         """The rates [Hz] by the names of their parameters."""
         given = {name: value for one in vars(self).values() for name, value in vars(one).items()}
         rates = {name: value for name, value in given.items() if name.endswith("_rate")}
-        return {**rates, "scan_rate": self.scan.rate}
+        return {**rates, "scan_rate": self.scan.lidar().rate}
 
 
 class Sensors:

@@ -76,8 +76,8 @@ class Scanner(Sensor):
     name = SCAN
 
     def __init__(self, params: ScanParams, site: Site) -> None:
-        super().__init__(site, params.rate)
         self.lidar = Lidar(params.lidar())
+        super().__init__(site, self.lidar.spec.rate)
         self._ranges: Dict[int, np.ndarray] = {}
         self.ranges = self.ranges_of(self.lidar.spec.samples)
 

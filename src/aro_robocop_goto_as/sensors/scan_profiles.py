@@ -19,14 +19,15 @@ class Accuracy(NamedTuple):
 
 @dataclass(frozen=True)
 class LidarSpec:
-    """Beams spread evenly from angle_min to angle_max [rad], both ends included; ranges and noise sigma in [m]."""
+    """Scans per second [Hz]; beams spread evenly from angle_min to angle_max [rad], both ends included; ranges [m]."""
 
+    rate: int
     angle_min: float
     angle_max: float
     samples: int
     range_min: float
     range_max: float
-    noise: float
+    noise: float  # [m] sigma
     accuracy: Tuple[Accuracy, ...] = ()  # replaces the noise; in order of distance
     step: float = 0.0  # [m] ranges are whole multiples of it; 0: not quantised
     zero_is_none: bool = False  # no return, too near and too far are 0.0 instead of +inf, -inf, +inf (REP-117)
@@ -43,34 +44,25 @@ class LidarSpec:
         return replace(self, samples=samples, angle_max=self.angle_min + increment * (samples - 1))
 
 
-class ScanProfile(NamedTuple):
-    """A scanner and its scan rate [Hz]."""
-
-    rate: int
-    spec: LidarSpec
-
-
-_GAZEBO = LidarSpec(0.0, 6.28319, 360, 0.12, 10.0, 0.01)  # the lab's Gazebo sensor
+_GAZEBO = LidarSpec(10, 0.0, 6.28319, 360, 0.12, 10.0, 0.01)  # the lab's Gazebo sensor
 
 # LDS-01: limits and quirks of its driver, noise of its Gazebo model. LDS-02: ranges and accuracy of its data sheet;
 # scan rate and number of beams are estimated from about 2300 measurements per second and a motor speed within 2 %.
-PROFILES: Dict[str, ScanProfile] = {
-    "gazebo": ScanProfile(10, _GAZEBO),
-    "ideal": ScanProfile(10, replace(_GAZEBO, noise=0.0)),
-    "lds01": ScanProfile(5, LidarSpec(0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, step=0.001, zero_is_none=True)),
-    "lds02": ScanProfile(
+PROFILES: Dict[str, LidarSpec] = {
+    "gazebo": _GAZEBO,
+    "ideal": replace(_GAZEBO, noise=0.0),
+    "lds01": LidarSpec(5, 0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, step=0.001, zero_is_none=True),
+    "lds02": LidarSpec(
         10,
-        LidarSpec(
-            0.0,
-            TURN - TURN / 230,
-            230,
-            0.16,
-            8.0,
-            0.0,
-            zero_is_none=True,
-            varying=5,
-            accuracy=(Accuracy(0.3, 0.010, 0.0), Accuracy(6.0, 0.0, 0.03), Accuracy(8.0, 0.0, 0.05)),
-        ),
+        0.0,
+        TURN - TURN / 230,
+        230,
+        0.16,
+        8.0,
+        0.0,
+        zero_is_none=True,
+        varying=5,
+        accuracy=(Accuracy(0.3, 0.010, 0.0), Accuracy(6.0, 0.0, 0.03), Accuracy(8.0, 0.0, 0.05)),
     ),
 }
 
@@ -88,18 +80,13 @@ class ScanParams:
     scan_range_max: Optional[float] = positive(None, otherwise=PROFILES_OWN)
     scan_noise: Optional[float] = parameter(None, low=0.0, high=100.0, otherwise=PROFILES_OWN)
 
-    @property
-    def rate(self) -> int:
-        """Scans per second [Hz]."""
-        return PROFILES[self.scan_profile].rate if self.scan_rate is None else self.scan_rate
-
     def given(self) -> Dict[str, Any]:
         """The figures that replace the profile's."""
         return {name: value for name, value in vars(self).items() if name != "scan_profile" and value is not None}
 
     def lidar(self) -> LidarSpec:
         """The scanner of the profile, with the given figures in place of its own."""
-        figures = {name[len("scan_") :]: value for name, value in self.given().items() if name != "scan_rate"}
+        figures = {name[len("scan_") :]: value for name, value in self.given().items()}
         if "noise" in figures:
             figures["accuracy"] = ()
-        return replace(PROFILES[self.scan_profile].spec, **figures)
+        return replace(PROFILES[self.scan_profile], **figures)

@@ -31,8 +31,7 @@ def due_next(rates: Mapping[str, int], physics_rate: int) -> List[Tuple[int, Tup
         tuple(name for name, rate in rates.items() if rate and due(step, rate, physics_rate))
         for step in range(1, physics_rate + 1)
     ]
-    following = next(filter(None, names))
-    steps = names.index(following) + 1
+    steps, following = 0, names[-1]
     after: List[Tuple[int, Tuple[str, ...]]] = []
     for due_now in reversed(names):
         steps, following = (1, due_now) if due_now else (steps + 1, following)

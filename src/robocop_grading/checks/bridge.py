@@ -148,14 +148,11 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         wanted = "a cancel request for the older goal only"
         return Failed(wanted, seen, newer[-1].time, _newer_cancelled(record, newer[-1]))
     if older.id not in cancelled:
-        wanted, requests = "a cancel request for the older goal", _requests(record, click)
+        wanted = "a cancel request for the older goal"
+        requests = [cancel for cancel in record.cancels if cancel.time >= click.time - 1e-6]
         seen = "one for another goal" if requests else "none"
         return Failed(wanted, seen, click.time, _not_cancelled(requests, older), NOT_CANCELLED)
     return PASSED
-
-
-def _requests(record: Record, click: Click) -> List[Cancel]:
-    return [cancel for cancel in record.cancels if cancel.time >= click.time - 1e-6]
 
 
 def _newer_cancelled(record: Record, newer: Goal) -> str:

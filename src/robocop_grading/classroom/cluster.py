@@ -2,6 +2,8 @@
 
 import contextlib
 import logging
+import os
+import sys
 import tempfile
 import warnings
 from pathlib import Path
@@ -17,6 +19,18 @@ MAX_SHOWN = 500  # characters of an error
 # Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,
 # if a garbage collection, to which dask has added a callback, comes in the middle of it (CPython issue 106883).
 WITHOUT_PROFILER = {"distributed.worker.profile.enabled": False}
+
+
+def send_child_errors_to(log: Path) -> None:
+    """Redirect the standard error of future child processes, but not of this one, to `log` (overwritten).
+
+    For libraries that start processes themselves: interrupted, those of dask and multiprocessing print tracebacks.
+    """
+    sys.stderr.flush()
+    terminal = os.dup(2)  # not inherited
+    sys.stderr = open(terminal, "w", buffering=1, encoding=sys.stderr.encoding, errors="backslashreplace")
+    with open(log, "wb") as file:
+        os.dup2(file.fileno(), 2)
 
 
 @contextlib.contextmanager

@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import difflib
 import hashlib
 import os
 import random
@@ -17,6 +16,7 @@ from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
+from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
@@ -28,7 +28,6 @@ from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
 from ..texts import printable_lines
-from .child_errors import send_child_errors_to
 from .hand_ins import collect
 from .results import WAITING, Result, Results, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
@@ -154,7 +153,6 @@ def grade_class(args: argparse.Namespace) -> Class:
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
-        send_child_errors_to(out / WORKERS_LOG)
         workers = args.workers or len(os.sched_getaffinity(0))
         grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
     return group
@@ -198,9 +196,7 @@ def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str
     """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
     names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
     for name in {*names} - {*hand_ins}:
-        close = difflib.get_close_matches(name, hand_ins, 1)
-        advice = f"; did you mean {close[0]}?" if close else ""
-        raise GradingSetupError(f"--again {name}: no hand-in of this name{advice}")
+        raise GradingSetupError(f"--again {name}: no hand-in of this name{did_you_mean(name, hand_ins)}")
     return {*names}
 
 
@@ -215,8 +211,9 @@ def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], Non
     group.write(running=bool(group.waiting))
     try:
         if group.waiting:
-            from .cluster import connected, done  # importing dask takes half a second
+            from .cluster import connected, done, send_child_errors_to  # importing dask takes half a second
 
+            send_child_errors_to(group.results.folder / WORKERS_LOG)
             paths = [group.folder / name for name in group.waiting]
             with connected(scheduler, min(workers, len(paths))) as client:
                 for path, problem in done(client, task, paths):

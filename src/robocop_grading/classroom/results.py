@@ -6,13 +6,14 @@ import json
 import os
 import shutil
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from robocop_hosting import tree
 
-from ..judge import total, without_figures
+from ..checks import Failed
+from ..judge import CheckResult, Grade, Outcome, total, without_figures
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary
@@ -28,40 +29,15 @@ SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN
 
 
 @dataclass(frozen=True)
-class Check:
-    """A check's outcome for one hand-in."""
+class Result(Grade):
+    """The result of one hand-in, as its report has it."""
 
-    name: str
-    part: str
-    outcome: str  # passed, failed, not reached
-    points: float
-    cause: str = ""
-    extra: bool = False
-
-
-@dataclass(frozen=True)
-class Result:
-    """The result of one hand-in."""
-
-    name: str
-    checks: Tuple[Check, ...]
-    problems: Tuple[str, ...]
-    seconds: float
+    seconds: float = 0.0  # [s, wall] that its grading took
 
     @property
     def is_judged(self) -> bool:
         """Return whether any part of the hand-in was judged; otherwise its problems say why not."""
         return bool(self.checks)
-
-    @property
-    def points(self) -> float:
-        """Points scored, without extra ones."""
-        return total(check.points for check in self.checks if not check.extra)
-
-    @property
-    def extra(self) -> float:
-        """Extra points scored."""
-        return total(check.points for check in self.checks if check.extra)
 
     def points_of(self, part: str) -> Optional[float]:
         """Points of the server or the bridge, without extra points; None if that part was not handed in."""
@@ -70,7 +46,7 @@ class Result:
 
     def outcomes(self, plan: Plan) -> List[str]:
         """For each check of the plan: passed, failed, not reached, not handed in, or nothing if nothing was judged."""
-        known = {check.name: check.outcome for check in self.checks}
+        known = {check.name: check.outcome.value for check in self.checks}
         return [known.get(check.name, NOT_HANDED_IN if self.is_judged else "") for check in plan.checks]
 
 
@@ -119,12 +95,14 @@ class Results:
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
         checks = [_check(it) for it in raw["checks"]]
-        return Result(name, tuple(checks), tuple(raw["problems"]), stamp["seconds"])
+        return Result(name, tuple(checks), tuple(raw["problems"]), seconds=stamp["seconds"])
 
 
-def _check(raw: Mapping[str, Any]) -> Check:
-    cause = raw["failure"]["cause"] if raw["failure"] and not raw.get("follows") else ""
-    return Check(raw["name"], raw["part"], raw["outcome"], raw["points"], cause, raw["extra"])
+def _check(raw: Mapping[str, Any]) -> CheckResult:
+    """A check's result as report.json has it."""
+    failed = raw["failure"] and Failed(*(raw["failure"][it] for it in ("expected", "seen", "time", "cause")))
+    values = {**raw, "outcome": Outcome(raw["outcome"]), "failure": failed, "points_available": raw["of"]}
+    return CheckResult(**{it.name: values[it.name] for it in fields(CheckResult)})
 
 
 def write_atomically(path: Path, text: str) -> None:
@@ -172,9 +150,9 @@ def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
     counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
     causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
     for result in results:
-        for line in result.checks:
-            if line.cause:
-                causes[line.name][line.cause] += 1
+        for it in result.checks:
+            if it.failure is not None and not it.follows:
+                causes[it.name][it.failure.cause] += 1
     for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
         tried = len(results) - outcomes[NOT_HANDED_IN] - outcomes[""]
         frequent = _most_frequent(causes[check.name])

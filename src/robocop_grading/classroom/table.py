@@ -24,28 +24,14 @@ def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = M
     rows = csv.writer(text, lineterminator="\n")
     text.write(BYTE_ORDER_MARK)
     rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
-    for result in results:
-        if not result.is_judged:
-            rows.writerow(_without_points(result.name, " | ".join(result.problems), plan))
-            continue
-        points = [result.points_of(part) for part in PARTS]
-        rows.writerow(
-            [
-                _plain(result.name),
-                result.points,
-                plan.points,
-                result.extra,
-                *(NOT_HANDED_IN if number is None else number for number in points),
-                _plain(" | ".join(result.problems)),
-                *result.outcomes(plan),
-            ]
-        )
-    rows.writerows(_without_points(name, problem, plan) for name, problem in sorted(problems.items()))
+    for result in [*results, *(Result(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
+        points: List[Any] = ["", plan.points, "", *[""] * len(PARTS)]
+        if result.is_judged:
+            of_parts = [result.points_of(part) for part in PARTS]
+            points[0], points[2] = result.points, result.extra
+            points[3:] = [NOT_HANDED_IN if number is None else number for number in of_parts]
+        rows.writerow([_plain(result.name), *points, _plain(" | ".join(result.problems)), *result.outcomes(plan)])
     return text.getvalue()
-
-
-def _without_points(name: str, problem: str, plan: Plan) -> List[Any]:
-    return [_plain(name), "", plan.points, *[""] * (1 + len(PARTS)), _plain(problem), *[""] * len(plan.checks)]
 
 
 def one_line(text: str) -> str:

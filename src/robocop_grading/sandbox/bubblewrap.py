@@ -45,27 +45,19 @@ class Sandbox:
         namespaces = ["--die-with-parent", "--unshare-net", "--unshare-pid"]
         return ["bwrap", *namespaces, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
 
-    def node_command(
-        self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], home: Path
-    ) -> List[str]:
-        """Command line of a node: reads the system and its own files, writes to a small home in memory."""
-        return self._inside(command, environment, reads, home, _writable(str(home)))
-
-    def build_command(
-        self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
-    ) -> List[str]:
-        """Command line of a build: like node_command(), but it can write to `folder`, whose owner is user()."""
-        return self._inside(command, environment, reads, folder, _mounts("--bind", [folder]))
-
-    def _inside(
+    def command_inside(
         self,
         command: Sequence[str],
         environment: Mapping[str, str],
         reads: Sequence[Path],
         folder: Path,
-        place: Sequence[str],
+        is_build: bool = False,
     ) -> List[str]:
-        """Command line that starts in a writable folder, for which `place` has bubblewrap's options."""
+        """Command line of a node: reads the system and its own files, starts in a small writable `folder` in memory.
+
+        That of a build starts in `folder` itself, whose owner is user().
+        """
+        place = _mounts("--bind", [folder]) if is_build else _writable(str(folder))
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
         wrap += ["bwrap", "--die-with-parent", "--cap-drop", "ALL"]
         wrap += ["--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
@@ -177,7 +169,7 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
     if importlib.util.find_spec("seccomp") is None:
         raise GradingError(f"python3-seccomp is not installed; {advice}")
     empty = Sandbox(())
-    trial = empty.session_command(empty.node_command(["/bin/true"], {}, (), Path("/tmp/home")))
+    trial = empty.session_command(empty.command_inside(["/bin/true"], {}, (), Path("/tmp/home")))
     try:
         done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     except subprocess.TimeoutExpired as error:

@@ -38,13 +38,13 @@ def runner_in(sandbox: Optional[Sandbox], folder: Path, reads: Sequence[Path]) -
     """
     if sandbox is None:
         return run_plain
-    wrapped = sandbox.build_command
+    wrapped = sandbox.command_inside
 
     def run(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
         name = Path(command[0]).name
         visible = {**public(environment), "HOME": "/tmp", "ROS_HOME": "/tmp", "ROS_LOG_DIR": "/tmp"}
         change_owner(folder, user())
-        inside = wrapped(command, visible, reads, folder)
+        inside = wrapped(command, visible, reads, folder, is_build=True)
         process = child.start(inside, environment=OWN_ENVIRONMENT, stdout=output, stderr=errors)
         guard = Guard(process.pid, folder, processor_time=MAX_BUILD_CPU_TIME)
         try:

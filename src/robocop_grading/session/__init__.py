@@ -8,6 +8,4 @@ From a job to its records; each module uses the modules below it:
     stage              robot, simulated time, and their messages (step_messages, scenario_bag)
     node               the node's process, which lives from GO to GO; its socket (channel) and its prints (output)
     topics, services   shared by node and grader; goals: the action server that a bridge talks to
-
-progress tells the process that grades which scenario has begun.
 """

@@ -6,9 +6,8 @@ from pathlib import Path
 from aro_robocop_goto_as.errors import GraderLostError
 
 from ..record import read
-from . import progress
 from .bridge import BridgeRun
-from .job import Job
+from .job import Job, begin_to_tell, tell
 from .run import Run
 from .server import ServerRun
 from .stage import Stage
@@ -16,13 +15,13 @@ from .stage import Stage
 
 def main() -> None:
     """Usage: main JOB."""
-    progress.start()
+    begin_to_tell()
     try:
         _run(read(Job, Path(sys.argv[1])))
     except GraderLostError as error:
         sys.exit(str(error))
     except OSError as error:  # a full disk, for example: nothing that a node can bring about
-        progress.tell(f"error {error}")
+        tell(f"error {error}")
         sys.exit(1)
 
 

@@ -14,7 +14,6 @@ from aro_robocop_goto_as.ros import convert
 from .. import record as rec
 from ..handout import ACTION
 from ..record import Record
-from . import progress
 from .job import Job
 from .node import Node, Spent
 from .services import Services
@@ -45,10 +44,6 @@ class Run:
     def scenarios(self) -> None:
         """Run the scenarios that the plan's checks examine."""
         raise NotImplementedError
-
-    def announce(self, name: str) -> None:
-        """Tell the grader which scenario is the next one."""
-        progress.tell(f"begin {name}")
 
     def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at the start of the site of this index."""
@@ -159,17 +154,17 @@ class Run:
 
     def _on_command(self, message: Twist) -> None:
         twist = convert.from_twist_msg(message)
-        self.stage.keep("/cmd_vel", message)
+        self.stage.bag.write("/cmd_vel", message)
         self.add("commands", rec.Command(self.stage.now, twist.v, twist.w))
         self.stage.command(twist)
 
     def _on_feedback(self, message: GoToPositionActionFeedback) -> None:
-        self.stage.keep(f"{ACTION}/feedback", message)
+        self.stage.bag.write(f"{ACTION}/feedback", message)
         name, errors = message.status.goal_id.id, message.feedback
         self.add("feedback", rec.Feedback(self.stage.now, name, errors.position_error, errors.angle_error))
 
     def _on_result(self, message: GoToPositionActionResult) -> None:
-        self.stage.keep(f"{ACTION}/result", message)
+        self.stage.bag.write(f"{ACTION}/result", message)
         name, result = message.status.goal_id.id, message.result
         self.add("results", rec.Result(self.stage.now, name, message.status.status, result.success, result.message))
         self.ended.add(name)

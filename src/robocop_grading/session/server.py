@@ -15,7 +15,7 @@ from .. import record as rec
 from ..handout import ACTION
 from ..plan import AGAIN, START, Push, Scenario, Step
 from ..record import Record
-from .job import Job
+from .job import Job, tell
 from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage
@@ -43,11 +43,11 @@ class ServerRun(Run):
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
-        self.announce(START)
+        tell(f"begin {START}")
         start = self._start()
         for index, scenario in enumerate(self.plan.scenarios, 1):
             if start.up and self.plan.examines(self.job.part, scenario.name):
-                self.announce(scenario.name)
+                tell(f"begin {scenario.name}")
                 self._scenario(index, scenario)
 
     def _start(self) -> Record:
@@ -163,8 +163,8 @@ class ServerRun(Run):
         message.header.stamp = message.goal_id.stamp = self.stage.stamp
         message.goal_id.id = name
         message.goal.position.x, message.goal.position.y = x, y
-        self.stage.keep(GOAL, message)
-        self.stage.keep(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom_frame)))
+        self.stage.bag.write(GOAL, message)
+        self.stage.bag.write(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom_frame)))
         self.topics.publish(GOAL, message)
         return goal
 

@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional
 
 import numpy as np
 import rospy
@@ -145,7 +145,8 @@ class Stage:
     def _publish(self, observed: Observations) -> None:
         """One step's observations to the submission and the bag."""
         if self.odd_scan and observed.of(SCAN):
-            _make_odd(observed.scan.ranges[0])
+            observed.scan.ranges[0, ::ZERO_EVERY] = 0.0
+            observed.scan.ranges[0, ::NAN_EVERY] = np.nan
         messages = self._messages.of(observed)
         for topic, _, data in messages:
             if topic in self._sensors:  # the agent sends /clock when its callbacks may see it
@@ -180,10 +181,6 @@ class Stage:
             convert.to_transform_3d(BASE_LINK, frames.imu_frame, model.base_from_imu, self.stamp),
         ]
 
-    def keep(self, topic: str, message: Any) -> None:
-        """Write a message into the scenario's bag."""
-        self.bag.write(topic, message)
-
     def odom_from_footprint(self) -> Pose2D:
         """Where the robot truly is in its odom frame."""
         return compose(inverse(self.sim.map_from_odom()), self.sim.world_from_footprint())
@@ -193,9 +190,3 @@ class Stage:
         here, world, velocity = self.odom_from_footprint(), self.sim.world_from_footprint(), self.sim.velocity()
         nearest = float(self.sim.exact_distances()[self._ahead].min())
         return Sample(self.now, *here, *world, *velocity, nearest, bool(self.sim.touching()))
-
-
-def _make_odd(ranges: np.ndarray) -> None:
-    """Put no-return values of all kinds among the beams of a scan (n,) [m]."""
-    ranges[::ZERO_EVERY] = 0.0
-    ranges[::NAN_EVERY] = np.nan

@@ -5,9 +5,8 @@ import unittest
 import tf2_ros
 import yaml
 from clicks import Clicks
-from harness import ACTION, SERVER, SIMULATOR, Goals, Recorder, Robot, distance, script, wait_for
+from harness import ACTION, SERVER, Goals, Robot, distance, script, wait_for
 from systems import Process
-from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 
@@ -70,10 +69,3 @@ class TwoRobots(unittest.TestCase):
         with Process(script("robocop_goto.py"), "-1.6", "-0.4", "--frame", "map", "--robot", "robot_2") as command:
             self.assertEqual(command.wait_for_exit(), 0, command.output)
         self.assertLess(distance(self.robots[1].wait_until_it_stands(), Pose2D(-1.6, -0.4)), NEAR)
-
-    def test_each_robot_has_a_name_marker_in_its_frame(self):
-        shapes = Recorder(f"{SIMULATOR}/world", MarkerArray).newest().markers
-        self.assertEqual(
-            {m.text: m.header.frame_id for m in shapes if m.ns == "names"},
-            {name: f"{name}/base_footprint" for name in ("robot_1", "robot_2")},
-        )

@@ -39,7 +39,8 @@ def test_the_last_value_counts(file):
     "word, message",
     [
         ("world=x", "expected NAME:=VALUE, such as world:=stage_1; got 'world=x'"),
-        ("--verbos", "there is no option --verbos; there is: --verbose; did you mean --verbose?"),
+        ("--verbos", "there is no option --verbos; there are: --verbose --with; did you mean --verbose?"),
+        ("--wiht", "there is no option --wiht; there are: --verbose --with; did you mean --with?"),
         ("needed:=1", "there is no argument needed; there are: world web"),
         ("map:=x", "there is no argument map; there are: world web; did you mean world?"),
         ("speed:=3", "there is no argument speed; there are: world web"),
@@ -48,14 +49,7 @@ def test_the_last_value_counts(file):
 )
 def test_other_words_are_refused(file, word, message):
     with pytest.raises(SystemExit) as refused:
-        LaunchArguments.parse(file, [word])
-    assert refused.value.code == f"robocop: {message}"
-
-
-def test_unknown_option_is_refused_with_those_of_the_command(file):
-    with pytest.raises(SystemExit) as refused:
-        LaunchArguments.parse(file, ["--wiht"], "--with")
-    message = "there is no option --wiht; there are: --verbose --with; did you mean --with?"
+        LaunchArguments.parse(file, [word], "--with")
     assert refused.value.code == f"robocop: {message}"
 
 

@@ -7,7 +7,6 @@ from grading_records import GOAL, PLAN, RIGHT, changed
 
 from robocop_grading.attempts import counting
 from robocop_grading.plan import AGAIN
-from robocop_grading.plan_file import load
 
 STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
 SEVERAL = changed(goals=(GOAL, replace(GOAL, id="h")))  # the second goal gets no result
@@ -30,7 +29,7 @@ SEVERAL = changed(goals=(GOAL, replace(GOAL, id="h")))  # the second goal gets n
 def test_attempt_that_counts(others, again, counts, told):
     records = {**others, "right": replace(STUCK, name="right"), f"right{AGAIN}": replace(again, name=f"right{AGAIN}")}
     records.update({name: replace(record, name=name) for name, record in others.items()})
-    chosen, counted, said = counting(load(PLAN), records)
+    chosen, counted, said = counting(PLAN, records)
     assert chosen["right"] == replace(again if counts else STUCK, name="right")
     assert counted == (["right"] if counts else [])
     assert told in "".join(said) and bool(said) == bool(told)

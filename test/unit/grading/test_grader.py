@@ -1,20 +1,17 @@
 """A part that was killed is run once more; killed again, it is graded unless the machine may be to blame."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-from support import ROOT
+from grading_records import PLAN
 
 from aro_robocop_goto_as.errors import UngradableError
 from robocop_grading.grader import grade
-from robocop_grading.plan_file import load
 from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner
 from robocop_grading.sandbox import guard
 from robocop_grading.submission import Script, Submission
 
-PLAN = load(Path(ROOT, "config", "grading.yaml"))
 DEAD = Record("far", "server", deaths=(Death(1.0, 137),))
 KILLED = Recorded({"far": DEAD}, killed="the server was killed in scenario far")
 EXCUSED = replace(KILLED, excused=True)

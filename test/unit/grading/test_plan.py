@@ -8,90 +8,66 @@ from pathlib import Path
 
 import pytest
 import yaml
-from grading_records import LIMITS, PLAN
+from grading_records import LIMITS, PLAN, PLAN_FILE
 from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.errors import ParameterError, PlanError
 from robocop_grading.checks import CHECKS
 from robocop_grading.packages import Packages
-from robocop_grading.plan import Block
+from robocop_grading.plan import PARTS, Block
 from robocop_grading.plan_file import MAX_SEED, drawn, load
 from robocop_grading.sites import world_of
 
 SEEDS = st.integers(1, MAX_SEED)
+LEFT = "- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}"  # a scenario's script
 NUMBERS = st.floats(-100.0, 100.0).map(lambda number: round(number, 3))
 
 
 def test_plan_has_five_server_points_three_bridge_points_and_a_function_for_each_check() -> None:
-    plan = load(PLAN)
-    points = {
-        part: round(sum(check.points for check in plan.checks if check.part == part and not check.extra), 6)
-        for part in ("server", "bridge")
-    }
-    assert points == {"server": 5.0, "bridge": 3.0}
-    assert plan.points == 8.0
-    assert {check.name for check in plan.checks} == set(CHECKS)
-    known = {scenario.name for scenario in plan.scenarios} | {"start", "no_server", "click", "replace", "frame"}
-    assert {name for check in plan.checks for name in check.scenarios} <= known
-    assert len(world_of(plan).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in plan.scenarios)
+    points = {part: sum(it.points for it in PLAN.checks if it.part == part and not it.extra) for part in PARTS}
+    assert points == pytest.approx({"server": 5.0, "bridge": 3.0}) and PLAN.points == 8.0
+    assert {check.name for check in PLAN.checks} == set(CHECKS)
+    assert len(world_of(PLAN).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in PLAN.scenarios)
 
 
 def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
-    section = PLAN.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
+    section = PLAN_FILE.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
     lines = [re.fullmatch(r"  #(\w+): (\S+) +# \S.*", line) for line in section]
-    assert all(lines) and yaml.safe_load(PLAN.read_text())["limits"] is None
+    assert all(lines) and yaml.safe_load(PLAN_FILE.read_text())["limits"] is None
     assert {line[1]: float(line[2]) for line in lines if line} == dataclasses.asdict(LIMITS)
-    assert load(PLAN).limits == LIMITS
+    assert PLAN.limits == LIMITS
 
 
 @pytest.mark.parametrize(
     "old, new, error",
     [
         ("  #feedback_low: 7.0", "  feedback_lou: 7.0", "did you mean 'feedback_low'"),
-        ("points: 0.5, scenarios: [start]", "punkte: 0.5, scenarios: [start]", "punkte: unknown parameter"),
         ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.7]", "goal: expected a list of 2 numbers"),
         ("ends: ABORTED", "ends: FAILED", "ends: expected one of SUCCEEDED, ABORTED, PREEMPTED"),
         ("limits:", "limits: [", "line"),
-        ("limits:", "border:", "border: unknown parameter"),
         ("checks:", "checks: 3\nall:", "checks: expected dict, got int 3"),
         ("  #stall: 8.0", "  stall: .nan", "stall: expected a finite number"),
-        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [.nan, 0.7]", "goal: expected a finite number, got nan"),
         ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.9..0.5, 0.7]", "left: goal: 0.9..0.5: expected LOW..HIGH"),
         ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.5..90, 0.7]", "goal: expected at most 20, got 45.25"),
-        ("goal: [0.5..0.9, 0.5..0.9]", "goal: [0.5...9, 0.7]", "goal: expected float, got str '0.5...9'"),
-        ("for: 2.5..3.5", "for: long", "for: expected float, got str 'long'"),
         ("points: 0.5, scenarios: [start]", "points: -1, scenarios: [start]", "points: expected at least 0"),
         ("points: 0.5, scenarios: [start]", "points: 0.3..0.5, scenarios: [start]", "points: expected float"),
         ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
         ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
-        (
-            "part: bridge, points: 1.0, scenarios: [click]",
-            "part: bridge, points: 1.0, scenarios: [left]",
-            "unknown for a bridge: 'left'",
-        ),
+        ("points: 1.0, scenarios: [click]", "points: 1.0, scenarios: [left]", "unknown for a bridge: 'left'"),
         ("  far_goal:", "  farr_goal:", "unknown: farr_goal"),
         ("name: right", "name: left", "left: expected a unique name"),
         ("name: right", "name: a/b", "expected letters, digits and _"),
-        (
-            "- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}",
-            "- {cancel: true}",
-            "cancel: expected an earlier goal in the script",
-        ),
-        ("- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}", "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
-        (
-            "script:\n      - {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}",
-            "script: []",
-            "script: expected steps, got none",
-        ),
+        (LEFT, "- {cancel: true}", "cancel: expected an earlier goal in the script"),
+        (LEFT, "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
+        (f"script:\n      {LEFT}", "script: []", "script: expected steps, got none"),
         ("  - [1.6..1.8, 0.2, -0.35, 1.0]", "  - [1.6..1.8, 0.2]", "far: pushes: expected 4 numbers"),
         ("packages:", "packages: {pypi: [--index-url=http://here]}", "expected the name of a package, got '--index"),
-        ("packages:", "packages: {conda: [numpy]}", "packages: conda: unknown parameter"),
         ("box: [0.9..1.5, 0.3, 0.29, 0.1, 2.4]", "box: [1.2, 0.0, 0.0, -0.1, 2.4]", "expected sizes above 0"),
     ],
 )
 def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
-    text = PLAN.read_text()
+    text = PLAN_FILE.read_text()
     assert old in text
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
     with pytest.raises((PlanError, ParameterError), match=error):
@@ -106,9 +82,9 @@ def test_outline_of_a_block_is_that_of_its_shape_where_it_stands() -> None:
 
 def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:
     lists = "packages: {debian: [python3-scipy, g++], pypi: ['numpy-stl==3.1', filterpy]}"
-    (tmp_path / "plan.yaml").write_text(PLAN.read_text().replace("packages:", lists))
+    (tmp_path / "plan.yaml").write_text(PLAN_FILE.read_text().replace("packages:", lists))
     assert load(tmp_path / "plan.yaml").packages == Packages(("python3-scipy", "g++"), ("numpy-stl==3.1", "filterpy"))
-    assert load(PLAN).packages == Packages()
+    assert PLAN.packages == Packages()
 
 
 @given(SEEDS, st.tuples(NUMBERS, NUMBERS).map(sorted))
@@ -120,29 +96,19 @@ def test_drawn_number_is_within_its_range_and_repeatable(seed: int, limits: "lis
     assert number == drawn(text, random.Random(f"{seed}"), "here")
 
 
-@given(st.one_of(NUMBERS, st.text().filter(lambda text: ".." not in text), st.none()))
-def test_what_is_no_range_stays_as_it_is(value: object) -> None:
-    assert drawn(value, random.Random(3), "here") == value
-
-
 def test_seed_zero_takes_the_middle() -> None:
     assert drawn(["-0.5..1.5"], None, "here") == [0.5]
 
 
-def test_empty_range_is_refused_with_its_place() -> None:
-    with pytest.raises(PlanError, match=r"left: goal: 2\.\.1: expected LOW\.\.HIGH"):
-        drawn({"goal": ["2..1"]}, random.Random(1), "left")
-
-
 @pytest.mark.parametrize("seed", [1, 2, MAX_SEED])
 def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
-    middle, chosen = load(PLAN), load(PLAN, seed)
-    assert chosen == load(PLAN, seed)
-    for before, after in zip(middle.scenarios, chosen.scenarios):
+    chosen = load(PLAN_FILE, seed)
+    assert chosen == load(PLAN_FILE, seed)
+    for before, after in zip(PLAN.scenarios, chosen.scenarios):
         assert (before.steps, before.obstacles) != (after.steps, after.obstacles), before.name
 
 
 @pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
 def test_seed_out_of_bounds_is_refused(seed: int) -> None:
     with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {MAX_SEED}"):
-        load(PLAN, seed)
+        load(PLAN_FILE, seed)

@@ -2,19 +2,16 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
-from support import ROOT
+from grading_records import PLAN
 
 from robocop_grading.checks import Failed
 from robocop_grading.cli import Progress, as_text
 from robocop_grading.judge import CheckResult, Grade, Outcome
 from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
-from robocop_grading.plan_file import load
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 
-PLAN = load(Path(ROOT, "config", "grading.yaml"))
 MISTAKE = Failed("a goal", "none", 1.0, "No goal was sent.")
 FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", Outcome.PASSED, 2.0, 2.0, False)
 FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", Outcome.PASSED, 1.0, 1.0, True)

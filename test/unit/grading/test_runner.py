@@ -1,15 +1,12 @@
 """How the grader interprets a session's output, with a shell in place of the session."""
 
-from pathlib import Path
-
 import pytest
-from support import ROOT
+from grading_records import PLAN
 
 from aro_robocop_goto_as.errors import GradingError, NoTimeError, UngradableError
-from robocop_grading.plan_file import load
+from robocop_grading.record import Death, Record, write
 from robocop_grading.runner import Runner
 
-PLAN = load(Path(ROOT, "config", "grading.yaml"))
 BUDGET = 1.0  # [s, wall]
 
 
@@ -44,6 +41,12 @@ def test_session_that_fails_later_may_do_so_because_of_the_submission(tmp_path):
     recorded, _ = supervised("echo begin far; echo it lies >&2; exit 1", tmp_path)
     assert recorded.problem == "the run was cut short during far (status 1): it lies"
     assert not recorded.killed
+
+
+def test_node_that_was_killed_by_nobody_known_is_named(tmp_path):
+    write(Record("far", "server", deaths=(Death(1.0, 137),)), tmp_path / "server-far.record")
+    recorded, _ = supervised("echo begin far", tmp_path)
+    assert (recorded.killed, recorded.excused) == ("the server was killed in scenario far", False)
 
 
 def test_session_that_is_killed_is_not_blamed_on_the_submission(tmp_path):

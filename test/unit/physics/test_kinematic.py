@@ -2,7 +2,6 @@
 
 import math
 from typing import List, Optional, Tuple
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -12,18 +11,14 @@ from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
-from aro_robocop_goto_as.raycast import grid_index
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.shapes import Box, Cylinder
+from aro_robocop_goto_as.shapes import Box, Cylinder, Plane
 from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
 RADIUS = 0.105
 AT_ONCE = Limits(math.inf, math.inf, math.inf, math.inf, 0.0)
-
-numbers = st.floats(-1.0, 1.0)
-velocities = st.tuples(st.floats(-3.0, 3.0), st.floats(-4.0, 4.0))
 
 
 def _world(*obstacles: Obstacle) -> World:
@@ -50,34 +45,13 @@ def _drive(engine: KinematicEngine, steps: int, *velocities: Tuple[float, float]
     engine.advance(0, steps)
 
 
-@pytest.fixture(name="forests", scope="module")
-def _forests() -> List[KinematicEngine]:
-    """A robot among walls that an index finds in its tiles, and among the same walls, which it finds everywhere."""
-    grid = [(0.5 * i + 0.25, 0.5 * j + 0.25) for i in range(-11, 11) for j in range(-11, 11)]
-    world = _world(*(_box(x, y, 3.0 * x, 0.1, 0.02) for x, y in grid))
-    indexed = _kinematics(world, ORIGIN)
-    with mock.patch.object(grid_index, "MAX_TILES_OF_SEGMENT", 0):
-        engines = [indexed, _kinematics(world, ORIGIN)]
-    assert [engine._structs[0].grid.contents.n_everywhere > 0 for engine in engines] == [False, True]
-    return engines
+PLANE = Obstacle("plane", Pose3D((1.99, 0.0, 0.0)), Plane((-1.0, 0.0, 0.0)))  # too long for the tiles of an index
 
 
-@given(numbers, numbers, st.lists(velocities, min_size=1, max_size=4))
-def test_walls_found_by_a_grid_index_block_as_all_walls_do(
-    forests: List[KinematicEngine], x: float, y: float, commands: List[Tuple[float, float]]
-) -> None:
-    ends = []
-    for engine in forests:
-        engine.reset([Pose2D(x, y)])
-        for command in commands:
-            _drive(engine, 5, command)
-        ends.append((engine.fleet.poses.tobytes(), engine.fleet.twists.tobytes(), engine.touching(0)))
-    assert ends[0] == ends[1]
-
-
+@pytest.mark.parametrize("wall", [_box(2.0, 0.0, 0.0, 0.02, 4.0), PLANE])
 @pytest.mark.parametrize("v", [0.1, 1.0, 1e4])
-def test_robot_stops_in_contact_with_a_wall_at_any_speed(v: float) -> None:
-    engine = _kinematics(_world(_box(2.0, 0.0, 0.0, 0.02, 4.0)), ORIGIN)
+def test_robot_stops_in_contact_with_a_wall_at_any_speed(wall: Obstacle, v: float) -> None:
+    engine = _kinematics(_world(wall), ORIGIN)
     _drive(engine, int(2.5 / v * 30) + 2, (v, 0.0))
     assert engine.fleet.pose(0).x == pytest.approx(2.0 - 0.01 - RADIUS, abs=1e-4)
     assert engine.touching(0) and engine.fleet.twists[0, 0] == pytest.approx(0.0, abs=1e-3)

@@ -98,12 +98,12 @@ def test_no_simulator_runs_where_nobody_publishes_time_or_odometry_any_more(topi
         assert ("time stands still" in no_simulator(publisher, use_sim_time=True)) == (topic != "/clock")
 
 
-def test_simulator_that_hangs_is_reported_with_its_address(monkeypatch):
+def test_simulator_that_hangs_is_reported_with_its_address_and_how_to_remove_it(monkeypatch):
     def shorten():  # for the next request, which is that to the simulator
         monkeypatch.setattr(master, "TIMEOUT", SHORT)
 
     with silent() as server, ros_master(uri_of(server), shorten) as uri:
-        assert uri_of(server) in master.running_simulator(uri)
+        assert f"{uri_of(server)}; ./robocop shell rosnode cleanup removes it" in master.running_simulator(uri)
 
 
 def test_port_that_never_answers_is_asked_once_and_is_an_error_after_the_timeout(monkeypatch):

@@ -83,6 +83,19 @@ def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
     assert fan.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 
 
+@given(coordinates, coordinates, st.integers(0, 7))
+def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_show(
+    x: float, y: float, eighth: int
+) -> None:
+    corners = [(i, j) for i in range(-12, 13, 4) for j in range(-12, 13, 4)]
+    walls = [((i, j), (i + di, j + dj)) for i, j in corners for di, dj in ((0.5, 0.0), (0.0, 0.5))]
+    cut, fan = cut_of(np.array(walls, float), np.zeros((0, 3))), Fan(0.0, math.pi / 36, 72)
+    pose = np.array([[x, y, eighth * math.pi / 4]])
+    every = fan.cast(pose, cut)
+    cut.tiles = Tiles(cut.segments)
+    assert fan.cast(pose, cut).tobytes() == every.tobytes()
+
+
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     fan: Fan, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
@@ -92,8 +105,7 @@ def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     owners = np.array([i % len(footprints) for i in range(len(bodies))], np.int64)
     planes = [ScanPlane(cut, bodies.reshape(-1, 3), owners) for cut in walls]
     plane_of = [data.draw(st.integers(0, len(planes) - 1)) for _ in robots]
-    scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]))
-    scene.footprints[:] = footprints
+    scene = Scene(planes, plane_of, np.array([data.draw(poses) for _ in robots]), np.array(footprints))
     together = fan.scan(scene, robots, 5.0)
     order = data.draw(st.permutations(robots))
     assert fan.scan(scene, order, 5.0).tobytes() == together[order].tobytes()
@@ -112,7 +124,9 @@ def test_scanner_inside_a_circle_sees_its_far_side() -> None:
 
 
 def test_scan_of_an_unknown_robot_or_from_a_pose_that_is_not_finite_is_refused() -> None:
-    scene = Scene([ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)))
+    scene = Scene(
+        [ScanPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)), np.zeros((2, 3))
+    )
     for robot in (-1, 2, 2**40):
         with pytest.raises(ValueError, match="^robots: "):
             LAB.scan(scene, [0, robot])

@@ -43,7 +43,11 @@ def test_cells_that_any_of_several_robots_reaches_are_free_and_others_are_unknow
     cut, inside = CrossSection(world_named("stage_4"), 0.182), Pose2D(-0.7, 0.0)
     for starts, outside in (([inside], UNKNOWN), ([inside, Pose2D(2.9, 2.9), Pose2D(1e6, 0.0)], FREE)):
         occupancy = occupancy_of(cut.segments, cut.circles, starts, 0.05)
-        assert [value_at(occupancy, *place) for place in ((1.8, 1.8), (0.4, 0.5), (2.9, 2.9))] == [FREE, UNKNOWN, outside]
+        assert [value_at(occupancy, *place) for place in ((1.8, 1.8), (0.4, 0.5), (2.9, 2.9))] == [
+            FREE,
+            UNKNOWN,
+            outside,
+        ]
         assert occupancy.resolution == 0.05
 
 

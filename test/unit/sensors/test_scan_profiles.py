@@ -18,7 +18,7 @@ Make = Callable[..., Simulator]
 
 
 def _measured(profile: str, distances: "list[float]", **changes: Any) -> "list[float]":
-    spec = replace(PROFILES[profile].spec, samples=len(distances), **changes)
+    spec = replace(PROFILES[profile], samples=len(distances), **changes)
     ranges = np.array([distances])
     Lidar(spec).measuring([0], Episode(1, 2), ranges)()
     return ranges[0].tolist()
@@ -33,9 +33,8 @@ def _scans(sim: Simulator, count: int) -> "list[np.ndarray]":
 
 
 def test_the_default_is_the_labs_gazebo_sensor_with_its_beams_as_lab_code_spreads_them() -> None:
-    scan = SimParams().sensors.scan
-    spec = scan.lidar()
-    assert (scan.rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
+    spec = SimParams().sensors.scan.lidar()
+    assert (spec.rate, spec.samples, spec.angle_min, spec.angle_max) == (10, 360, 0.0, 6.28319)
     assert (spec.range_min, spec.range_max, spec.noise) == (0.12, 10.0, 0.01)
     assert len(np.arange(spec.angle_min, spec.angle_max + spec.increment, spec.increment)) == 360
     inc = np.float32(spec.increment)
@@ -81,7 +80,7 @@ def test_an_lds02s_number_of_beams_varies_reproducibly(simulator: Make) -> None:
 
 def test_any_number_of_beams_covers_the_same_full_turn(simulator: Make) -> None:
     for profile, samples in (("lds01", 360), ("lds02", 225), ("lds02", 230), ("lds02", 235)):
-        turned = PROFILES[profile].spec.with_samples(samples)
+        turned = PROFILES[profile].with_samples(samples)
         assert turned.increment * samples == pytest.approx(2.0 * math.pi)
     sim = simulator("stage_1", Pose2D(0.5, 0.0), scan_profile="lds02", scan_noise=0.0)
     for scan in _scans(sim, 5):
@@ -94,6 +93,6 @@ def test_explicit_value_overrides_the_profile_and_is_listed() -> None:
     scan = SimParams.of(scan_profile="lds02", **given).sensors.scan
     assert scan.given() == given
     spec = scan.lidar()
-    assert (scan.rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)
+    assert (spec.rate, spec.noise, spec.accuracy, spec.angle_min, spec.angle_max) == (5, 0.02, (), 0.0, 3.0)
     assert (spec.samples, spec.range_max) == (230, 8.0)
     assert SimParams().sensors.scan.given() == {}

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict
 
 import yaml
 
@@ -19,12 +19,12 @@ class _Loader(yaml.SafeLoader):
 _Loader.add_multi_constructor("!", lambda loader, suffix, node: None)
 
 
-def main(arguments: Optional[List[str]] = None) -> None:
+def main() -> None:
     """Print the URDF. Arguments: the package's folder, `model`, `robots`, parameter files; '' for none.
 
     roslaunch calls it. Exit status 1, with the reason, for values that the simulator would refuse later.
     """
-    package, model, robots, *paths = sys.argv[1:] if arguments is None else arguments
+    package, model, robots, *paths = sys.argv[1:]
     values: Dict[str, Any] = {}
     for path in filter(None, paths):
         with open(path, encoding="utf-8") as stream:  # roslaunch has loaded these files, and refuses those with errors

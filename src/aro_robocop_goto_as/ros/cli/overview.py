@@ -18,9 +18,7 @@ WITH_PILLARS = ("stage_3", "stage_4")  # that moving:=true moves
 REPLAYED = "replay:="  # an argument of the web page
 
 
-def overview(
-    running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool = False
-) -> str:
+def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: Path, messages_shown: bool) -> str:
     """The text for the nodes of a roslaunch configuration and the parameters of the simulator, if there is one.
 
     The nodes' messages are shown on the screen or go to files in `logs`.

@@ -8,7 +8,7 @@ import argparse
 import os
 import sys
 from pathlib import Path
-from typing import List, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
 import rosgraph
@@ -16,13 +16,15 @@ import roslib.packages
 import rospkg
 import rospy
 import tf2_ros
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import MarkerArray
 
-from ...geometry import rotation_matrix
+from ...geometry import Pose3D, rotation_matrix
 from ...names import RVIZ_LOG, prefixed
 from ...probes import x_display
+from ..marker_shapes import MarkerStore, obstacles
 from ..node_main import answer_help, leave_name_to_another
-from .rviz_config import SHARE, Observed, adapted
+from ..share import share
+from .rviz_config import Observed, adapted
 
 ABOUT = "RViz, configured for the running system. Options that it does not have itself are passed on to RViz."
 OPTIONS = "[--frame FIXED_FRAME] [--config FILE] [--wait SECONDS] [--trail]"
@@ -36,7 +38,7 @@ START_TIMEOUT = 1.0  # [s, wall] for map -> odom, which localization:=none does 
 UNIT_CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 
 
-def main(arguments: Optional[List[str]] = None) -> None:
+def main() -> None:
     """Replace this process by RViz, which is started again if it crashes."""
     answer_help(ABOUT, OPTIONS, others=True)
     parser = argparse.ArgumentParser(prog="robocop_rviz.py", add_help=False)
@@ -44,7 +46,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     parser.add_argument("--config", default="")  # empty: made for the system
     parser.add_argument("--wait", type=float, default=0.0)  # [s] for a simulator that is being started
     parser.add_argument("--trail", action="store_true")  # of odometry: no server is there that publishes one
-    options, rest = parser.parse_known_args(arguments)
+    options, rest = parser.parse_known_args()
     if not x_display.answers():
         print("robocop: no usable display; RViz is not started", file=sys.stderr, flush=True)
         os.execvp("setpriv", IDLE)
@@ -52,7 +54,7 @@ def main(arguments: Optional[List[str]] = None) -> None:
     seen = observe(options.frame, options.wait, not options.trail)
     config = options.config or _written(adapted(seen))
     (program,) = roslib.packages.find_node("rviz", "rviz")[:1] or ["rviz"]
-    again = str(SHARE / "launch" / "restart_after_crash")
+    again = f"{share()}/launch/restart_after_crash"
     log = os.environ.get(RVIZ_LOG)
     if log:
         with open(log, "ab") as stream:
@@ -69,7 +71,6 @@ def observe(frame: str, wait: float, server: bool) -> Observed:
     rospy.init_node("robocop_rviz_config", argv=[], anonymous=True, disable_rostime=True, disable_signals=True)
     robot = rospy.get_namespace().strip("/")
     markers = _world(wait)
-    corners = [corners_of(marker) for marker in (markers.markers if markers else [])]
     seen = Observed(
         frame,
         robot,
@@ -77,7 +78,7 @@ def observe(frame: str, wait: float, server: bool) -> Observed:
         description=rospy.search_param("robot_description") is not None,
         server=server,
         odom_tf=markers is None or bool(rospy.get_param(ODOM_TF, True)),
-        obstacles=None if markers is None else np.vstack([np.zeros((0, 3)), *corners])[:, :2],
+        obstacles=None if markers is None else corners_of(markers)[:, :2],
         start=(0.0, 0.0) if markers is None else _start(robot),
         screen=screen,
     )
@@ -95,17 +96,14 @@ def _world(wait: float) -> Optional[MarkerArray]:
         return None
 
 
-def corners_of(marker: Marker) -> np.ndarray:
-    """Corners (n, 3) [m] of the box around an obstacle's marker; (0, 3) for markers that stand for no obstacle."""
-    if marker.ns != "world":
-        return np.zeros((0, 3))
-    if marker.type == Marker.TRIANGLE_LIST:
-        corners = np.array([(point.x, point.y, point.z) for point in marker.points]).reshape(-1, 3)
-    else:
-        corners = UNIT_CORNERS * (marker.scale.x, marker.scale.y, marker.scale.z)
-    position, turn = marker.pose.position, marker.pose.orientation
-    rotation = rotation_matrix((turn.x, turn.y, turn.z, turn.w))
-    return corners @ rotation.T + np.array([position.x, position.y, position.z])
+def corners_of(world: MarkerArray) -> np.ndarray:
+    """Corners (n, 3) [m] of the boxes around the obstacles among the markers of the simulator's world."""
+    store, corners = MarkerStore(), [np.zeros((0, 3))]
+    store.apply(world)
+    for shape, pose in obstacles(store.placed(lambda frame: Pose3D())):
+        points = np.array(shape.points) if shape.points else UNIT_CORNERS * shape.size
+        corners.append(points @ rotation_matrix(pose.orientation).T + pose.position)
+    return np.vstack(corners)
 
 
 def _start(robot: str) -> Tuple[float, float]:

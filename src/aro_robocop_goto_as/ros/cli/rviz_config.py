@@ -9,8 +9,8 @@ import numpy as np
 import yaml
 
 from ...names import prefixed
+from ..share import share
 
-SHARE = Path(__file__).resolve().parents[4]
 IN_WORLD = ("world", "map", "odom")  # frames that do not move with the robot
 PITCH = 1.05  # [rad] x points to the right, y up the screen, seen steeply from above
 FIELD_OF_VIEW = math.radians(45.0)  # [rad] vertical, of every RViz camera: Ogre's default
@@ -51,7 +51,7 @@ class Observed:
 
 def adapted(seen: Observed) -> str:
     """The text of the configuration."""
-    config = yaml.safe_load((SHARE / "rviz" / "robocop.rviz").read_text(encoding="utf-8"))
+    config = yaml.safe_load(Path(share(), "rviz", "robocop.rviz").read_text(encoding="utf-8"))
     manager = config["Visualization Manager"]
     displays = {entry["Name"]: entry for entry in manager["Displays"]}
     in_world = seen.frame.rpartition("/")[2] in IN_WORLD

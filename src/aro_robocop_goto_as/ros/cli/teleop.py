@@ -92,13 +92,10 @@ class KeyboardTeleop:
                 if not read:
                     return
                 key, released = keys_of(read.decode(errors="replace"))[-1], time.monotonic() + RELEASE_TIMEOUT
-            self._send(command(key if time.monotonic() < released else "", *self._speeds))
+            self.send(command(key if time.monotonic() < released else "", *self._speeds))
 
-    def stop(self) -> None:
-        """Publish a zero velocity if the robot was commanded to move."""
-        self._send(STANDSTILL)
-
-    def _send(self, twist: Twist2D) -> None:
+    def send(self, twist: Twist2D) -> None:
+        """Publish a velocity, and zero only if the robot was commanded to move."""
         if twist == STANDSTILL and not self._moving:
             return
         self._moving = twist != STANDSTILL
@@ -154,5 +151,5 @@ def main() -> None:
     finally:
         signals.begin_cleanup()
         if teleop is not None:
-            teleop.stop()
+            teleop.send(STANDSTILL)
         rospy.signal_shutdown("ended")

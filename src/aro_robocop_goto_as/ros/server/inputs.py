@@ -35,7 +35,7 @@ class Received:
 
 
 def _received(message: Any, previous: Optional[Received], clearance: Optional[float] = None) -> Received:
-    stamp_ns, period_ns = convert.to_ns(message.header.stamp), math.inf
+    stamp_ns, period_ns = message.header.stamp.to_nsec(), math.inf
     if previous is not None and stamp_ns > previous.stamp_ns:
         period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
     return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns, clearance)

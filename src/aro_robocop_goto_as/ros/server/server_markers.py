@@ -60,7 +60,7 @@ def server_markers(
             x, y = newest.goal.x, newest.goal.y
             made += markers.goal(p.position_tolerance, x, y, frame, color)
         else:
-            made += [markers.deletion(name) for name in markers.GOAL]
+            made += [Marker(ns=name, action=Marker.DELETE) for name in markers.GOAL]
     return MarkerArray(made)
 
 

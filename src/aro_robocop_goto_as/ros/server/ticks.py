@@ -70,7 +70,7 @@ class Ticks:
 
     def newest(self) -> int:
         """The time of the newest tick [ns]."""
-        return self._tick(convert.to_ns(rospy.get_rostime()))
+        return self._tick(rospy.get_rostime().to_nsec())
 
     def _tick(self, time_ns: int, later: int = 0) -> int:
         """The time of the newest tick at a time [ns], or of a `later` tick; rounded down as the simulator does."""
@@ -86,7 +86,7 @@ class Ticks:
                     continue
                 if self.newest() < last_ns:  # the wall clock was set back
                     last_ns = self.answered = self.newest()
-                remaining = self._tick(last_ns, later=1) - convert.to_ns(rospy.get_rostime())
+                remaining = self._tick(last_ns, later=1) - rospy.get_rostime().to_nsec()
                 self._changed.wait(max(0, remaining) / NANOSECONDS)
         return self.newest()
 

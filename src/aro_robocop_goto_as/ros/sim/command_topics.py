@@ -49,7 +49,7 @@ class CommandTopics:
             jobs.post(partial(controllers.command, ControllerId(robot, sender(message)), _velocity(message)))
 
         def on_answer(message: TickAnswer) -> None:
-            controller, stamp_ns = ControllerId(robot, sender(message)), convert.to_ns(message.tick)
+            controller, stamp_ns = ControllerId(robot, sender(message)), message.tick.to_nsec()
             twist = _velocity(message.command) if message.has_command else None
             jobs.post(partial(controllers.answer, controller, stamp_ns, twist))
 

@@ -1,7 +1,5 @@
 """The world for RViz and for localization: obstacle and robot markers; and the map, as map_server offers it."""
 
-import struct
-from io import BytesIO
 from typing import Any, Callable, List, Optional
 
 import ros_numpy
@@ -10,6 +8,7 @@ from genpy import Time
 from geometry_msgs.msg import Point, Pose
 from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap, GetMapResponse
+from rospy.numpy_msg import numpy_msg
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -22,36 +21,17 @@ from ..publishing.packed import PackedMessage
 from ..publishing.publisher import publisher
 from .world_markers import CLEAR, robot_markers, world_markers
 
-_LENGTH = struct.Struct("<I")
+# With an array of cells: as lists, genpy would make Python objects of up to 16 million of them.
+Grid, MapResponse = numpy_msg(OccupancyGrid), numpy_msg(GetMapResponse)
 
 
-class PackedGrid(OccupancyGrid):
-    """An OccupancyGrid with an array of cells: genpy would make Python objects of up to 16 million of them."""
-
-    def serialize(self, buff: Any) -> None:
-        """Write the serialized message to a buffer, as genpy's messages do."""
-        empty = BytesIO()
-        OccupancyGrid(self.header, self.info, []).serialize(empty)
-        buff.write(empty.getvalue()[: -_LENGTH.size])
-        buff.write(_LENGTH.pack(len(self.data)))
-        buff.write(self.data.tobytes())
-
-
-def to_grid(occupancy: Occupancy, stamp: Time, frame: str) -> PackedGrid:
+def to_grid(occupancy: Occupancy, stamp: Time, frame: str) -> OccupancyGrid:
     """An occupancy grid as a message."""
     origin = occupancy.origin
     pose = Pose(Point(origin.x, origin.y, 0.0), convert.to_quaternion(origin.yaw))
     info = MapMetaData(map_load_time=stamp, resolution=occupancy.resolution, origin=pose)
     grid = ros_numpy.msgify(OccupancyGrid, occupancy.cells, info=info)
-    return PackedGrid(Header(0, stamp, frame), grid.info, grid.data)
-
-
-class PackedMap(GetMapResponse):
-    """The response of /static_map with a PackedGrid."""
-
-    def serialize(self, buff: Any) -> None:
-        """Write the serialized message to a buffer; the map is its only field."""
-        self.map.serialize(buff)
+    return Grid(Header(0, stamp, frame), grid.info, grid.data)
 
 
 class _Whole(MarkerArray):
@@ -80,7 +60,7 @@ class WorldTopics:
         ]
         self._markers = publisher("~world", MarkerArray, latch=True)
         self._has_map = simulator.params.topics.publish_map or simulator.world.occupancy is not None
-        self._grid: Optional[PackedGrid] = None  # that was published last
+        self._grid: Optional[OccupancyGrid] = None  # that was published last
         if self._has_map:
             self._map = publisher("/map", OccupancyGrid, latch=True)
             self._metadata = publisher("/map_metadata", MapMetaData, latch=True)
@@ -109,4 +89,4 @@ class WorldTopics:
         self._map.publish(self._grid)
         self._metadata.publish(self._grid.info)
         if is_first:
-            rospy.Service("/static_map", GetMap, lambda _: PackedMap(self._grid))
+            rospy.Service("/static_map", GetMap, lambda _: MapResponse(self._grid))

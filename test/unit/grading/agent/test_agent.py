@@ -32,7 +32,6 @@ POLL = (
     [
         ("time.sleep(0.25)", 0.25),
         ("import threading; threading.Event().wait(1.5)", 1.5),
-        ("import threading; c = threading.Condition()\nwith c: c.wait(0.3)", 0.3),
         ("import threading; lock = threading.Lock(); lock.acquire(); lock.acquire(timeout=0.2)", 0.2),
         ("import threading; t = threading.Thread(target=time.sleep, args=(2.0,)); t.start(); t.join()", 2.0),
         ("import threading; t = threading.Thread(target=time.sleep, args=(2.0,)); t.start(); t.join(0.5)", 0.5),
@@ -46,10 +45,7 @@ POLL = (
         ("import select, socket; s = socket.socketpair(); e = select.epoll(); e.register(s[0], 1); e.poll(0.3)", 0.3),
         ("import socket; s = socket.socketpair(); s[0].settimeout(0.2)\ntry: s[0].recv(1)\nexcept OSError: pass", 0.2),
         ("import socket; s = socket.socketpair()[0]; s.close()\ntry: s.recv(1)\nexcept OSError: time.sleep(0.2)", 0.2),
-        ("import asyncio; asyncio.run(asyncio.sleep(0.35))", 0.35),
         ("import asyncio\nasync def f():\n    for _ in range(100): await asyncio.sleep(0.1)\nasyncio.run(f())", 10.0),
-        ("from concurrent.futures import ThreadPoolExecutor as E; E(2).submit(time.sleep, 0.9).result()", 0.9),
-        ("import sched; s = sched.scheduler(); s.enter(0.8, 1, print); s.run()", 0.8),
         ("import rospy; rospy.rostime.wallsleep(0.1)", 0.1),
         ("while time.monotonic() - start < 0.2005: pass", 0.201),
         ("end = time.time() + 0.2005\nwhile time.time() < end: pass", 0.201),
@@ -197,39 +193,6 @@ def test_message_that_arrives_wakes_its_reader_before_time_goes_on(tmp_path):
             assert program.process.stdout.readline() == "b'hello' 0.01\n"
 
 
-# The system takes long to begin a thread.
-SLOW_STARTS = """
-import sys
-module = sys.modules["robocop_agent.scheduler"]
-scheduler = module.scheduler
-def slow_begin(waiter, begin=scheduler.begin):
-    waiter.gate.acquire()
-    module.sleep(0.05)
-    waiter.gate.release()
-    begin(waiter)
-scheduler.begin = slow_begin
-"""
-
-
-def test_thread_that_is_being_started_runs_before_a_message_that_arrives_meanwhile_is_read(tmp_path):
-    text = f"""{SLOW_STARTS}
-import socket, threading
-a, b = socket.socketpair()
-order = []
-def read():
-    a.recv(1)
-    order.append("read")
-threading.Thread(target=read, daemon=True).start()
-time.sleep(0.01)
-b.send(b"x")
-threading.Thread(target=order.append, args=["started"]).start()
-order.append("main")
-time.sleep(0.01)
-print(*order)
-"""
-    assert printed(tmp_path, text) == ["started main read"]
-
-
 @pytest.mark.parametrize(
     "text, expected",
     [
@@ -254,16 +217,6 @@ print(*order)
             ["0.0"],
         ),
         (
-            # A forked child lives without the agent.
-            "import _thread, os, sys, warnings\nwarnings.simplefilter('ignore')  # Python warns since 3.12\n"
-            "child = os.fork()\n"
-            "if child == 0:\n"
-            "    _thread.start_new_thread(os._exit, (7,))\n"
-            "    sys.modules['robocop_agent.scheduler'].sleep(60)\n"
-            "print(os.WEXITSTATUS(os.waitpid(child, 0)[1]))\n",
-            ["7"],
-        ),
-        (
             # A thread looks again and again whether another one is done, and lets it go on.
             "import queue, threading\nto, back = queue.Queue(), queue.Queue()\n"
             "def work():\n"
@@ -279,7 +232,7 @@ print(*order)
         ),
     ],
 )
-def test_threads_and_children_meet_as_without_the_agent(text, expected, tmp_path):
+def test_threads_meet_as_without_the_agent(text, expected, tmp_path):
     assert printed(tmp_path, text) == expected
 
 
@@ -443,15 +396,10 @@ def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):
 
 SOURCES = {
     "cp1250 without a coding line": b"x = 1\n# \xf8\n",
-    "cp1250 with a coding line": b"# coding: cp1250\nprint('\xf8')\n",
     "UTF-16": "print(1)\n".encode("utf-16"),
-    "UTF-16 without a byte-order mark": "print(1)\n".encode("utf-16-le"),
     "UTF-8 with a byte-order mark": b"\xef\xbb\xbfprint(1)\n",
     "a null byte": b"x = 1\n\0y\n",
     "tabs and spaces": b"if 1:\n\tx = 1\n        y = 2\n",
-    "an unknown coding": b"# coding: nothing\n",
-    "Windows line endings": b"print(1)\r\nprint(2)\r\n",
-    "Python 2": b"print 1\n",
     "an exception": b"def f():\n    raise ValueError(1)\nf()\n",
     "an exit status": b"raise SystemExit(3)\n",
 }

@@ -119,15 +119,6 @@ def lived(folder, program, messages=(), answer=b""):
             ],
             id="the master answers nothing but the methods of its API",
         ),
-        pytest.param(
-            "import message_filters as f\n"
-            "both = [f.Subscriber('/first', Float64), f.Subscriber('/second', Float64)]\n"
-            "both = f.ApproximateTimeSynchronizer(both, 5, 1.0, allow_headerless=True)\n"
-            "both.registerCallback(lambda a, b: tell(a.data, b.data))\nrospy.spin()",
-            [[("/first", 1.0), ("/second", 2.0)]],
-            ["1.0 2.0 0.02"],
-            id="message_filters",
-        ),
     ],
 )
 def test_a_node_hears_in_no_simulated_time(program, messages, printed, tmp_path):

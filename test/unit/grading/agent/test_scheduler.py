@@ -23,7 +23,17 @@ def test_all_threads_wait_when_none_runs_or_starts():
     scheduler.running = {1}
     assert scheduler.wait_until_idle(0.01) is False
     scheduler.running, scheduler.starting = set(), 1
-    assert scheduler.wait_until_idle(0.01) is False
+    assert scheduler.wait_until_idle(0.01) is False and not scheduler.is_unawaited()
+
+
+def test_no_other_thread_gets_a_turn_while_one_is_being_started():
+    scheduler = Scheduler()
+    starting, woken = scheduler.new_thread(), Waiter(3)
+    with scheduler.guard:
+        scheduler.wake(woken)
+    assert list(scheduler.queue) == [woken] and scheduler.wait_for_none_of(set())
+    scheduler.no_thread(starting)
+    assert scheduler.running == {3} and not scheduler.starting
 
 
 def test_a_forked_child_has_none_of_the_threads_and_lives_on_the_wall_clock():

@@ -8,7 +8,6 @@ import pytest
 from grading_records import GOAL, PLAN, RIGHT
 
 from robocop_grading.judge import judge
-from robocop_grading.plan_file import load
 from robocop_grading.record import Feedback, Goal, Sample, errors_at
 
 MIRRORED = tuple(
@@ -86,7 +85,7 @@ def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
         goal = replace(GOAL, x=x, y=y)
         feedback = tuple(fed_back(samples, goal, f"{error}_error", formula))
         records[name] = replace(RIGHT, name=name, goals=(goal,), samples=samples, feedback=feedback)
-    checks = {check.name: check for check in judge("anna", load(PLAN), {"server": records}, {}).checks}
+    checks = {check.name: check for check in judge("anna", PLAN, {"server": records}, {}).checks}
     wrong, right = checks[f"feedback_{error}"], checks[f"feedback_{'angle' if error == 'position' else 'position'}"]
     assert wrong.failure is not None and words in wrong.failure.cause
     assert right.failure is None

@@ -1,18 +1,15 @@
-"""The seed of a class, also when it is graded twice at a time; who is graded again; what is told meanwhile."""
+"""The seed of a class; who is graded again; what is told meanwhile."""
 
-import subprocess
-import sys
 import time
 
 import pytest
-from class_records import PLAN, keep, keep_report
+from grading_records import PLAN, keep, keep_grade
 
 from aro_robocop_goto_as.errors import GradingSetupError
-from robocop_grading.classroom import main as classroom
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
+from robocop_grading.judge import Grade
 from robocop_grading.plan_file import MAX_SEED
-from robocop_hosting.workspace import exclusive
 
 
 @pytest.mark.parametrize("used", [0, 7])
@@ -20,23 +17,6 @@ def test_class_keeps_its_seed_unless_another_one_is_given(used, tmp_path):
     keep(Results(tmp_path, {"seed": used}), "anna", 0.2)
     assert class_seed(None, tmp_path) == used
     assert class_seed(3, tmp_path) == 3
-
-
-def test_gradings_of_a_new_class_at_the_same_time_share_a_seed(tmp_path):
-    (tmp_path / "class").mkdir()
-    (tmp_path / "class" / "anna.py").write_text("one")
-    out = tmp_path / "out"
-    code = f"from {classroom.__name__} import main; main()"
-    command = [sys.executable, "-u", "-c", code, tmp_path / "class", "--report", out]
-    with exclusive(out / ".run"):  # the first one is running
-        second = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        assert "waiting for another process" in second.stderr.readline()
-        keep(Results(out, {"seed": 4711}), "anna", 0.2)
-    try:
-        assert [second.stdout.readline() for _ in range(2)][1] == "scenarios: seed 4711\n"
-    finally:
-        second.kill()
-        second.communicate()
 
 
 def test_new_class_gets_a_seed_that_draws(tmp_path):
@@ -49,7 +29,7 @@ def group(tmp_path):
     hand_ins = {name: f"digest of {name}" for name in ("anna", "ben", "carl.zip", "řehoř")}
     results = Results(tmp_path, {})
     keep(results, "anna", 0.5)
-    keep_report(results, "ben", {"name": "ben", "checks": [], "problems": ["ben.rar: a .rar file"]})
+    keep_grade(results, Grade("ben", (), ("ben.rar: a .rar file",)))
 
     def make(again=()):
         return Class(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())

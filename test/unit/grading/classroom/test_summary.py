@@ -6,18 +6,13 @@ from robocop_grading.classroom.summary import Summary, pace
 
 
 def test_figures_are_those_of_the_hand_ins_that_were_judged() -> None:
-    assert Summary((8.0, 3.5, 7.0), 4, 8.0).lines() == [
-        "3 judged, 4 not gradable",
-        "mean 6.17, median 7 of 8 points",
+    assert Summary((3.0, 1.5, 2.0, 1.0), 4, 3.0).lines() == [
+        "4 judged, 4 not gradable",
+        "mean 1.88, median 1.75 of 3 points",
         "  0 to < 1    0",
-        "  1 to < 2    0",
-        "  2 to < 3    0",
-        "  3 to < 4    1 " + "#" * 40,
-        "  4 to < 5    0",
-        "  5 to < 6    0",
-        "  6 to < 7    0",
-        "  7 to < 8    1 " + "#" * 40,
-        "         8    1 " + "#" * 40,
+        "  1 to < 2    2 " + "#" * 40,
+        "  2 to < 3    1 " + "#" * 20,
+        "         3    1 " + "#" * 20,
     ]
     assert Summary((), 4, 8.0).lines() == ["0 judged, 4 not gradable"]
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from class_records import PLAN
+from grading_records import PLAN
 
 from robocop_grading.classroom import worker
 from robocop_grading.classroom.results import Results

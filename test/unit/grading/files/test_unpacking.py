@@ -46,6 +46,13 @@ def encrypted(files):
     return bytes(raw)
 
 
+def long_list(files):
+    """A zip with these files that says that its list of entries is very long."""
+    raw = bytearray(zipped(files))
+    raw[-10:-6] = (2**23).to_bytes(4, "little")
+    return bytes(raw)
+
+
 def link(name, target, kind=tarfile.SYMTYPE):
     """A link in a tar archive."""
     info = tarfile.TarInfo(name)
@@ -91,19 +98,15 @@ def test_archive_beside_other_files_is_unpacked(name, make, unpacked):
 
 
 @pytest.mark.parametrize(
-    "make",
+    "outer, inner, make",
     [
-        lambda: zipped({"in.zip": zipped(ONE)}),
-        lambda: zipped({"a/in.tgz": tarred(ONE, "gz")}),
-        lambda: tarred({"in.zip": zipped(ONE)}),
+        ("eve.zip", "in.zip", lambda: zipped({"in.zip": zipped(ONE)})),
+        ("eve.zip", "a/in.tgz", lambda: zipped({"a/in.tgz": tarred(ONE, "gz")})),
+        ("eve.tgz", "in.zip", lambda: tarred({"in.zip": zipped(ONE)}, "gz")),
     ],
 )
-def test_archive_in_an_archive_is_unpacked(make, tmp_path):
-    (tmp_path / "eve.zip").write_bytes(make())
-    found = unpacking.unpack(tmp_path / "eve.zip")
-    assert found.notes == []
-    found.write(tmp_path / "out")
-    assert [path.name for path in (tmp_path / "out").rglob("*.py")] == [SERVER]
+def test_archive_in_an_archive_is_unpacked(outer, inner, make, unpacked):
+    assert unpacked({outer: make()}) == [f"{outer}/{inner}/lab/{SERVER}"]
 
 
 @pytest.mark.parametrize(
@@ -134,6 +137,7 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
         ({"a.zip": lambda: zipped({SERVER: bytes(10_001)})}, "a.zip: larger than 64 MB"),
         (dict.fromkeys(["a.zip", "b.zip"], lambda: zipped({SERVER: bytes(6_000)})), "b.zip: larger than 64 MB"),
         ({"a.zip": lambda: encrypted({SERVER: b"pass"})}, "encrypted, password required"),
+        ({"a.zip": lambda: long_list(ONE)}, "a.zip: expected at most 5000 files"),
         ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 64 MB"),
         ({"a.tgz": lambda: tarred({"build/x": bytes(1024**2)}, "gz")}, "a.tgz: larger than 1 MB"),
         (
@@ -183,20 +187,16 @@ def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
             unpacking.unpack(tmp_path / name)
 
 
-@pytest.mark.parametrize("entry", [archives.Entry(archives.LINK, target="b\0c"), archives.Entry(archives.LINK)])
-def test_link_that_no_disk_can_hold_is_refused(entry, tmp_path):
+@pytest.mark.parametrize("target", ["", "b\0c"])
+def test_link_that_no_disk_can_hold_is_refused(target, tmp_path):
+    entries = {"": archives.Entry(archives.FOLDER), "a": archives.Entry(archives.LINK, target=target)}
     with pytest.raises(SubmissionError, match="can't be unpacked"):
-        unpacking.Unpacked({"": archives.Entry(archives.FOLDER), "a": entry}, []).write(tmp_path / "eve")
+        unpacking.Unpacked(entries, []).write(tmp_path / "eve")
 
 
-def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path):
-    buffer, target = io.BytesIO(), tmp_path / "target"
-    with tarfile.open(fileobj=buffer, mode="w") as archive:
-        archive.addfile(link(SERVER, str(target)))
-        archive.addfile(tarfile.TarInfo(SERVER))
-    (tmp_path / "eve.tar").write_bytes(buffer.getvalue())
-    unpacking.unpack(tmp_path / "eve.tar").write(tmp_path / "out")
-    assert (tmp_path / "out" / SERVER).is_file() and not target.exists()
+def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path, unpacked):
+    assert unpacked({"eve.tar": tarred({"first": link(SERVER, str(tmp_path / "target")), SERVER: b""})})
+    assert not (tmp_path / "target").exists()
 
 
 def test_links_of_archives_stay_links_and_hard_links_become_files(tmp_path):
@@ -235,12 +235,6 @@ def test_what_a_desktop_adds_is_left_out(unpacked):
     )
     assert unpacked({"lab.zip": zipped({**junk, "lab/a.py": b""})}) == ["lab.zip/lab/a.py"]
     assert unpacked({"lab.tar": tarred({"lab/._a.py": b"", "lab/a.py": b""})}, "ben") == ["lab.tar/lab/a.py"]
-
-
-def test_script_is_found_whatever_its_neighbours_are_called(unpacked):
-    name = "zpráva_řč.txt"
-    raw = zipped({**ONE, "x" * len(name): b""}).replace(b"x" * len(name), name.encode("cp1250"))
-    assert f"lab.zip/lab/{SERVER}" in unpacked({"lab.zip": raw})
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """All that a node prints becomes lines, in order, however it is written; of a flood only the beginning is kept."""
 
 import os
-from typing import List, Tuple
 
 import pytest
 
@@ -17,10 +16,7 @@ def printed():
     output.close()
 
 
-Printed = Tuple[int, Output, List[str]]
-
-
-def test_a_line_is_passed_on_when_it_is_complete(printed: Printed) -> None:
+def test_a_line_is_passed_on_when_it_is_complete(printed):
     writer, output, lines = printed
     os.write(writer, b"one\ntw")
     output.pass_on()
@@ -36,7 +32,7 @@ def test_a_line_is_passed_on_when_it_is_complete(printed: Printed) -> None:
     assert not output.is_open
 
 
-def test_an_unfinished_line_is_passed_on_when_the_node_is_ended(printed: Printed) -> None:
+def test_an_unfinished_line_is_passed_on_when_the_node_is_ended(printed):
     writer, output, lines = printed
     os.write(writer, b"half a line")
     output.close()
@@ -45,7 +41,7 @@ def test_an_unfinished_line_is_passed_on_when_the_node_is_ended(printed: Printed
     os.close(writer)
 
 
-def test_a_long_line_is_several_and_bytes_that_are_no_text_are_replaced(printed: Printed) -> None:
+def test_a_long_line_is_several_and_bytes_that_are_no_text_are_replaced(printed):
     writer, output, lines = printed
     os.write(writer, b"x" * (MAX_LINE + 1) + b"\xff\n")
     os.close(writer)
@@ -53,7 +49,7 @@ def test_a_long_line_is_several_and_bytes_that_are_no_text_are_replaced(printed:
     assert lines == ["x" * MAX_LINE, "x\ufffd"]
 
 
-def test_a_node_that_prints_a_lot_need_not_wait_for_the_grader(printed: Printed) -> None:
+def test_a_node_that_prints_a_lot_need_not_wait_for_the_grader(printed):
     writer, output, _lines = printed
     os.set_blocking(writer, False)
     assert os.write(writer, b"x" * 1_000_000) == 1_000_000
@@ -61,7 +57,7 @@ def test_a_node_that_prints_a_lot_need_not_wait_for_the_grader(printed: Printed)
     os.close(writer)
 
 
-def test_of_a_flood_the_beginning_is_kept_and_the_rest_is_read(printed: Printed) -> None:
+def test_of_a_flood_the_beginning_is_kept_and_the_rest_is_read(printed):
     writer, output, lines = printed
     for _ in range(2 * MAX_OUTPUT // 1000):
         os.write(writer, b"x" * 999 + b"\n")  # blocks for ever if nobody reads

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.ros.cli.overview import overview
 def shown(*nodes, arguments=""):
     """The overview's rows for nodes of these names."""
     nodes = [SimpleNamespace(name=name, namespace="/", args="" if name == "rviz" else arguments) for name in nodes]
-    text = overview(nodes, {}, Path("/logs"))
+    text = overview(nodes, {}, Path("/logs"), False)
     return dict((line[:14].strip(), line[14:]) for line in text.splitlines() if line[:1].strip())
 
 
@@ -50,6 +50,6 @@ def test_goals_are_offered_only_with_a_server():
 )
 def test_the_world_and_a_goal_that_can_be_reached_in_it_are_shown(simulator, words):
     server = SimpleNamespace(name=SERVER, namespace="/", args="")
-    text = overview([server], simulator, Path("/logs"))
+    text = overview([server], simulator, Path("/logs"), False)
     assert [it for it in words if it not in text] == []
     assert ("transforms" in text) is ("odom_tf" in simulator)

@@ -1,6 +1,5 @@
 """Publishers and batches with rospy's own connections, without a ROS master."""
 
-import itertools
 import socket
 import struct
 import threading
@@ -20,15 +19,14 @@ from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
-NAMES = (f"/topic_{i}" for i in itertools.count())
 
 
 @pytest.fixture(name="topic")
-def _topic() -> Iterator[Callable[[], DirectPublisher]]:
+def _topic() -> Iterator[Callable[..., DirectPublisher]]:
     made: List[DirectPublisher] = []
 
-    def make() -> DirectPublisher:
-        made.append(publisher(next(NAMES), LaserScan))
+    def make(latch: bool = False) -> DirectPublisher:
+        made.append(publisher(f"/topic_{len(made)}", LaserScan, latch))
         return made[-1]
 
     yield make
@@ -36,12 +34,8 @@ def _topic() -> Iterator[Callable[[], DirectPublisher]]:
         topic.unregister()
 
 
-def _send(topic: DirectPublisher, message: PackedMessage = SCAN) -> None:
-    Batch([(topic, message)]).send(0)
-
-
 def test_descriptors_of_gone_subscribers_are_closed(
-    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
 ) -> None:
     scans = topic()
     links = [connect(scans) for _ in range(10)]
@@ -51,12 +45,12 @@ def test_descriptors_of_gone_subscribers_are_closed(
         if connection is links[4].connection:
             rospy.topics.get_topic_manager().check_all()  # rospy notices a part of them by itself
     while scans.get_num_connections():
-        _send(scans)
+        Batch([(scans, SCAN)]).send(0)
     assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
 
 
 def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(
-    topic: Callable[[], DirectPublisher], connect: Callable[[DirectPublisher], Link]
+    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
 ) -> None:
     scans, new = topic(), []
     gone, slow = connect(scans), connect(scans)
@@ -70,7 +64,7 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
 
     second = scans.links[1]
     kept, second.socket = second.socket, SimpleNamespace(send=send)
-    _send(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))  # more than a socket takes at once
+    Batch([(scans, PackedMessage(LaserScan(ranges=[1.0] * 3_000_000)))]).send(0)  # more than a socket takes at once
     assert [connection.fileno() for connection in new] == [number]
     assert scans.impl.connections == [slow.connection, *new]
     kept.close()
@@ -87,32 +81,29 @@ def _serialized(beams: int, seq: int) -> bytes:
 
 
 def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_again(
-    connect: Callable[[DirectPublisher], Link],
+    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
 ) -> None:
-    latched, many = publisher(next(NAMES), LaserScan, latch=True), 3_000_000  # beams: more than a socket takes at once
+    latched, many = topic(latch=True), 3_000_000  # beams: more than a socket takes at once
     link = connect(latched)
     _set_timeout(link, SHORT)
-    try:
-        for beams in (many, 20, 10):
-            latched.impl.publish(LaserScan(ranges=[1.0] * beams))  # as a node does, after its init_node
-        (subscriber,) = latched.links
-        assert subscriber.stands_still
-        _set_timeout(link, LONG)
-        first, read = _serialized(many, 1), []
-        reading = threading.Thread(target=lambda: read.append(received(link.socket, len(first))))
-        reading.start()
-        while subscriber.stands_still:
-            resume()
-        reading.join()
-        sent = latched.impl.seq
-        last = _serialized(10, sent)  # the third message, sent once more, for which there was room at last
-        assert sent > 3 and read == [first] and received(link.socket, len(last)) == last
-        assert latched.impl.connections == [link.connection]
+    for beams in (many, 20, 10):
+        latched.impl.publish(LaserScan(ranges=[1.0] * beams))  # as a node does, after its init_node
+    (subscriber,) = latched.links
+    assert subscriber.stands_still
+    _set_timeout(link, LONG)
+    first, read = _serialized(many, 1), []
+    reading = threading.Thread(target=lambda: read.append(received(link.socket, len(first))))
+    reading.start()
+    while subscriber.stands_still:
         resume()
-        latched.impl.publish(LaserScan())
-        assert received(link.socket, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
-    finally:
-        latched.unregister()
+    reading.join()
+    sent = latched.impl.seq
+    last = _serialized(10, sent)  # the third message, sent once more, for which there was room at last
+    assert sent > 3 and read == [first] and received(link.socket, len(last)) == last
+    assert latched.impl.connections == [link.connection]
+    resume()
+    latched.impl.publish(LaserScan())
+    assert received(link.socket, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
 
 
 def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
@@ -121,6 +112,6 @@ def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator
     for beams in (230, 231, 230, 229, 230):
         sim.observed.scan.ranges = sim.observed.scan.ranges_of(beams)
         message = lds02.packed("scan")
-        _send(lds02.topics["scan"], message)
+        Batch([(lds02.topics["scan"], message)]).send(0)
         sent.append(struct.unpack_from("<I", message.data, 4)[0])
     assert sent == [1, 2, 3, 4, 5]

@@ -23,6 +23,7 @@ from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
 from aro_robocop_goto_as.ros.sim import sensor_topics as packed
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
 from aro_robocop_goto_as.simulation.simulator import Simulator
@@ -67,7 +68,7 @@ def test_latched_message_is_the_one_that_was_sent_last() -> None:
 
 @given(st.sampled_from(sorted(PROFILES)), NAME, STAMP, st.integers(2, 400), st.randoms(use_true_random=False))
 def test_scan(profile: str, frame: str, stamp: "tuple[int, int]", beams: int, random: "object") -> None:
-    spec = PROFILES[profile].spec.with_samples(beams)
+    spec = PROFILES[profile].with_samples(beams)
     ranges = np.zeros(beams)
     message = packed.packed_scan(spec, frame, ranges, counter())
     ranges[:] = [random.choice([0.0, np.inf, -np.inf, random.uniform(0.1, 30.0)]) for _ in range(beams)]  # type: ignore[attr-defined]
@@ -114,6 +115,17 @@ def test_odometry_of_a_real_robot_has_no_covariances(simulator: Callable[..., Si
 
 def test_each_sensor_has_its_place_among_the_messages_of_a_step(simulator: Callable[..., Simulator]) -> None:
     assert {*packed.TOPICS, "camera", "tf"} == set(simulator().observed.by_name)
+
+
+def test_what_a_step_publishes_has_the_time_of_this_step_as_its_stamp(simulator: Callable[..., Simulator]) -> None:
+    sim = simulator()
+    topics = StepTopics(sim)
+    for stamp_ns in (100_000_000, 200_000_000):
+        drive(sim, Twist2D(0.2, 0.0), 0.1, ["odom"])
+        topics.publish(sim.observed)
+        message = topics.robots[0].packed("odom")
+        assert message is not None and sim.stamp_ns == stamp_ns
+        assert Odometry().deserialize(message.body()).header.stamp.to_nsec() == stamp_ns
 
 
 @given(st.lists(st.tuples(NAME, NAME, POSE), min_size=1, max_size=4), STAMP)

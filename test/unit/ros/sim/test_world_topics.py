@@ -4,12 +4,13 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
+import pytest
 from genpy import Time
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMapResponse
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.ros.sim.world_topics import PackedMap, to_grid
+from aro_robocop_goto_as.ros.sim.world_topics import MapResponse, to_grid
 from aro_robocop_goto_as.world.model import Occupancy
 
 CELLS = np.array([[-1, 0, 100], [50, -128, 127]], np.int8)
@@ -21,9 +22,10 @@ def _bytes_of(message: Any) -> bytes:
     return content.getvalue()
 
 
+@pytest.mark.filterwarnings("ignore:tostring")
 def test_its_bytes_are_those_of_an_ordinary_message() -> None:
     packed = to_grid(Occupancy(CELLS, 0.05, Pose2D(-1.0, 2.0, 0.5)), Time(3, 4), "map")
     ordinary = OccupancyGrid(packed.header, packed.info, CELLS.ravel().tolist())
     assert (ordinary.info.width, ordinary.info.height, ordinary.header.stamp) == (3, 2, Time(3, 4))
     assert _bytes_of(packed) == _bytes_of(ordinary)
-    assert _bytes_of(PackedMap(packed)) == _bytes_of(GetMapResponse(ordinary))
+    assert _bytes_of(MapResponse(packed)) == _bytes_of(GetMapResponse(ordinary))

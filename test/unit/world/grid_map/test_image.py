@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from map_files import write_map_over
+from map_files import write_yaml, yaml_of
 from PIL import Image
 
 from aro_robocop_goto_as.errors import WorldError
@@ -43,12 +43,8 @@ def test_every_kind_of_pnm_is_read_as_by_map_servers_image_loader(tmp_path, cont
         b"P5 3 2 0\n123456",
         b"P5 3 2 99999\n123456",
         b"P2 3 2 255 1 2 3 a b c",
-        b"P2 3 2 255 1 2 3 4 5 256",
-        b"P5 20 20 65535\n" + bytes(799),
         b"P5 20 20 255\n" + bytes(399),
         b"P2 20 20 255\n" + b"254 " * 399,
-        b"P2 20 20 255",
-        b"P5",
         b"BM",
         b"",
     ],
@@ -74,4 +70,4 @@ def test_image_that_claims_too_much_is_refused_before_memory_is_allocated(tmp_pa
     (tmp_path / "m.pgm").write_bytes(content)
     monkeypatch.setattr(Image.Image, "load", loaded)
     with pytest.raises(WorldError, match=f"^{tmp_path}/m.pgm: {problem}"):
-        load_world(write_map_over(tmp_path, "m.pgm"))
+        load_world(write_yaml(tmp_path, yaml_of()))

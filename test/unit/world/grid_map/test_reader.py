@@ -8,16 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from map_files import room, write_map
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.world.grid_map.reader import edges_of_cells
 from aro_robocop_goto_as.world.load import load_world
 
 HEIGHT = 0.182  # [m] of the lidar
-LAB = Fan(0.0, 6.28319 / 359, 360)
 
 
 def test_unknown_cells_are_not_walls(tmp_path):
@@ -42,29 +41,6 @@ def test_origin_with_yaw_rotates_the_walls(tmp_path):
     assert cut[..., 1].min() == pytest.approx(2.0) and cut[..., 1].max() == pytest.approx(2.0 + 40 * 0.05)
 
 
-@given(st.integers(0, 10**6))
-def test_scan_hits_in_an_extruded_map_fall_on_occupied_cells(tmp_path_factory, seed):
-    random = np.random.default_rng(seed)
-    pixels = np.where(random.random((60, 80)) < 0.03, 0, np.where(random.random((60, 80)) < 0.1, 205, 254))
-    pixels[20:40, 20:40] = 254
-    directory = tmp_path_factory.getbasetemp()
-    world = load_world(write_map(directory, pixels, origin="[-1.3, 0.4, 0.3]"))
-    occupancy = world.occupancy
-    pose = compose(occupancy.origin, Pose2D(1.5, 1.5))
-    distances = LAB.cast(np.array([[pose.x, pose.y, 0.0]]), CrossSection(world, HEIGHT))[0]
-    angles = (6.28319 / 359 * np.arange(360))[np.isfinite(distances)]
-    distances = distances[np.isfinite(distances)]
-    assert len(distances) > 100
-    hits = np.array([pose.x, pose.y]) + distances[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    grid = inverse(occupancy.origin)
-    turn = np.array([[math.cos(grid.yaw), -math.sin(grid.yaw)], [math.sin(grid.yaw), math.cos(grid.yaw)]])
-    cells = (hits @ turn.T + [grid.x, grid.y]) / occupancy.resolution
-    near = [np.floor(cells + shift) for shift in ((1e-6, 1e-6), (1e-6, -1e-6), (-1e-6, 1e-6), (-1e-6, -1e-6))]
-    framed = np.pad(occupancy.cells, 1, constant_values=-1)
-    on_wall = [framed[c[:, 1].astype(int) + 1, c[:, 0].astype(int) + 1] == 100 for c in near]
-    assert np.any(on_wall, axis=0).all()
-
-
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
 def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
     world = load_world(write_map(tmp_path, room(60, 60), origin="[-1.5, -1.5, 0]"))
@@ -76,3 +52,17 @@ def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
         sim.step({})
     assert 1.2 < sim.world_from_footprint().x < 1.45 and sim.touching()
     sim.close()
+
+
+@given(st.integers(1, 7), st.integers(1, 7), st.data())
+def test_outline_is_all_edges_of_occupied_regions_in_maximal_segments(rows, columns, data):
+    flags = data.draw(st.lists(st.booleans(), min_size=rows * columns, max_size=rows * columns))
+    occupied = np.array(flags).reshape(rows, columns)
+    segments = [(tuple(start), tuple(end)) for start, end in edges_of_cells(occupied).tolist()]
+    for axis in (0, 1):  # a ray along it from the centre of an occupied cell crosses an odd number of edges
+        across = [(start, end) for start, end in segments if start[axis] == end[axis]]
+        for row, column in np.ndindex(rows, columns):
+            cell = (column + 0.5, row + 0.5)
+            ahead = [s[axis] > cell[axis] and s[1 - axis] < cell[1 - axis] < e[1 - axis] for s, e in across]
+            assert sum(ahead) % 2 == occupied[row, column]
+        assert not {start for start, _ in across} & {end for _, end in across}, "two pieces of one wall"

@@ -14,8 +14,6 @@ BROKEN_FRAMES = {  # case: (the whole file, line of the error, what the message 
         ["<xacro:...>, expected the file that xacro makes of it"],
     ),
     "unsupported version": ("\n<sdf version='1.3'><world name='w'/></sdf>", 2, ["'1.3'", "1.4 and later"]),
-    "no version": ("<sdf><world name='w'/></sdf>", 1, ["version None"]),
-    "no world": ("<sdf version='1.7'/>", 1, ["<world>"]),
     "two worlds": ("<sdf version='1.7'><world name='a'/>\n<world name='b'/></sdf>", 2, ["second <world>"]),
     "light outside of a world": ("<sdf version='1.7'>\n<light name='stray'/></sdf>", 1, ["<sdf> has no <world>"]),
     "world without a name": ("<sdf version='1.7'>\n<world/></sdf>", 2, ["<world> has no name"]),
