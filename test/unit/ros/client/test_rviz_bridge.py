@@ -138,11 +138,13 @@ def test_status_tells_of_the_last_goal(system):
     system.bridge.report()
     system.done(GoalStatus.SUCCEEDED, GoToPositionResult(True, "REACHED: so"))
     system.bridge.report()
+    system.bridge.replace_goal(Point(2.0, 0.0, 0.0), PoseStamped())
     assert [text.replace("goal x 0.00 y 0.00 in map", "goal") for text in system.statuses] == [
         "robocop_goto_as is ready, no goal yet",
         "goal is ACTIVE",
         "goal is ACTIVE: driving (position_error 0.50 m, angle_error 0.10 rad)",
         "robocop_goto_as is ready, last goal SUCCEEDED: REACHED: so",
+        "goal is ACTIVE",
     ]
 
 
