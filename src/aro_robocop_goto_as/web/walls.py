@@ -25,7 +25,7 @@ def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles:
     section = CrossSection(world, HEIGHT)
     if not _reached(section, *goal)[0, 0]:
         return False
-    within = _reached(section, *robot)  # no cell at all if a wall is in the robot's own one, as where cells are large
+    within = _reached(section, *robot)  # no cell if an obstacle is in the robot's own, as beside a wall in large cells
     return bool(within.any()) and not within[0, 0]
 
 

@@ -12,29 +12,27 @@ def unanswered():
     raise OSError
 
 
+def of_two_robots():
+    return {f"/blue/{ACTION}": ACTION_TYPE, f"/red/{ACTION}": ACTION_TYPE}
+
+
+BOTH = f"; there is '/blue/{ACTION}' and '/red/{ACTION}' of the same type"
+
+
 @pytest.mark.parametrize(
-    "servers, hint",
+    "servers, action, hint",
     [
-        (lambda: {}, ""),
-        (lambda: {f"/{ACTION}": ACTION_TYPE, "/fibonacci": "actionlib_tutorials/FibonacciAction"}, ""),
-        (lambda: {"/goto": ACTION_TYPE}, "; there is '/goto' of the same type: a misspelt name?"),
-        (
-            lambda: {f"/blue/{ACTION}": ACTION_TYPE, f"/red/{ACTION}": ACTION_TYPE},
-            f"; there is '/blue/{ACTION}' and '/red/{ACTION}' of the same type: which robot is meant?",
-        ),
-        (unanswered, "; the ROS master does not answer"),
+        (lambda: {}, ACTION, ""),
+        (lambda: {f"/{ACTION}": ACTION_TYPE, "/fibonacci": "actionlib_tutorials/FibonacciAction"}, ACTION, ""),
+        (lambda: {"/goto": ACTION_TYPE}, ACTION, "; there is '/goto' of the same type: a misspelt name?"),
+        (of_two_robots, ACTION, f"{BOTH}: which robot is meant?"),
+        (of_two_robots, f"/rde/{ACTION}", f"{BOTH}; did you mean red?"),
+        (unanswered, ACTION, "; the ROS master does not answer"),
     ],
 )
-def test_other_servers_of_the_same_type_are_named(monkeypatch, servers, hint):
+def test_other_servers_of_the_same_type_are_named_and_the_robot_of_a_similar_name(monkeypatch, servers, action, hint):
     monkeypatch.setattr(graph, "action_servers", servers)
-    assert discovery.absence(ACTION) == f"waiting for {ACTION}{hint}"
-
-
-def test_the_robot_whose_name_is_similar_is_suggested(monkeypatch):
-    monkeypatch.setattr(
-        graph, "action_servers", lambda: {f"/blue/{ACTION}": ACTION_TYPE, f"/red/{ACTION}": ACTION_TYPE}
-    )
-    assert discovery.absence(f"/rde/{ACTION}").endswith(" of the same type; did you mean red?")
+    assert discovery.absence(action) == f"waiting for {action}{hint}"
 
 
 @pytest.mark.parametrize("now, up", [(0, False), (5, True)])

@@ -86,25 +86,6 @@ def test_wait_ends_at_the_next_tick(time: Time, before: int) -> None:
     assert waited == [100 * MS]
 
 
-def test_wait_ends_by_an_interruption_while_the_clock_stands(time: Time) -> None:
-    interrupted = threading.Event()
-    waited: List[int] = []
-    waiting = threading.Thread(target=lambda: waited.append(time.ticks.wait_for_next(0, interrupted.is_set)))
-    waiting.start()
-    interrupted.set()
-    time.ticks.wake()
-    waiting.join(10.0)
-    assert waited == [0]
-
-
-def test_on_the_wall_clock_nobody_has_to_tell_of_a_tick(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
-    monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time()))
-    ticks = Ticks(100.0, [], time.set_back.append)
-    last = ticks.newest()
-    assert ticks.wait_for_next(last, never) > last
-
-
 def test_ticks_go_on_when_the_wall_clock_is_set_back(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
     begin, ahead = wall.time(), [3600.0]
