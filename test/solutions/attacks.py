@@ -26,21 +26,12 @@ for place in (os.path.expanduser('~'), '/tmp', '/dev/shm', '/var/tmp', '/'):
 READ = """
 import glob, os
 for path in ('/root/.bashrc', '/etc/shadow', PLAN, *glob.glob(os.path.dirname(FOLDER) + '/*/solution.py'),
-             FOLDER + '/out/server-start.json', FOLDER + '/out/server-job.json'):
+             FOLDER + '/out/server-start.record', FOLDER + '/out/server.job'):
     try:
         if path != FOLDER + '/solution.py':
             print('SUCCESS', path, len(open(path).read()), flush=True)
     except OSError as error:
         print('refused', path, error, flush=True)
-"""
-OUTSIDE = """
-import socket
-for address in (('127.0.0.1', PORT), ('1.1.1.1', 80), ('192.168.0.1', 80)):
-    try:
-        socket.create_connection(address, timeout=1.0)
-        print('SUCCESS', address, flush=True)
-    except OSError as error:
-        print('refused', address, error, flush=True)
 """
 KILL_ALL = """
 import os, signal
@@ -126,11 +117,6 @@ LIES = {  # code after LIE, and what the report says
     # These are graded: nothing of it counts, or only as a topic that nobody hears.
     "early": (
         "replace(wire.DONE, lambda self, b: write(self, wire.DONE, b[:8] + struct.pack('<q', -2**62) + b[16:]))",
-        "",
-    ),
-    "other_topics": (
-        "def lie(self, body):\n    for it in (wire.named('/a', body), body): write(self, wire.MESSAGE, it)\n"
-        "replace(wire.MESSAGE, lie)",
         "",
     ),
 }

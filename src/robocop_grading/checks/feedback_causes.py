@@ -64,7 +64,7 @@ Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause's text; th
 
 
 def _misplaced(index: int) -> Sequence[Hypothesis]:
-    """Coordinates of the goal or the robot that are mistaken for others."""
+    """Poses of the goal or the robot that are mistaken for others."""
     return (
         ("goal_swapped", lambda p: errors_at(p.now, replace(p.goal, x=p.goal.y, y=p.goal.x))[index]),
         ("goal_x_missing", lambda p: errors_at(p.now, replace(p.goal, x=0.0))[index]),
@@ -72,20 +72,16 @@ def _misplaced(index: int) -> Sequence[Hypothesis]:
         ("position_swapped", lambda p: errors_at(Pose2D(p.now.y, p.now.x, p.now.yaw), p.goal)[index]),
         ("position_x_sign", lambda p: errors_at(Pose2D(-p.now.x, p.now.y, p.now.yaw), p.goal)[index]),
         ("position_y_sign", lambda p: errors_at(Pose2D(p.now.x, -p.now.y, p.now.yaw), p.goal)[index]),
+        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[index]),
+        ("relative", lambda p: p.misread(p.start.yaw)[index]),
+        ("relative", lambda p: p.misread(0.0)[index]),
     )
 
 
 FROM_ORIGIN = "angle_from_origin"
 NEVER_FILLED = ("distance_zero", "angle_zero")
 # Causes that explain both errors: the robot's or the goal's position is wrong.
-OF_POSITION = {
-    "relative",
-    "distance_from_origin",
-    FROM_ORIGIN,
-    "position_in_world",
-    "heading_in_world",
-    "pose_of_start",
-}
+OF_POSITION = {"distance_from_origin", FROM_ORIGIN, "position_in_world", "heading_in_world"}
 OF_POSITION |= {name for name, _ in _misplaced(POSITION)}
 # Causes of which the errors are those of a pose that does not change.
 UNCHANGED = {"distance_from_origin", "angle_without_heading", "pose_of_start"}
@@ -104,9 +100,6 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("distance_rounded", lambda p: round(p.truth[POSITION])),
         ("distance_rounded", lambda p: int(p.truth[POSITION])),
         ("distance_is_angle", lambda p: p.truth[ANGLE]),
-        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[POSITION]),
-        ("relative", lambda p: p.misread(p.start.yaw)[POSITION]),
-        ("relative", lambda p: p.misread(0.0)[POSITION]),
     ),
     (
         *_misplaced(ANGLE),
@@ -136,9 +129,6 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("angle_rounded", lambda p: int(p.truth[ANGLE])),
         ("angle_is_distance", lambda p: p.truth[POSITION]),
         ("direction_once", lambda p: wrapped(errors_at(p.start, p.goal)[ANGLE] + p.start.yaw - p.now.yaw)),
-        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[ANGLE]),
-        ("relative", lambda p: p.misread(p.start.yaw)[ANGLE]),
-        ("relative", lambda p: p.misread(0.0)[ANGLE]),
     ),
 )
 OTHERWISE = ("position_error_wrong", "angle_error_wrong")

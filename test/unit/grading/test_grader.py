@@ -72,7 +72,6 @@ def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outsi
 @pytest.mark.parametrize(
     "module, words",
     [
-        ("cv2", "; if the lab has it, name its package in the plan, under packages"),
         ("scipy", "; if the lab has it, name its package in the plan, under packages"),
         ("ropsy", "; did you mean rospy?"),
     ],

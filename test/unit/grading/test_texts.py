@@ -9,7 +9,7 @@ import yaml
 from support import ROOT
 
 from robocop_grading.checks.feedback_causes import CAUSES, NEVER_FILLED, OTHERWISE
-from robocop_grading.texts import sentences, text
+from robocop_grading.texts import text
 
 TEXTS = yaml.safe_load(Path(ROOT, "config", "grading_texts.yaml").read_text(encoding="utf-8"))
 SOURCES = [path.read_text("utf-8") for path in sorted(Path(ROOT, "src", "robocop_grading").rglob("*.py"))]
@@ -26,7 +26,3 @@ def test_every_name_that_the_code_uses_has_a_text_and_every_text_is_used():
 def test_text_is_a_format_string(name):
     fields = [(field, spec) for _, field, spec, _ in string.Formatter().parse(TEXTS[name]) if field is not None]
     assert "{" not in text(name, *(1.5 if spec else "x" for _, spec in fields))
-
-
-def test_sentences_are_parted_by_full_stops():
-    assert sentences("It is late", "", "Is it?", 'They said "no."') == 'It is late. Is it? They said "no."'

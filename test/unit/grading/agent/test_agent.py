@@ -295,16 +295,6 @@ rospy.rostime.set_rostime_initialized(True)
 """
 
 
-def ticked(folder, text, ticks, later=STEP):
-    """What a program prints that lives by rospy's clock for these ticks of 0.1 s, and a while after each."""
-    with Program(folder, BY_THE_CLOCK + text) as program:
-        program.go_on(STEP)
-        for tick in range(1, ticks + 1):
-            program.go_on(tick * 10**8 + later, clock=tick * 10**8)
-        program.process.kill()
-        return program.process.stdout.read()
-
-
 # Its main thread sleeps by rospy's clock, and a thread of its own handles what is sent to the port that it prints.
 SLEEPS_BY_THE_CLOCK = """
 import socket, sys, threading
@@ -353,29 +343,17 @@ for thread in threads:
     thread.join()
 """
 WOKEN = ["0.2 0.1", "0.3 0.1", "0.4 0.25", "0.7 0.25", "0.8 700000000", "1.1 ROS shutdown request"]
-
-
-def test_sleep_by_the_clock_ends_at_the_first_tick_after_it_or_after_a_shutdown(tmp_path):
-    assert ticked(tmp_path, SLEEPERS, 12).splitlines() == WOKEN
-
-
 TOGETHER = """
 import threading
 def sleep(name):
     for _ in range(20):
         rospy.sleep(0.1)
-        print(name, end="", flush=True)
+        print(name, flush=True)
 time.sleep(0.15)
 for name in "ABC":
     threading.Thread(target=sleep, args=[name]).start()
     time.sleep(0.001)
 """
-
-
-def test_threads_whose_sleeps_end_at_the_same_tick_wake_up_one_after_another(tmp_path):
-    assert ticked(tmp_path, TOGETHER, 23, later=2 * STEP) == 20 * "ABC"
-
-
 HOLDS_THE_CONDITION = """
 with rospy.rostime.get_rostime_cond():
     time.sleep(0.3)
@@ -383,8 +361,22 @@ with rospy.rostime.get_rostime_cond():
 """
 
 
-def test_thread_that_waits_while_it_holds_the_clocks_condition_does_not_stop_time(tmp_path):
-    assert ticked(tmp_path, HOLDS_THE_CONDITION, 5, later=0) == "0.3\n"
+@pytest.mark.parametrize(
+    "text, ticks, later, lines",
+    [
+        pytest.param(SLEEPERS, 12, STEP, WOKEN, id="a sleep ends at the first tick after it, or after a shutdown"),
+        pytest.param(TOGETHER, 23, 2 * STEP, [*"ABC"] * 20, id="sleeps that end at one tick end one after another"),
+        pytest.param(HOLDS_THE_CONDITION, 5, 0, ["0.3"], id="a wait with the clock's condition does not stop time"),
+    ],
+)
+def test_threads_live_by_rospys_clock(text, ticks, later, lines, tmp_path):
+    """Ticks of 0.1 s, and a while after each."""
+    with Program(tmp_path, BY_THE_CLOCK + text) as program:
+        program.go_on(STEP)
+        for tick in range(1, ticks + 1):
+            program.go_on(tick * 10**8 + later, clock=tick * 10**8)
+        program.process.kill()
+        assert program.process.stdout.read().splitlines() == lines
 
 
 def test_script_is_the_main_program_and_its_traceback_is_its_own(tmp_path):

@@ -192,10 +192,6 @@ def test_exception_is_named_with_its_file_and_line_and_without_its_folder(
     assert isinstance(verdict, Failed) and (verdict.seen, verdict.cause) == (seen, f"{seen}{place}")
 
 
-def test_check_that_was_not_reached_states_the_reason() -> None:
-    assert CHECKS["cancel"](RIGHT, LIMITS) == NotReached("the goal ended before it could be cancelled")
-
-
 @pytest.mark.parametrize(
     "line",
     [

@@ -2,12 +2,10 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from grading_records import PLAN, RIGHT
 
-from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.cli import as_text
 from robocop_grading.judge import judge
 from robocop_grading.report import write as report
@@ -46,10 +44,3 @@ def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):
     for name in ("report.html", "summary.md", "report.json", "results.json"):
         assert file in (tmp_path / name).read_text(), name
     assert f"graded: {file}" in as_text(grade, {}).splitlines()
-
-
-def test_folder_that_can_not_be_created_is_refused_with_its_name(tmp_path):
-    (tmp_path / "file").write_text("")
-    for folder in (Path("/proc/x"), tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(GradingSetupError, match=f"^the report can't be written to {folder}: "):
-            report.make_report_folder(folder)
