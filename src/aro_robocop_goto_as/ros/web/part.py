@@ -65,12 +65,8 @@ class Inbox:
     def deliver(self) -> None:
         """Handle all waiting messages, each topic's in the order of arrival."""
         for _, waiting, handler in self._subscriptions:
-            while True:
-                try:
-                    message = waiting.popleft()
-                except IndexError:  # none is left
-                    break
-                handler(*message)
+            while waiting:  # rospy's threads only add messages
+                handler(*waiting.popleft())
 
     def close(self) -> None:
         """Unsubscribe."""
