@@ -10,14 +10,13 @@ from harness import DEADLINE, SERVER, SystemTest, call_simulator, wait_for
 
 
 class Server(SystemTest):
-    def drive(self, x=2.0):
-        """A goal to which the robot drives straight ahead; x [m]."""
-        goal = self.goals.send(x, 0.0)
-        self.robot.wait_until_it_drives()
+    def send_while_the_clock_is_stopped(self):
+        """A goal that is executed and has not had a control period."""
+        call_simulator("pause")
+        self.addCleanup(call_simulator, "unpause")
+        goal = self.goals.send(2.0, 0.0)
+        wait_for(lambda: GoalStatus.ACTIVE in goal.states(), "a goal that is executed")
         return goal
-
-    def speeds(self):
-        return [message.linear.x for message in self.robot.commands.messages]
 
     def test_obstacle_ahead_ends_the_goal_and_stops_the_robot(self):
         text = self.goals.send(1.6, 0.73).result("OBSTACLE").result.message  # behind pillar_1
@@ -25,41 +24,40 @@ class Server(SystemTest):
         self.robot.wait_until_it_stands()
 
     def test_cancel_is_served_while_the_clock_is_stopped(self):
-        goal = self.drive()
-        call_simulator("pause")
-        self.addCleanup(call_simulator, "unpause")
+        goal = self.send_while_the_clock_is_stopped()
         goal.cancel()
         self.assertIn("it was cancelled", goal.result("PREEMPTED").result.message)
-        wait_for(lambda: self.speeds()[-1] == 0.0, "a last command of zero")
 
     def test_replaced_goals_each_end_once_and_those_that_never_began_as_actionlib_ends_them(self):
-        first = self.drive()
+        first = self.send_while_the_clock_is_stopped()
         waiting = [self.goals.send(2.0, 0.1 * number) for number in range(20)]
-        self.goals.send(0.3, 0.1).result("REACHED")
+        newest = self.goals.send(0.3, 0.1)
         self.assertIn("a newer goal replaced it", first.result("PREEMPTED").result.message)
+        call_simulator("unpause")
+        newest.result("REACHED")
         ended = [goal.result() for goal in waiting]
         self.assertLessEqual({m.status.status for m in ended}, {GoalStatus.PREEMPTED, GoalStatus.RECALLED})
         recalled = [m.result.message for m in ended if m.status.status == GoalStatus.RECALLED]
         self.assertLessEqual(set(recalled), {""})
 
     def test_goal_stamped_before_the_current_one_is_recalled_and_the_current_one_goes_on(self):
-        current = self.drive(0.6)
+        current = self.goals.send(0.6, 0.0)
+        self.robot.wait_until_it_drives()
         stamped_earlier = self.goals.send(0.1, 0.1, stamp=rospy.Time(0, 1))  # of a client whose clock is behind
         self.assertEqual(stamped_earlier.result().status.status, GoalStatus.RECALLED)
         current.result("REACHED")
 
-    def test_changed_parameters_hold_for_the_goal_that_runs_and_contradictions_are_refused(self):
+    def test_changed_parameters_hold_for_the_goal_that_is_executed_and_contradictions_are_refused(self):
         tuning = Client(SERVER, timeout=DEADLINE)
         self.addCleanup(tuning.update_configuration, {"max_linear_velocity": 0.2})
-        goal = self.drive()
-        wait_for(lambda: self.speeds()[-1] == 0.2, "full speed")
+        goal = self.send_while_the_clock_is_stopped()
         shown = tuning.update_configuration({"max_linear_velocity": 0.16})
         self.assertEqual((shown["max_linear_velocity"], rospy.get_param(f"{SERVER}/max_linear_velocity")), (0.16, 0.16))
-        wait_for(lambda: self.speeds()[-1] == 0.16, "the lower speed")
         self.goals.log.wait_for(lambda m: "max_linear_velocity 0.16, was 0.2" in m.msg, "the change")
         shown = tuning.update_configuration({"min_linear_velocity": 0.5, "linear_gain": 1.0})
         self.assertEqual((shown["min_linear_velocity"], shown["linear_gain"]), (0.03, 0.5))
         refused = "min_linear_velocity: expected at most max_linear_velocity 0.16, got 0.5; nothing is changed"
         self.goals.log.wait_for(lambda m: refused in m.msg, "a refusal")
-        goal.cancel()
-        goal.result("PREEMPTED")
+        call_simulator("unpause")
+        goal.result("REACHED")
+        self.assertEqual(max(message.linear.x for message in self.robot.commands.messages), 0.16)
