@@ -42,7 +42,7 @@ class GoalTransformer:
         Waits up to `timeout` [s, wall] for the transform at the goal's stamp. Then it uses the latest odometry if the
         odometry connects the frames, otherwise the latest transform of TF. If only the odometry connects the frames,
         it is used without waiting. FrameError if the frames are not connected, and for a position that is not finite
-        or beyond MAX_COORDINATE.
+        or beyond MAX_COORDINATE, before or after the transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)
@@ -52,11 +52,13 @@ class GoalTransformer:
         if frame == self.goal_frame:
             return Point(x, y, z)
         try:
-            return self._transform(Point(x, y, z), frame, pose.header.stamp)
+            position = self._transform(Point(x, y, z), frame, pose.header.stamp)
         except tf2_ros.TransformException as error:
             known = yaml.safe_load(self.buffer.all_frames_as_yaml()) or ()
             within = f"within {self.timeout:g} s: {str(error).strip()}{did_you_mean(frame, known)}"
             raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} {within}") from error
+        convert.require_near(x=position.x, y=position.y, z=position.z)
+        return position
 
     def pose_of(self, frame: str) -> Optional[Pose3D]:
         """The newest pose of a frame in goal_frame; None while TF does not connect them."""

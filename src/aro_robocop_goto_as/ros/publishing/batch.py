@@ -62,6 +62,7 @@ class Batch:
     ) -> None:
         """`last`: messages sent after all others, such as the clock; `filled`: messages filled but not sent."""
         sent = [*messages, *last]
+        self._kept = sent, filled  # batch.c also fills messages without a subscriber
         self._parcels = [(*posted, link) for posted in sent for link in posted[0].links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)

@@ -126,7 +126,7 @@ class Goals(Part):
             estimate.pose.covariance = convert.diagonal(variances)
             requests.publish(where, "initialpose", estimate)
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._robot, self._feedback, self._executing, self._newest = robot, None, None, None
         self._status = inbox.subscribe(absolute(robot, f"{ACTION}/status"), GoalStatusArray, self._on_status)
         inbox.subscribe(absolute(robot, f"{ACTION}/feedback"), GoToPositionActionFeedback, self._on_feedback)
@@ -165,7 +165,8 @@ class Goals(Part):
         if self._executing is False:
             self._feedback = None
         answering = connected if not state.recorded else self._executing is not None
-        self.context.state.change(executing=self._executing, answering=answering)
+        if self._robot == self.context.state.now.selected:  # not of a robot that was chosen just now
+            self.context.state.change(executing=self._executing, answering=answering)
         rows = self._show_goal(state.selected)
         if self._feedback is not None:
             feedback = self._feedback

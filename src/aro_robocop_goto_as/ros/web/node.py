@@ -94,7 +94,7 @@ class WebNode:
         cameras = Cameras(server)
         self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
-        self._always, self._shown = Inbox(), Inbox()
+        self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._robot: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
         self._asked = 0.0  # [s, wall] when the parts asked the master last
         self._visitors = threading.Event()  # a browser has come or gone
@@ -106,7 +106,7 @@ class WebNode:
         while not rospy.is_shutdown():
             visited = bool(self._server.get_clients())
             self._connect(visited)
-            for inbox in (self._shown, self._always):  # feedback before the result
+            for inbox in (self._system, self._detail, self._always):  # feedback before the result
                 inbox.deliver()
             if visited:
                 with self._server.atomic():
@@ -121,11 +121,16 @@ class WebNode:
         """Subscribe to the shown topics, if anybody looks. Only this needs the ROS master, and may wait for it."""
         state = self._state.now
         wanted = state.selected if visited else None
+        if wanted is None:
+            self._system.close()
+        elif self._robot is None:
+            for part in self._parts:
+                part.subscribe(self._system)
         if wanted != self._robot:
             self._robot = wanted
-            self._shown.close()
+            self._detail.close()
             for part in self._parts if wanted is not None else ():
-                part.subscribe(self._shown, state.selected)
+                part.subscribe_to_robot(self._detail, state.selected)
         if time.monotonic() - self._asked >= ASK_PERIOD:
             self._asked = time.monotonic()
             for part in self._parts:

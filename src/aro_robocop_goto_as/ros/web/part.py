@@ -81,11 +81,11 @@ class Part:
     def __init__(self, context: Context) -> None:
         self.context = context
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
-        """Forget the previous robot, and subscribe to topics of the system and of the newly selected robot.
+    def subscribe(self, inbox: Inbox) -> None:
+        """Subscribe to topics of the system; called when the first browser opens the page."""
 
-        Called also when the first browser opens the page.
-        """
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        """Forget the previous robot, and subscribe to the topics of the newly selected robot."""
 
     def ask_master(self, state: PageState, inbox: Inbox) -> None:
         """Ask the ROS master as needed, and subscribe to topics that are received also without a browser.

@@ -57,7 +57,7 @@ class Plot(Part):
         self._shown_at = 0.0  # [s, wall]
         self._robot = ""
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         if robot != self._robot:
             self._robot, self._changed = robot, True
             self._samples.clear()

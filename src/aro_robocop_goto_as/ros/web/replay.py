@@ -27,7 +27,7 @@ class Replay(Part):
         self._time = gui.add_html("")
         gui.add_button_group("Recording", (PLAY, PAUSE)).on_click(lambda event: _pause(event.target.value == PAUSE))
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox) -> None:
         """Subscribe to the recorded clock."""
         inbox.subscribe("/clock", Clock, self._on_clock)
 

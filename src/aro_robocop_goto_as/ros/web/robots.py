@@ -30,9 +30,11 @@ class Robots(Part):
         self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
         self._moved: Set[str] = set()  # frames with a transform on tf
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox) -> None:
         inbox.subscribe("/tf", TFMessage, self._on_tf, TRANSFORMS)
         inbox.subscribe("/tf_static", TFMessage, self._on_tf, None)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:

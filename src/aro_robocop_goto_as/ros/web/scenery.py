@@ -35,9 +35,12 @@ class Scenery(Part):
         self._map: Optional[OccupancyGrid] = None
         self._robot = ""
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox) -> None:
+        self._world = MarkerStore()
         inbox.subscribe(absolute(SIMULATOR, "world"), MarkerArray, lambda _, message: self._world.apply(message), None)
         inbox.subscribe("/map", OccupancyGrid, self._on_map)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._server, self._scan = MarkerStore(), None
         if robot != self._robot:
             self._robot = robot

@@ -40,8 +40,10 @@ class Status(Part):
 
         self._robot.on_update(on_select)
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe(self, inbox: Inbox) -> None:
         inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_sim)
+
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._on_bridge(0.0, String(""))
         self._reports = inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
 

@@ -35,7 +35,7 @@ class View(Part):
         self._image_at = 0.0  # [s, wall]
         self._trail, self._odom = Trail(), ""  # and its frame
 
-    def subscribe(self, inbox: Inbox, robot: str) -> None:
+    def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         self._trail = Trail()
         self._message = None
         self._image.visible = False

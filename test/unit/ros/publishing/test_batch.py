@@ -1,8 +1,10 @@
 """A batch: every message reaches every subscriber that reads, whole and in order; one that stands still is kept."""
 
+import gc
 import socket
 import struct
 import threading
+import weakref
 from types import SimpleNamespace
 from typing import Any, Callable, Iterator, List
 
@@ -99,6 +101,15 @@ def counted(beams: int) -> PackedMessage:
 def scan(beams: int) -> PackedMessage:
     """A message of about 4 bytes a beam."""
     return PackedMessage(LaserScan(ranges=[1.0] * beams))
+
+
+def test_a_message_without_a_subscriber_lives_as_long_as_its_batch_which_fills_it() -> None:
+    message = counted(10)
+    kept, batch = weakref.ref(message), Batch([(topic_of(), message)])
+    del message
+    gc.collect()
+    batch.send(7 * 10**9)
+    assert struct.unpack_from("<2I", kept().data, 4) == (1, 7)  # type: ignore[union-attr]  # the header's seq and secs
 
 
 def test_each_subscriber_gets_the_messages_of_its_topics_in_order_also_of_steps_that_follow_at_once(

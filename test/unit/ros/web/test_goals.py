@@ -21,7 +21,7 @@ def made(**state):
     context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
     part, inbox = goals.Goals(context), MagicMock()
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
-    part.subscribe(inbox, "red")
+    part.subscribe_to_robot(inbox, "red")
     return part, context
 
 

@@ -37,7 +37,8 @@ def test_the_cameras_turn_to_a_world_once():
     cameras, inbox = MagicMock(), MagicMock()
     state = SharedState(PageState(root="map"))
     scenery = Scenery(Context(MagicMock(), PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"), cameras)
-    scenery.subscribe(inbox, "")
+    scenery.subscribe(inbox)
+    scenery.subscribe_to_robot(inbox, "")
     receive = inbox.subscribe.call_args_list[0][0][2]
     for number in range(2):  # the second one is spawned while somebody looks
         shapes = [

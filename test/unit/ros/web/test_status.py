@@ -50,7 +50,7 @@ def test_a_server_that_executes_no_goal_is_ready_unless_the_bridge_reports_somet
 def test_a_bridge_that_has_ended_no_longer_says_that_a_goal_waits():
     state = PageState(answering=True)
     status = made(state)
-    status.subscribe(MagicMock(), "")
+    status.subscribe_to_robot(MagicMock(), "")
     status._on_bridge(
         0.0, MagicMock(data="waiting for robocop_goto_as; goal x 0.30 y 0.00 in map waits for it; advice")
     )
