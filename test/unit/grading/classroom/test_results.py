@@ -4,21 +4,12 @@ import csv
 import io
 import shutil
 
-from grading_records import PLAN, keep
+from grading_records import PLAN, judged, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import Result, Results, page
 from robocop_grading.classroom.table import table
-from robocop_grading.judge import CheckResult, Outcome
-
-
-def judged(name, part, points, cause="", extra=False):
-    """The result of a check."""
-    failure, outcome = Failed("", "", 0.0, cause), Outcome.FAILED if cause else Outcome.PASSED
-    return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure if cause else None)
-
 
 RESULTS = (
     Result(
