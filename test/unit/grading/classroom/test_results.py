@@ -83,6 +83,7 @@ def test_the_overview_counts_no_cause_of_a_failure_that_follows_from_another_one
     keep(results, "ben", 0.0, "another mistake", follows="reaches_goal")
     html = page("class", [results.read("anna"), results.read("ben")], PLAN, {}, running=False)
     assert "1 × a mistake" in html and "another mistake" not in html
+    assert "0 of 2" in html, "of cancel, as stored"
 
 
 def test_the_overview_counts_checks_and_causes_and_escapes_them():
