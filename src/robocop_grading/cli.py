@@ -61,14 +61,14 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
         if result.outcome is Outcome.NOT_REACHED:
             not_reached.setdefault(result.why, []).append(result)
             continue
-        lines.append(f"{LABELS[result.outcome]:11}  {_points([result])}  {_marked(result.sentence, result)}")
+        lines.append(f"{LABELS[result.outcome]:11}  {_points([result])}  {result.marked(result.sentence)}")
         lines.append(f"{'':11}  {result.words}")
     for why, results in not_reached.items():
-        names = ", ".join(_marked(result.name, result) for result in results)
+        names = ", ".join(result.marked(result.name) for result in results)
         lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {_points(results)}  {names}: {why}")
     if passed:
         every = len(passed) == len(grade.checks)
-        names = "every check" if every else ", ".join(_marked(check.name, check) for check in passed)
+        names = "every check" if every else ", ".join(check.marked(check.name) for check in passed)
         lines.append(f"{LABELS[Outcome.PASSED]:11}  {_points(passed)}  {names}")
     lines += [f"graded: {file}" for file in grade.files]
     lines += [f"problem: {problem}" for problem in grade.problems]
@@ -83,10 +83,6 @@ def _points(checks: Sequence[CheckResult]) -> str:
     """The points of checks, without extra ones unless all of them are."""
     counted = [check for check in checks if not check.extra] or checks
     return f"{total(it.points for it in counted):4g} / {total(it.points_available for it in counted):<4g}"
-
-
-def _marked(text: str, check: CheckResult) -> str:
-    return f"{text} (extra)" if check.extra else text
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:

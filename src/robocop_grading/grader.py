@@ -17,7 +17,6 @@ from .report import write as report
 from .runner import Recorded, Runner
 from .submission import Script, Submission
 
-ATTEMPTS = 2
 KILLED = " by a SIGKILL that did not come from the grader"
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
 MISSING = "Python's module {} is not installed here{}"
@@ -64,13 +63,12 @@ def _missing_modules(records: Mapping[str, Record]) -> List[str]:
 
 
 def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:
-    for attempt in range(1, ATTEMPTS + 1):
-        recorded = runner.run(submission, script, out)
-        killed = recorded.killed + KILLED + (EXCUSE if recorded.excused else "")
-        if not recorded.killed or (attempt == ATTEMPTS and not recorded.excused):
-            break
-        if attempt == ATTEMPTS:
-            raise UngradableError(f"not gradable: {killed}, as in the previous attempt")
-        notes.append(f"{script.part}: {killed}; this part was run again")
+    recorded = runner.run(submission, script, out)
+    if recorded.killed:
+        excuse = EXCUSE if recorded.excused else ""
+        notes.append(f"{script.part}: {recorded.killed}{KILLED}{excuse}; this part was run again")
         remove(out)
+        recorded = runner.run(submission, script, out)
+        if recorded.killed and recorded.excused:
+            raise UngradableError(f"not gradable: {recorded.killed}{KILLED}{EXCUSE}, as in the previous attempt")
     return recorded

@@ -43,6 +43,10 @@ class CheckResult:
     why: str = ""  # reason for NOT_REACHED
     follows: str = ""  # name of the check whose failure is the reason for this one, failed or not reached
 
+    def marked(self, text: str) -> str:
+        """A text about the check, which says if the check is extra."""
+        return f"{text} (extra)" if self.extra else text
+
     @property
     def words(self) -> str:
         """The outcome with its reason."""

@@ -110,7 +110,8 @@ def _ready(
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
     notes = [*found.notes, *_ungraded_bridge(found.choices)]
     for script in scripts:
-        notes += [*_obstacles(script.part, found.choices[script.part], is_loose), *_advice(script)]
+        notes += _obstacles(script.part, found.choices[script.part], is_loose)
+        notes += [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
     return Submission(name, reads, environment, scripts, found.parameters, notes)
 
 
@@ -167,10 +168,6 @@ def _ungraded_bridge(choices: Mapping[str, Choice]) -> Iterator[str]:
     if set(choices) == {"server"} and listens_to_clicks(choices["server"].path):
         name = choices["server"].path.name
         yield f"bridge: not graded: {name} has a bridge, too; only one with a script of its own can be graded"
-
-
-def _advice(script: Script) -> List[str]:
-    return [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
 
 
 def _obstacles(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:

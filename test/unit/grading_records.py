@@ -75,12 +75,16 @@ def graded(*records: Record, problem: str = "") -> Grade:
     return judge("anna", PLAN, {part: {record.name: record for record in records}}, {part: problem})
 
 
-def keep(results: Results, name: str, points: float, cause: str = "", follows: str = "") -> None:
-    """Store the report of a hand-in with one check, as a worker does."""
+def judged(name: str, part: str, points: float, cause: str = "", extra: bool = False, follows: str = "") -> CheckResult:
+    """The result of a check, failed if there is a cause."""
     failure = Failed("", "", 0.0, cause) if cause else None
     outcome = Outcome.FAILED if cause else Outcome.PASSED
-    check = CheckResult("cancel", "server", "", outcome, points, 1.0, False, failure=failure, follows=follows)
-    keep_grade(results, Grade(name, (check,)))
+    return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure, follows=follows)
+
+
+def keep(results: Results, name: str, points: float, cause: str = "", follows: str = "") -> None:
+    """Store the report of a hand-in with one check, as a worker does."""
+    keep_grade(results, Grade(name, (judged("cancel", "server", points, cause, follows=follows),)))
 
 
 def keep_grade(results: Results, grade: Grade) -> None:

@@ -1,5 +1,6 @@
 """Collects the hand-ins of a folder, each with a digest of its content."""
 
+import contextlib
 from pathlib import Path
 from typing import Dict, List, Tuple
 
@@ -26,17 +27,12 @@ def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[Dict[str, str
         if path.name in (*reserved, *EXPORTED) and path.is_file():
             others.append(path.name)
         elif not path.name.startswith(".") and path.name != "__MACOSX":
-            hand_ins[path.name] = _digest(path)
+            hand_ins[path.name] = ""
+            with contextlib.suppress(RobocopError):  # its row says why
+                hand_ins[path.name] = unpacked(path).digest
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected {EXPECTED} for each")
     return hand_ins, others
-
-
-def _digest(path: Path) -> str:
-    try:
-        return unpacked(path).digest
-    except RobocopError:  # its row says why
-        return ""
 
 
 def unpacked(path: Path) -> unpacking.Unpacked:

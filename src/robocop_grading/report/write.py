@@ -95,14 +95,10 @@ def as_classroom(grade: Grade) -> Dict[str, object]:
     }
 
 
-def _name(check: CheckResult) -> str:
-    return check.sentence + (" (extra)" if check.extra else "")
-
-
 def _github_test(check: CheckResult) -> Dict[str, object]:
     passed = check.outcome is Outcome.PASSED
     return {
-        "name": _name(check),
+        "name": check.marked(check.sentence),
         "status": "pass" if passed else "fail",
         "score": check.points,
         "message": "" if passed else printable(check.words),
@@ -119,7 +115,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
     for check in grade.checks:
         passed = check.outcome is Outcome.PASSED
         test: Dict[str, object] = {
-            "name": printable_lines(_name(check)),
+            "name": printable_lines(check.marked(check.sentence)),
             "number": f"{check.part}.{check.name}",
             "output": printable_lines(check.words),
         }

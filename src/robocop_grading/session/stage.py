@@ -113,7 +113,8 @@ class Stage:
         """Advance by one control tick and publish what is due; return the true state at the tick's end."""
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
-            until = end if self.node is None else min(end, self._step_at(self.node.next_ns))
+            # Until the first step that is not before the time at which the node does something by itself.
+            until = end if self.node is None else min(end, -(-self.node.next_ns * self.sim.rate // NANOSECONDS))
             observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if observed is not None:
                 self._publish(observed)
@@ -125,10 +126,6 @@ class Stage:
         """Advance, by the clock as well, to halfway between two transforms of the robot."""
         self.sim.advance({}, self.sim.rate // PARAMS.sensors.odometry.odom_rate // 2)
         self.clock_ns = self.sim.stamp_ns
-
-    def _step_at(self, stamp_ns: int) -> int:
-        """The first step that is not before a simulated time [ns]."""
-        return -(-stamp_ns * self.sim.rate // NANOSECONDS)
 
     def digest(self, meanwhile: Callable[[], object] = lambda: None) -> None:
         """Let the node do what it does until now; `meanwhile` is called once, while it works."""

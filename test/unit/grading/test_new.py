@@ -10,7 +10,7 @@ from support import ROOT
 
 from robocop_grading.new import make_autograder
 
-RESULT = '{"score": 5.0}'
+RESULT = {"score": 5.0}
 # Writes its arguments, and does what the test says.
 STAND_IN = """#!/usr/bin/env bash
 echo "$*" >>"$AUTOGRADER/calls"
@@ -30,7 +30,7 @@ def autograder(tmp_path):
 
     def run(does, program="run_autograder"):
         (tmp_path / "bin").mkdir()
-        (tmp_path / "bin" / "robocop").write_text(STAND_IN % (RESULT, does))
+        (tmp_path / "bin" / "robocop").write_text(STAND_IN % (json.dumps(RESULT), does))
         (tmp_path / "bin" / "robocop").chmod(0o755)
         environment = {"PATH": f"{tmp_path}/bin:/usr/bin:/bin", "AUTOGRADER": str(top), "TMPDIR": str(tmp_path)}
         done = subprocess.run(["bash", top / "source" / program], env=environment, capture_output=True, text=True)
@@ -39,32 +39,27 @@ def autograder(tmp_path):
     return run
 
 
-def results(top):
-    return json.loads((top / "results" / "results.json").read_text())
+# What ./robocop does where the sandbox can't run, and with nothing to grade.
+REFUSED = 'case "$*" in *--unsafe) write;; *) echo "robocop grade: bubblewrap can\'t run here: no" >&2; exit 1;; esac'
+NOTHING = 'echo "robocop grade: nothing to grade" >&2; exit 1'
+NO_POINTS = {"score": 0, "output": "robocop grade: nothing to grade\n"}
 
 
-def test_points_reach_gradescope_also_where_checks_failed(autograder):
-    status, top = autograder("write; exit 1")
-    assert status == 0 and results(top) == {"score": 5.0}
-    assert (top / "calls").read_text().startswith(f"grade {top}/submission --report ")
-
-
-def test_sandbox_is_left_out_only_where_it_cannot_run(autograder):
-    refused = "robocop grade: bubblewrap can't run here: no namespaces"
-    status, top = autograder(f'case "$*" in *--unsafe) write;; *) echo "{refused}" >&2; exit 1;; esac')
-    assert status == 0 and results(top) == {"score": 5.0}
-    first, second = (top / "calls").read_text().splitlines()
-    assert "--unsafe" not in first and second.endswith("--unsafe")
-
-
-def test_hand_in_that_is_nothing_gets_no_points_and_the_reason(autograder):
-    status, top = autograder('echo "robocop grade: nothing to grade" >&2; exit 1')
-    assert status == 0 and results(top) == {"score": 0, "output": "robocop grade: nothing to grade\n"}
-
-
-def test_where_the_machine_has_no_time_there_is_no_result(autograder):
-    status, top = autograder("exit 3")
-    assert status == 1 and not (top / "results" / "results.json").exists()
+@pytest.mark.parametrize(
+    "does, status, result, unsafe",
+    [
+        pytest.param("write; exit 1", 0, RESULT, [False], id="points, also where checks failed"),
+        pytest.param(REFUSED, 0, RESULT, [False, True], id="without the sandbox where it cannot run, and only there"),
+        pytest.param(NOTHING, 0, NO_POINTS, [False], id="no points, and the reason"),
+        pytest.param("exit 3", 1, None, [False], id="nothing where the machine has no time"),
+    ],
+)
+def test_gradescope_gets_the_points_or_the_reason(does, status, result, unsafe, autograder):
+    done, top = autograder(does)
+    path, calls = top / "results" / "results.json", (top / "calls").read_text().splitlines()
+    assert done == status and (json.loads(path.read_text()) if path.exists() else None) == result
+    assert all(call.startswith(f"grade {top}/submission --report ") for call in calls)
+    assert [call.endswith(" --unsafe") for call in calls] == unsafe
 
 
 def test_where_robocop_is_installed_setup_does_nothing(autograder):

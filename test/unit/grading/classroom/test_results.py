@@ -4,21 +4,12 @@ import csv
 import io
 import shutil
 
-from grading_records import PLAN, keep
+from grading_records import PLAN, judged, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import Result, Results, page
 from robocop_grading.classroom.table import table
-from robocop_grading.judge import CheckResult, Outcome
-
-
-def judged(name, part, points, cause="", extra=False):
-    """The result of a check."""
-    failure, outcome = Failed("", "", 0.0, cause), Outcome.FAILED if cause else Outcome.PASSED
-    return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure if cause else None)
-
 
 RESULTS = (
     Result(
@@ -92,6 +83,7 @@ def test_the_overview_counts_no_cause_of_a_failure_that_follows_from_another_one
     keep(results, "ben", 0.0, "another mistake", follows="reaches_goal")
     html = page("class", [results.read("anna"), results.read("ben")], PLAN, {}, running=False)
     assert "1 × a mistake" in html and "another mistake" not in html
+    assert "0 of 2" in html, "of cancel, as stored"
 
 
 def test_the_overview_counts_checks_and_causes_and_escapes_them():

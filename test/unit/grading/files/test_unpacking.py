@@ -60,16 +60,22 @@ def link(name, target, kind=tarfile.SYMTYPE):
     return info
 
 
+def written(top, files):
+    """The folder with these files."""
+    top.mkdir(parents=True, exist_ok=True)
+    for path, content in files.items():
+        (top / path).parent.mkdir(parents=True, exist_ok=True)
+        (top / path).write_bytes(content() if callable(content) else content)
+    return top
+
+
 @pytest.fixture
 def unpacked(tmp_path):
     """Write a folder of files, unpack it; then the paths of files and links below it."""
 
     def run(files, name="anna"):
-        top, out = tmp_path / "class" / name, tmp_path / "out"
-        for path, content in files.items():
-            (top / path).parent.mkdir(parents=True, exist_ok=True)
-            (top / path).write_bytes(content)
-        unpacking.unpack(top).write(out / name)
+        out = tmp_path / "out"
+        unpacking.unpack(written(tmp_path / "class" / name, files)).write(out / name)
         return sorted(str(path.relative_to(out / name)) for path in (out / name).rglob("*") if not path.is_dir())
 
     return run
@@ -150,12 +156,8 @@ def test_what_can_not_be_graded_states_what_was_found(files, problem, tmp_path, 
     monkeypatch.setattr(archives, "MAX_BYTES", 10_000)
     monkeypatch.setattr(archives, "MAX_TAR_BYTES", 1024**2)
     monkeypatch.setattr(archives, "MAX_ENTRIES", 20)
-    (tmp_path / "eve").mkdir()
-    for name, content in files.items():
-        (tmp_path / "eve" / name).parent.mkdir(exist_ok=True)
-        (tmp_path / "eve" / name).write_bytes(content() if callable(content) else content)
     with pytest.raises(SubmissionError) as error:
-        unpacking.unpack(tmp_path / "eve")
+        unpacking.unpack(written(tmp_path / "eve", files))
     assert problem in str(error.value)
 
 
@@ -248,10 +250,7 @@ def test_what_a_desktop_adds_is_left_out(unpacked):
     ],
 )
 def test_only_a_folder_without_anything_to_grade_outside_of_its_archives_is_unpacked(files, is_packed, tmp_path):
-    for name, content in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_bytes(content)
-    assert unpacking.is_packed(tmp_path) is is_packed
+    assert unpacking.is_packed(written(tmp_path, files)) is is_packed
 
 
 def test_single_archive_is_graded_as_what_it_contains(tmp_path):

@@ -1,4 +1,4 @@
-"""Commands of a build end, whatever they do."""
+"""Commands of a build end, whatever they do, and leave what they have made."""
 
 import pytest
 
@@ -7,10 +7,19 @@ from robocop_grading.sandbox import build
 from robocop_hosting.workspace import output_of
 
 
-def test_command_that_waits_for_something_that_does_not_come_is_ended(sandbox, tmp_path, monkeypatch):
+@pytest.fixture
+def run(sandbox, tmp_path):
+    """Runs a command of a build in the folder workspace: its exit status, output and errors."""
     (tmp_path / "workspace").mkdir()
-    run = build.runner_in(sandbox, tmp_path / "workspace", [])
-    assert output_of(run, ["echo", "done"], {}) == (0, b"done\n", "")
+    return lambda command: output_of(build.runner_in(sandbox, tmp_path / "workspace", []), command, {})
+
+
+def test_command_writes_to_the_folder_of_the_build(run, tmp_path):
+    assert run(["touch", "made"]) == (0, b"", "")
+    assert (tmp_path / "workspace" / "made").exists()
+
+
+def test_command_that_waits_for_something_that_does_not_come_is_ended(run, monkeypatch):
     monkeypatch.setattr(build, "BUILD_TIMEOUT", 1.0)
     with pytest.raises(GradingError, match="sleep was not done within 1 s"):
-        output_of(run, ["sleep", "600"], {})
+        run(["sleep", "600"])
