@@ -70,6 +70,7 @@ def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
 
 def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make) -> None:
     assert _params("real").sensors.scan.lidar().range_max == 3.5
+    assert _params("real").topics.covariances == "real"
     seen = drive(simulator("stage_1", **_profile("real")), STANDSTILL, 1.0, everything(1))
     expected = dict(scan=5, odom=30, joints=30, imu=200, bumper=0)
     assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected

@@ -85,7 +85,7 @@ def is_left_out(path: PurePosixPath) -> bool:
 def unpack_archive(file: "IO[bytes]", contents: Contents, prefix: str = "") -> None:
     """Add the files and links of a zip or tar archive, each below `prefix`; SubmissionError if that is not possible."""
     try:
-        (_unpack_zip if zipfile.is_zipfile(file) else _unpack_tar)(file, contents, prefix)
+        (_unpack_zip if _is_zip(file) else _unpack_tar)(file, contents, prefix)
     except SubmissionError:
         raise
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
@@ -94,6 +94,12 @@ def unpack_archive(file: "IO[bytes]", contents: Contents, prefix: str = "") -> N
         for folder in map(str, PurePosixPath(path).parents):  # what is below a link would be written elsewhere
             if folder in contents.entries and not stat.S_ISDIR(contents.entries[folder].mode):
                 raise SubmissionError(f"{path}: {folder} is a file or a link, too")
+
+
+def _is_zip(file: "IO[bytes]") -> bool:
+    """Return whether a file is a zip; a tar that ends with a zip looks like one to zipfile."""
+    file.seek(0)
+    return file.read(2) == b"PK" and zipfile.is_zipfile(file)
 
 
 def _unpack_zip(file: "IO[bytes]", contents: Contents, prefix: str) -> None:

@@ -1,4 +1,4 @@
-"""Whatever node ends, each goal ends once, the robot stops, and the next goal is reached.
+"""When the server or the simulator ends, each goal ends once, the robot stops, and the next goal is reached.
 
 What goes wrong with odometry, scans and goals is in server_test.py and test/unit/ros/server.
 """

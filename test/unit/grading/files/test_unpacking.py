@@ -109,6 +109,7 @@ def test_archive_beside_other_files_is_unpacked(name, make, unpacked):
         ("eve.zip", "in.zip", lambda: zipped({"in.zip": zipped(ONE)})),
         ("eve.zip", "a/in.tgz", lambda: zipped({"a/in.tgz": tarred(ONE, "gz")})),
         ("eve.tgz", "in.zip", lambda: tarred({"in.zip": zipped(ONE)}, "gz")),
+        ("eve.tar", "in.zip", lambda: tarred({"in.zip": zipped(ONE)})),  # zipfile takes the outer one for the inner one
     ],
 )
 def test_archive_in_an_archive_is_unpacked(outer, inner, make, unpacked):
@@ -143,6 +144,7 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
         ({"a.zip": lambda: zipped({SERVER: bytes(10_001)})}, "a.zip: larger than 64 MB"),
         (dict.fromkeys(["a.zip", "b.zip"], lambda: zipped({SERVER: bytes(6_000)})), "b.zip: larger than 64 MB"),
         ({"a.zip": lambda: encrypted({SERVER: b"pass"})}, "encrypted, password required"),
+        ({"a.zip": lambda: zipped({f"{'d/' * 101}{SERVER}": b""})}, "a.zip: expected at most 100 nested folders"),
         ({"a.zip": lambda: long_list(ONE)}, "a.zip: expected at most 5000 files"),
         ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 64 MB"),
         ({"a.tgz": lambda: tarred({"build/x": bytes(1024**2)}, "gz")}, "a.tgz: larger than 1 MB"),

@@ -37,6 +37,10 @@ def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
     assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")
 
 
+def test_folder_of_the_report_is_made_with_those_above_it(tmp_path):
+    assert report.make_report_folder(tmp_path / "a" / "b").is_dir()
+
+
 def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):
     file = "server: scripts/robocop_goto_as.py; not graded: backup/robocop_goto_as.py"
     grade = replace(judge("anna", PLAN, {"server": {"left": RIGHT}}, {}), files=(file,))

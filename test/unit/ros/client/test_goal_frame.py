@@ -17,14 +17,14 @@ from aro_robocop_goto_as.ros.client.goal_frame import MAX_STAMP, GoalTransformer
 
 @pytest.fixture
 def transformer(monkeypatch):
-    """Makes one for goals in odom, which knows the x [m] of base at these times [s]; its warnings."""
+    """Makes one for goals in odom (default: base), which knows the x [m] of base at these times [s]; its warnings."""
     monkeypatch.setattr(goal_frame.tf2_ros, "Buffer", functools.partial(tf2_ros.Buffer, debug=False))
     monkeypatch.setattr(goal_frame.tf2_ros, "TransformListener", lambda buffer: None)
     warnings = []
     monkeypatch.setattr(rospy, "logwarn", lambda text, *_: warnings.append(text))
 
     def make(x_at, odometry=None):
-        made = GoalTransformer("odom", "odom", 0.01, lambda: odometry)
+        made = GoalTransformer("odom", "base", 0.01, lambda: odometry)
         for time, x in x_at.items():
             base = TransformStamped(child_frame_id="base")
             base.header.frame_id, base.header.stamp = "odom", rospy.Time(time)
@@ -70,8 +70,8 @@ def test_goal_is_transformed_at_its_stamp_or_else_by_the_newest_pose(transformer
 
 
 def test_goal_without_a_frame_is_taken_in_the_default_one_with_a_warning(transformer):
-    made, warnings = transformer({})
-    assert made.resolve(PoseStamped()).x == 0.0
+    made, warnings = transformer({10: 1.0})
+    assert made.resolve(PoseStamped()).x == 1.0
     assert len(warnings) == 1 and warnings[0].startswith("goal without frame_id; assuming the default ")
 
 

@@ -20,7 +20,7 @@ class System:
     """A bridge whose server is up, the calls of its client and its statuses; also stands for its client."""
 
     def __init__(self, monkeypatch):
-        self.topics, self.calls, self.statuses = {}, [], []
+        self.topics, self.calls, self.statuses, self.timers, self.transforms = {}, [], [], [], []
         self.on_cancel = self.on_status = self.wait_for_result = self.stop_tracking_goal = lambda: None
         self.is_up = True
         self.get_state = lambda: GoalStatus.ACTIVE
@@ -28,13 +28,13 @@ class System:
         monkeypatch.setattr(rospy, "is_shutdown", lambda: next(checks, True))
         monkeypatch.setattr(rospy, "Subscriber", lambda name, _, callback, **__: self.topics.update({name: callback}))
         monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: SimpleNamespace(publish=self.publish))
-        monkeypatch.setattr(rospy, "Timer", lambda *_, **__: None)
+        monkeypatch.setattr(rospy, "Timer", lambda period, report, **__: self.timers.append((period.to_sec(), report)))
         monkeypatch.setattr(rviz_bridge.actionlib, "SimpleActionClient", lambda *_: self)
         monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: self.is_up)
         monkeypatch.setattr(rviz_bridge.discovery, "absence", lambda action: "absent")
         monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda action: "advice")
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
-        monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *_: transformer)
+        monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *given: self.transforms.append(given) or transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())
 
     def publish(self, status):
@@ -153,3 +153,11 @@ def test_status_tells_of_the_last_goal(system):
 )
 def test_ending_is_the_state_and_the_message_of_the_result(message, text):
     assert ending(GoalStatus.ABORTED, None if message is None else GoToPositionResult(message=message)) == text
+
+
+def test_status_is_reported_periodically_and_odometry_and_frames_are_those_of_the_transforms(system):
+    assert system.timers == [(BridgeParams().status_period, system.bridge.report)]
+    (*given, latest_odom) = system.transforms[0]
+    assert given == ["odom", "map", BridgeParams().transform_timeout]
+    system.topics["odom"]("newest")
+    assert latest_odom() == "newest"

@@ -117,7 +117,7 @@ def test_goal_that_is_no_position_is_aborted_at_once_and_the_robot_stays(system,
 
 def test_goal_that_got_stuck_names_the_other_nodes_that_command_the_robot(system, monkeypatch):
     commanding = {"/x": ["/teleop", rospy.get_name()], "/y": ["/other"]}
-    monkeypatch.setattr(node.master, "publishers", lambda uri, topic: commanding)
+    monkeypatch.setattr(node.master, "publishers", lambda uri, topic: {topic: commanding[topic]})
     execution = node.GoalExecution(GoToPositionGoal(), system.node.inputs)
     system.node.set_terminal_state(execution, node.Ending(node.Outcome.STUCK, "no progress"))
     assert system.ended == [("aborted", False, "STUCK: no progress; /x is also published by /teleop")]

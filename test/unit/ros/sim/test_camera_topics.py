@@ -24,6 +24,13 @@ DEPTH[2, 3] = np.inf
 RGB = np.zeros((16, 32, 3), np.uint8) + np.array((200, 100, 30), np.uint8)
 RGB[8:] = (20, 40, 180)
 IMAGE = CameraImage(RGB, DEPTH)
+SENT = [  # topic, encoding or kind
+    ["rgb/image_raw", "rgb8"],
+    ["rgb/camera_info", "CameraInfo"],
+    ["depth/image_raw", "32FC1"],
+    ["depth/camera_info", "CameraInfo"],
+    ["depth/points", "PointCloud2"],
+]
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:ros_numpy")
 
 
@@ -57,8 +64,11 @@ def test_points_match_depth_colour_and_calibration():
 def test_what_has_a_subscriber_is_sent_with_the_frame_and_the_stamp_of_one_image(simulator, monkeypatch, model, count):
     sent = []
 
-    def publisher(topic, *_, **__):
-        return SimpleNamespace(get_num_connections=lambda: "compressed" not in topic, publish=sent.append)
+    def publisher(topic, kind, **__):
+        def publish(message):
+            sent.append((topic.partition("camera/")[2], getattr(message, "encoding", kind.__name__), message.header))
+
+        return SimpleNamespace(get_num_connections=lambda: "compressed" not in topic, publish=publish)
 
     monkeypatch.setattr(camera_topics, "publisher", publisher)
     sim = simulator("empty", model=model)
@@ -66,5 +76,6 @@ def test_what_has_a_subscriber_is_sent_with_the_frame_and_the_stamp_of_one_image
     drive(sim, STANDSTILL, 0.2, ["camera"])
     if CAMERA in robot.topics:
         robot.publish(CAMERA)
-    stamps = [(message.header.frame_id, message.header.stamp.to_nsec()) for message in sent]
+    stamps = [(header.frame_id, header.stamp.to_nsec()) for *_, header in sent]
     assert stamps == [("robot_1/camera_rgb_optical_frame", sim.observed.stamp_ns)] * count
+    assert [what for *what, _ in sent] == SENT[:count]

@@ -107,9 +107,13 @@ def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]", real: boo
     assert filled(packed.packed_imu(frame, ImuParams(0.1, 0.2), real, sample), stamp) == sent(expected)
 
 
-def test_odometry_of_a_real_robot_has_no_covariances(simulator: Callable[..., Simulator]) -> None:
-    body = packed.SensorTopics(0, simulator(covariances="real")).packed("odom").body()  # type: ignore[union-attr]
-    odom = Odometry().deserialize(body)
+def test_odometry_of_a_real_robot_has_no_covariances_and_its_imu_those_of_the_firmware(
+    simulator: Callable[..., Simulator],
+) -> None:
+    robot = packed.SensorTopics(0, simulator(covariances="real"))
+    bodies = [robot.packed(sensor).body() for sensor in ("odom", "imu")]  # type: ignore[union-attr]
+    odom, imu = Odometry().deserialize(bodies[0]), Imu().deserialize(bodies[1])
+    assert (imu.orientation_covariance[0], imu.angular_velocity_covariance[4]) == (0.0025, 0.02)
     assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
 
 
@@ -151,3 +155,19 @@ def test_transforms_lead_from_the_map_to_where_the_robot_is_if_localization_is_t
     )
     assert compose(map_from_odom, odom_from_base) == pytest.approx(sim.world_from_footprint(), abs=1e-6)
     assert map_from_odom.x < -0.001
+
+
+@pytest.mark.parametrize(
+    "odom_tf, localization, children",
+    [
+        (True, "static", ["base_footprint"]),
+        (False, "static", []),
+        (True, "truth", ["base_footprint", "odom"]),
+    ],
+)
+def test_transforms_that_another_node_sends_are_left_out(
+    simulator: Callable[..., Simulator], odom_tf: bool, localization: str, children: "list[str]"
+) -> None:
+    sim = simulator(odom_tf=odom_tf, localization=localization)
+    found = packed.SensorTopics(0, sim).transforms(sim.params.topics)
+    assert [child.rpartition("/")[2] for _, child, _ in found] == children

@@ -1,6 +1,7 @@
 """A map as a message or as the response of /static_map is, byte for byte, what ROS makes of it."""
 
 from io import BytesIO
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetMapResponse
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.ros.sim.world_topics import MapResponse, to_grid
+from aro_robocop_goto_as.ros.sim import world_topics
+from aro_robocop_goto_as.ros.sim.world_topics import MapResponse, WorldTopics, to_grid
 from aro_robocop_goto_as.world.model import Occupancy
 
 CELLS = np.array([[-1, 0, 100], [50, -128, 127]], np.int8)
@@ -29,3 +31,11 @@ def test_its_bytes_are_those_of_an_ordinary_message() -> None:
     assert (ordinary.info.width, ordinary.info.height, ordinary.header.stamp) == (3, 2, Time(3, 4))
     assert _bytes_of(packed) == _bytes_of(ordinary)
     assert _bytes_of(MapResponse(packed)) == _bytes_of(GetMapResponse(ordinary))
+
+
+def test_the_whole_world_has_each_robots_name_in_its_frame(simulator: Any, monkeypatch: Any) -> None:
+    sent: list[Any] = []
+    monkeypatch.setattr(world_topics, "publisher", lambda *_, **__: SimpleNamespace(publish=sent.append))
+    WorldTopics(simulator("empty")).publish()
+    named = [(m.text, m.header.frame_id) for m in sent[-1]._make() if m.ns == "names"]
+    assert named == [("robot_1", "robot_1/base_footprint")]

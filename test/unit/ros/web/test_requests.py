@@ -1,5 +1,6 @@
 """Visitors' requests: what one of them fails with is its answer, and the next one is served."""
 
+import pytest
 from waiting import wait_for
 
 from aro_robocop_goto_as.ros.web import requests
@@ -22,8 +23,9 @@ class Service:
         return self
 
 
-def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch):
-    Service(monkeypatch, [requests.rospy.ServiceException("no such robot")])
+@pytest.mark.parametrize("kind", [requests.rospy.ServiceException, requests.rospy.ROSException])  # refused; not there
+def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch, kind):
+    Service(monkeypatch, [kind("no such robot")])
     state = SharedState(PageState())
     made = requests.Requests(state)
     made.call("pause", "pause", object)

@@ -1,5 +1,6 @@
 """What becomes of the pad's buttons: cmd_vel, one stop at the end, and a goal that is cancelled."""
 
+import asyncio
 from unittest.mock import MagicMock
 
 import pytest
@@ -64,3 +65,12 @@ def test_a_page_that_only_watches_drives_nothing(monkeypatch):
     pad, _ = driven(monkeypatch, Publishers(), live=False)
     pad.drive(1, LEFT)
     assert not pad._dead_man.active
+
+
+def test_each_button_drives_its_way_while_it_is_held(monkeypatch):
+    pad, context = driven(monkeypatch, Publishers())
+    asked = []
+    monkeypatch.setattr(pad, "drive", lambda _page, twist: asked.append(twist))
+    for held in context.server.gui.add_button.return_value.on_hold.call_args_list:
+        asyncio.run(held[0][0](MagicMock()))
+    assert asked == [(0.2, 0.0), (0.0, 1.0), (0.0, -1.0), (-0.2, 0.0)]

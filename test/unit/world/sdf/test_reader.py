@@ -52,6 +52,11 @@ READ = {  # case: (body from line 3 on, {obstacle: its position [m]}, what is sa
         {"m/l/c": (4, 0, 0)},
         (),
     ),
+    "a collision of a link that is pitched": (
+        model("<pose degrees='1'>0 0 0 0 90 0</pose>" + collision(SPHERE, pose="<pose>1 0 0 0 0 0</pose>")),
+        {"m/l/c": (0, 0, -1)},
+        (),
+    ),
     "a pose relative to a link of another model": (
         model("<pose>2 1 0 0 0 0</pose>")
         + model(collision(SPHERE), "n", "<pose relative_to='m::l'>1 0 0 0 0 0</pose>"),
