@@ -24,6 +24,12 @@ def nested(tmp_path):
     subprocess.run(["rm", "-rf", folder], check=True)
 
 
+def test_a_temporary_folder_is_removed_with_its_files():
+    with tree.temporary_folder("robocop-test-") as folder:
+        (folder / "file").touch()
+    assert not folder.exists()
+
+
 def test_walk_refuses_deeply_nested_folders_without_recursion(nested):
     with pytest.raises(HostingError, match="expected at most 100 nested folders"):
         list(tree.walk(nested))
