@@ -115,14 +115,18 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def _plan(args: argparse.Namespace, share: Path) -> Plan:
+    file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
+    return load(file, args.seed).restricted(args.only)
+
+
 def main() -> None:
     """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
     args = arguments()
     interrupt_on_signal()
     try:
         state, share = places()
-        file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
-        plan = load(file, args.seed).restricted(args.only)
+        plan = _plan(args, share)
         given = make_report_folder(Path(args.report)) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
