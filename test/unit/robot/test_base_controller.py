@@ -19,6 +19,13 @@ def test_command_that_is_not_finite_is_refused_with_its_values(bad: Twist2D) -> 
         clamped(bad, Limits(0.22, 2.84, 2.5, 3.2, 0.5))
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_command_beyond_the_velocity_limits_is_clamped_to_them(sign: float) -> None:
+    limits = Limits(0.22, 2.84, 2.5, 3.2, 0.5)
+    assert clamped(Twist2D(sign * 0.3, sign * 1.0), limits) == Twist2D(sign * 0.22, sign * 1.0)
+    assert clamped(Twist2D(sign * 0.1, sign * 5.0), limits) == Twist2D(sign * 0.1, sign * 2.84)
+
+
 def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them() -> None:
     burger, turtlebot2 = (model_named(name).figures for name in ("burger", "turtlebot2"))
     assert limits_from(SimParams().limits, burger) == (0.22, 2.84, 2.5, 3.2, 0.5)
