@@ -25,11 +25,11 @@ def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = M
     text.write(BYTE_ORDER_MARK)
     rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
     for result in [*results, *(Result(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
-        points: List[Any] = ["", plan.points, "", *[""] * len(PARTS)]
+        points: List[Any] = ["", plan.points, *[""] * (1 + len(PARTS))]
         if result.is_judged:
             of_parts = [result.points_of(part) for part in PARTS]
-            points[0], points[2] = result.points, result.extra
-            points[3:] = [NOT_HANDED_IN if number is None else number for number in of_parts]
+            shown = [NOT_HANDED_IN if number is None else number for number in of_parts]
+            points = [result.points, plan.points, result.extra, *shown]
         rows.writerow([_plain(result.name), *points, _plain(" | ".join(result.problems)), *result.outcomes(plan)])
     return text.getvalue()
 

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 from .. import record as rec
 from ..handout import ACTION, CLICKS
 from .goals import Goals
-from .job import Job, tell
+from .job import Job
 from .run import TICK, Run
 from .stage import Stage
 
@@ -58,7 +58,7 @@ class BridgeRun(Run):
         """Run the scenarios up to the last one that a check examines: each begins where the previous one ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
-            tell(f"begin {name}")
+            self.announce(name)
             scenario()
 
     # -- the server that it talks to --

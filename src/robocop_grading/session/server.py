@@ -15,7 +15,7 @@ from .. import record as rec
 from ..handout import ACTION
 from ..plan import AGAIN, START, Push, Scenario, Step
 from ..record import Record
-from .job import Job, tell
+from .job import Job
 from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage
@@ -43,11 +43,11 @@ class ServerRun(Run):
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
-        tell(f"begin {START}")
+        self.announce(START)
         start = self._start()
         for index, scenario in enumerate(self.plan.scenarios, 1):
             if start.up and self.plan.examines(self.job.part, scenario.name):
-                tell(f"begin {scenario.name}")
+                self.announce(scenario.name)
                 self._scenario(index, scenario)
 
     def _start(self) -> Record:

@@ -25,7 +25,7 @@ from ...names import ACTION, BRIDGE, place
 from ..node_main import answer_help, load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer
-from .goal_states import STATES, ending
+from .goal_states import STATES, UNFINISHED, ending
 
 SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
@@ -178,6 +178,8 @@ class Bridge:
     def progress(self) -> str:
         """The current goal's state and feedback in words."""
         state, feedback = STATES[self.client.get_state()], self.feedback
+        if state not in UNFINISHED:
+            return f"goal {self.where} has ended ({state}), waiting for its result"
         if feedback is None:
             return f"goal {self.where} is {state}"
         errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"

@@ -133,13 +133,15 @@ class GotoNode:
         execution.outcome, self.display.state = ending.outcome, ending.message
         if ending.outcome is Outcome.STUCK:
             ending = Ending(ending.outcome, ending.text + self.other_commands())
-        as_expected = {
-            Outcome.REACHED: (self.server.set_succeeded, rospy.loginfo),
-            Outcome.PREEMPTED: (self.server.set_preempted, rospy.loginfo),
-        }
-        set_state, log = as_expected.get(ending.outcome, (self.server.set_aborted, rospy.logwarn))
+        log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
         log("%s", ending.message)
-        set_state(GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message), ending.message)
+        result = GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message)
+        if ending.outcome is Outcome.REACHED:
+            self.server.set_succeeded(result, ending.message)
+        elif ending.outcome is Outcome.PREEMPTED:
+            self.server.set_preempted(result, ending.message)
+        else:
+            self.server.set_aborted(result, ending.message)
 
     def other_commands(self) -> str:
         """Which other nodes publish cmd_vel, as the end of a sentence; empty if none."""

@@ -161,3 +161,10 @@ def test_status_is_reported_periodically_and_odometry_and_frames_are_those_of_th
     assert given == ["odom", "map", BridgeParams().transform_timeout]
     system.topics["odom"]("newest")
     assert latest_odom() == "newest"
+
+
+def test_status_of_a_goal_that_has_ended_without_its_result_says_what_is_missing(system):
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.get_state = lambda: GoalStatus.SUCCEEDED
+    system.bridge.report()
+    assert system.statuses[-1].endswith(" in map has ended (SUCCEEDED), waiting for its result")
