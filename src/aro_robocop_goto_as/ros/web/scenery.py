@@ -62,8 +62,8 @@ class Scenery(Part):
             self._cameras.show(pose.position for _, pose in without_robots.values())
         scene.show("world", without_robots if scene.draws("robots") else self._world.placed(locate))
         scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
-        pose = None if self._scan is None else locate(self._scan.header.frame_id)
-        if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was received
+        pose = None if self._scan is None else locate(self._scan.header.frame_id, self._scan.header.stamp.to_sec())
+        if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was measured
             rows: Any = scan_points(self._scan).tolist()
             points = tuple((x, y, z) for x, y, z in rows)
             scene.show("scan", {"scan": (replace(SCAN, points=points), pose)} if points else {})
