@@ -5,7 +5,7 @@ What goes wrong with odometry, scans and goals is in server_test.py and test/uni
 
 import psutil
 import rospy
-from harness import ACTION, SERVER, SIMULATOR, SystemTest, script, wait_for, wait_for_connection
+from harness import ACTION, SERVER, SIMULATOR, SystemTest, call_simulator, script, wait_for, wait_for_connection
 from systems import Process
 
 SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py"}
@@ -80,11 +80,14 @@ class Faults(SystemTest):
         self.goals.clear()
         self.drive()
 
-    def test_server_is_told_to_end(self):
+    def test_server_is_told_to_end_while_the_clock_is_stopped(self):
         goal = self.drive()
+        call_simulator("pause")
+        self.addCleanup(call_simulator, "unpause")
         self.nodes[SERVER].terminate()
         self.assertIn("the server is shutting down", goal.result("SHUTDOWN").result.message)
         self.assertEqual(self.nodes[SERVER].wait_for_exit(), 0)
+        call_simulator("unpause")
         self.robot.wait_until_it_stands()
         self.restart(SERVER)
 

@@ -178,9 +178,7 @@ def test_the_history_holds_the_last_goals_with_their_positions():
 
 def test_a_goal_that_was_not_seen_has_the_position_that_its_server_names():
     history = goals.GoalHistory()
-    history.ended(
-        "", "x", "ABORTED", "OBSTACLE: obstacle 0.280 m ahead; 1.00 m from the goal x 2.00 y -1.50 in odom after"
-    )
+    history.ended("", "x", "ABORTED", "OBSTACLE: so; 1.00 m from the goal x 2.00 y -1.50 in odom")
     assert history.latest[0].goal == (2.0, -1.5)
 
 
