@@ -88,7 +88,7 @@ def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_besi
     tab.close()
 
 
-BUTTON_AT = "([x, y]) => document.elementFromPoint(x, y)?.closest('button')?.textContent"
+BUTTON_AT = "([x, y]) => document.elementFromPoint(x, y)?.closest('button')?.innerText.trim()"
 PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPhone 12
 
 
