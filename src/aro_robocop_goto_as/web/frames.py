@@ -54,6 +54,10 @@ class FrameTree:
         chain = [(frame, Pose3D())]
         while len(chain) < MAX_CHAIN and frame in self._parents:
             frame, history = self._parents[frame]
-            _, pose = history[-1] if stamp is None else min(history, key=lambda kept: abs(kept[0] - stamp))
+            pose = history[-1][1] if stamp is None else _nearest(history, stamp)
             chain.append((frame, compose3(pose, chain[-1][1])))
         return chain
+
+
+def _nearest(history: History, stamp: float) -> Pose3D:
+    return min(history, key=lambda kept: abs(kept[0] - stamp))[1]
