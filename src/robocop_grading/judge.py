@@ -177,7 +177,8 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         checks += faults.tried("what follows from what", own, _with_reasons, own, by_name, faults)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     for part, by_name in records.items():
-        said = faults.tried(f"notes about the {part}", [], _notes, part, by_name, plan, checks)
+        nothing: List[str] = []
+        said = faults.tried(f"notes about the {part}", nothing, _notes, part, by_name, plan, checks)
         found += [f"{part}: {it}" for it in dict.fromkeys(said)]
     return Grade(name, tuple(checks), (*found, *faults.told), tracebacks=tuple(faults.tracebacks))
 
@@ -242,7 +243,8 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
         verdict: Verdict = NotReached(NOT_STARTED)
         what = f"{check.name} in scenario {name}"
         if name in records:
-            verdict = faults.tried(what, NotReached(NOT_JUDGED), judged, records[name], plan.limits)
+            unjudged: Verdict = NotReached(NOT_JUDGED)
+            verdict = faults.tried(what, unjudged, judged, records[name], plan.limits)
             result = replace(result, scenario=result.scenario or name)
         elif problem:
             verdict = Failed("a complete scenario", "an incomplete one", 0.0, problem, Kind.INCOMPLETE)

@@ -164,7 +164,9 @@ FOLLOWS = (
     Row("feedback_position feedback_angle", None, "next_goal", kept),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
-    Row(f"{ENDINGS} turns_to_goal success_result failure_result stands_at_end", None, "no_exception", raised),
+    Row(
+        f"{ENDINGS} turns_to_goal success_result failure_result stands_at_end one_ending", None, "no_exception", raised
+    ),
     Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", none_set),
     Row(ENDINGS, Kind.NO_RESULT, "stays_alive", died),
     Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", unaware),

@@ -228,7 +228,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
                 "The goal got two terminal states, as in the handout's example after a cancel: return at once "
                 "after set_succeeded(), set_aborted() and set_preempted()"
             )
-            return Failed("one terminal state", line.text[:160], line.time, cause, TWO_STATES)
+            return Failed("one terminal state", line.text[:160], line.time, cause, Kind.TWO_STATES)
         if NO_STATE_LOGGED.search(line.text):
             return Failed("a terminal state", "none was set", line.time, NO_STATE)
     for goal in record.goals:

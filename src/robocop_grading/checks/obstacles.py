@@ -74,10 +74,11 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
         nearest = min(sample.ahead for sample in samples_between(record, goal.time, end))
-        cause, kind = ABORTED_FAR, Kind.TOO_EARLY
-        if nearest <= limits.abort_farthest:
-            cause, kind = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}", None
-        return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause, kind, goal)
+        seen = f"an abort at {min(clearances):.2f} m"
+        if nearest > limits.abort_farthest:
+            return Failed(wanted, seen, end, ABORTED_FAR, Kind.TOO_EARLY, goal)
+        cause = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}"
+        return Failed(wanted, seen, end, cause, goal=goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)

@@ -29,6 +29,7 @@ class Kind(enum.Enum):
     EXCEPTION = "an exception ended the goal"
     NOT_RESET = "an earlier goal has left something behind"
     NO_ANSWER = "the server no longer accepts goals"
+    TWO_STATES = "two terminal states"
     NO_MESSAGE = "a result without a message"
     # Motion.
     MOVES_FIRST = "motion before the errors and the distance are known"
