@@ -8,6 +8,7 @@ from ..param_loading import positive
 from ..shapes import PlacedShape
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
+BASE = "base_link"
 CASTER_PREFIX = "caster"
 CAMERA_FRAME = "camera_rgb_optical_frame"  # as the TurtleBot3's camera in Gazebo names it
 

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from typing import Mapping
 
 from ..param_loading import parameter
-from .sensor import Robots, Sensor, Site
+from .sensor import RateParams, Robots, Sensor, Site
 
 BUMPER = "bumper"
 
 
 @dataclass(frozen=True)
-class BumperParams:
+class BumperParams(RateParams):
     """How often the bumper is read."""
 
     bumper_rate: int = parameter(30, low=0)  # [Hz]; 0: never

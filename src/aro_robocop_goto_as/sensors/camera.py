@@ -6,7 +6,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 from ..geometry import compose3
 from ..param_loading import PROFILES_OWN, parameter, positive
 from .camera_image import CameraImage, CameraSpec
-from .sensor import Robots, Sensor, Site
+from .sensor import RateParams, Robots, Sensor, Site
 
 CAMERA = "camera"
 
@@ -21,7 +21,7 @@ PROFILES: Dict[str, Dict[str, Figures]] = {
 
 
 @dataclass(frozen=True)
-class CameraParams:
+class CameraParams(RateParams):
     """The cameras: a profile, figures that replace its own, and how often they take images."""
 
     camera_profile: str = parameter("small", choices=tuple(PROFILES))

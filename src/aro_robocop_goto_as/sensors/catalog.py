@@ -12,11 +12,12 @@ from .lidar import Lidar
 from .lidar_profiles import LidarParams
 from .odometry import JointEncoders, OdometryParams, WheelOdometry
 from .sensor import Sensor, Site
+from .sonar import Sonar, SonarParams
 
 
 @dataclass(frozen=True)
 class SensorParams:
-    """Parameters of the sensors; the names of their rates end with _rate."""
+    """Parameters of the sensors."""
 
     ground_truth: TruthParams = group(TruthParams)
     imu: ImuParams = group(ImuParams)
@@ -25,11 +26,11 @@ class SensorParams:
     bumper: BumperParams = group(BumperParams)
     camera: CameraParams = group(CameraParams)
 
+    sonar: SonarParams = group(SonarParams)
+
     def rates(self) -> Dict[str, int]:
-        """The rates [Hz] by the names of their parameters."""
-        given = {name: value for one in vars(self).values() for name, value in vars(one).items()}
-        rates = {name: value for name, value in given.items() if name.endswith("_rate")}
-        return {**rates, "scan_rate": self.lidar.profile().rate}
+        """The rates [Hz] by the names of their parameters; 0: never."""
+        return {name: rate for params in vars(self).values() for name, rate in params.rates().items()}
 
 
 class Sensors:
@@ -45,4 +46,5 @@ class Sensors:
         self.joints = JointEncoders(params.odometry, site, odometry)
         self.odometry = odometry
         self.lidar = Lidar(params.lidar, site)
+        self.sonar = Sonar(params.sonar, site)
         self.by_topic: Dict[str, Sensor] = {sensor.topic: sensor for sensor in vars(self).values()}

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from ..param_loading import parameter
-from .sensor import Prepared, Robots, Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 GROUND_TRUTH = "ground_truth_odom"
 
 
 @dataclass(frozen=True)
-class TruthParams:
+class TruthParams(RateParams):
     """Whether the truth is published, and how often."""
 
     ground_truth: bool = True

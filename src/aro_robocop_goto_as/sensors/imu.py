@@ -9,14 +9,14 @@ import numpy as np
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
 from ..param_loading import parameter
 from ..robot.model import BodyState
-from .sensor import Prepared, Robots, Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 IMU = "imu"
 FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...
 
 
 @dataclass(frozen=True)
-class ImuParams:
+class ImuParams(RateParams):
     """Standard deviations of the IMU's white noise, the accelerometer's bias, and how often it measures."""
 
     gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, NamedTuple, Optional, Tuple
 
 from ..param_loading import PROFILES_OWN, parameter, positive
+from .sensor import RateParams
 
 TURN = 2.0 * math.pi  # [rad]
 
@@ -62,7 +63,7 @@ PROFILES: Dict[str, LidarProfile] = {
 
 
 @dataclass(frozen=True)
-class LidarParams:
+class LidarParams(RateParams):
     """The lidar: a profile, and figures that replace its own."""
 
     scan_profile: str = parameter("gazebo", choices=tuple(PROFILES))
@@ -84,3 +85,7 @@ class LidarParams:
         if "noise" in figures:
             figures["accuracy"] = ()
         return replace(PROFILES[self.scan_profile], **figures)
+
+    def rates(self) -> Dict[str, int]:
+        """The profile's rate [Hz], or the given one."""
+        return {"scan_rate": self.profile().rate}

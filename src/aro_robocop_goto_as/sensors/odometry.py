@@ -11,14 +11,14 @@ from ..compiled import address, members
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
-from .sensor import Prepared, Robots, Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 ODOM, JOINTS = "odom", "joint_states"
 SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are numbered from 0 up
 
 
 @dataclass(frozen=True)
-class OdometryParams:
+class OdometryParams(RateParams):
     """Errors of wheel odometry, and how often it is updated and the joints are read."""
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's

@@ -4,14 +4,15 @@ Noise is repeatable by seed, stream and step: of the lidar's ranges in lidar.c, 
 """
 
 import ctypes
+from dataclasses import dataclass
 from functools import partial
-from typing import Callable, NamedTuple, Sequence
+from typing import Callable, Dict, NamedTuple, Sequence
 
 import numpy as np
 
 from ..geometry import Pose2D
 from ..physics.engine import Engine
-from ..raycast.sections import Sections
+from ..raycast.sections import Mounts, Sections
 from ..world.model import World
 
 Robots = Sequence[int]  # indices
@@ -81,6 +82,15 @@ class Site:
         self.sections.move(self.time)
 
 
+@dataclass(frozen=True)
+class RateParams:
+    """Parameters of a sensor; the names of its rates end with _rate."""
+
+    def rates(self) -> Dict[str, int]:
+        """The rates [Hz] by the names of their parameters; 0: never."""
+        return {name: value for name, value in vars(self).items() if name.endswith("_rate")}
+
+
 class Prepared(NamedTuple):
     """The calls that measure some robots, made once for all steps that are alike."""
 
@@ -97,6 +107,8 @@ class Sensor:
 
     topic = ""  # in the robot's namespace; sensors are called by it
     always_on = False  # whether it measures also while nobody subscribes
+    frame = ""  # of its own, if the robots' URDF has none for it
+    mounts: Mounts = ()  # base_from_sensor of each robot, where the sensor has a frame of its own
 
     def __init__(self, site: Site, rate: int) -> None:
         """`rate` [Hz]; 0: never."""

@@ -7,10 +7,12 @@ others; odom -> base_footprint is sent with each odometry.
 from typing import Any, Callable, Dict, Iterator, List, Sequence, Tuple
 
 import genpy
+from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
+from ...robot.model import BASE
 from ...sensors.odometry import ODOM
 from ...simulation.agenda import Due, Subscriptions
 from ...simulation.simulator import Simulator
@@ -35,6 +37,7 @@ class StepTopics:
     def __init__(self, simulator: Simulator) -> None:
         self._simulator, self._params = simulator, simulator.params
         self.robots = [RobotFrames(row, robot.name, self._params.frames) for row, robot in enumerate(simulator.robots)]
+        self._sensors = [sensor for sensor in simulator.sensors.by_topic.values() if sensor.rate]
         self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
         real = self._params.topics.covariances == "real"
@@ -43,8 +46,7 @@ class StepTopics:
                 [(publisher(name, kind), message) for name, kind, message in topics_of(sensor, robot, real)]
                 for robot in self.robots
             ]
-            for sensor in simulator.sensors.by_topic.values()
-            if sensor.rate
+            for sensor in self._sensors
         }
         self.clock = publisher("/clock", Clock, latch=True)
         self._clock_message = packed_clock()
@@ -82,16 +84,24 @@ class StepTopics:
         batch.send(self._simulator.stamp_ns, more)
 
     def publish_static(self) -> None:
-        """world -> map, and each robot's map -> odom where that is static."""
+        """The transforms that change only when a robot is placed."""
+        self.tf_static.publish(self.static_transforms())
+
+    def static_transforms(self) -> List[TransformStamped]:
+        """world -> map, each robot's map -> odom where that is static, and frames of sensors that no URDF has."""
         simulator, frames = self._simulator, self._params.frames
         stamp = convert.to_time(simulator.stamp_ns)
         transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
-        if self._params.topics.localization == "static":
+        for robot in self.robots:
+            if self._params.topics.localization == "static":
+                map_from_odom = simulator.map_from_odom(robot.row)
+                transforms.append(convert.to_transform(robot.map, robot.odom, map_from_odom, stamp))
             transforms += [
-                convert.to_transform(robot.map, robot.odom, simulator.map_from_odom(robot.row), stamp)
-                for robot in self.robots
+                convert.to_transform_3d(robot.of(BASE), robot.of(sensor.frame), sensor.mounts[robot.row], stamp)
+                for sensor in self._sensors
+                if sensor.frame
             ]
-        self.tf_static.publish(transforms)
+        return transforms
 
     def publish_clock(self) -> None:
         """Simulated time alone."""

@@ -1,5 +1,6 @@
 """Packed messages, filled by batch.c, have byte for byte the form in which ROS sends ordinary messages."""
 
+import math
 import struct
 from dataclasses import replace
 from io import BytesIO
@@ -14,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, LaserScan
+from sensor_msgs.msg import Imu, LaserScan, Range
 from std_msgs.msg import Header
 from support import driven
 from tf2_msgs.msg import TFMessage
@@ -27,6 +28,7 @@ from aro_robocop_goto_as.ros.sim import sensor_messages as packed
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics, packed_clock
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
+from aro_robocop_goto_as.sensors.sonar import Sonar
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 NUMBER = st.floats(-1e6, 1e6)
@@ -124,6 +126,34 @@ def test_odometry_of_a_real_robot_has_no_covariances_and_its_imu_those_of_the_fi
     odom, imu = Odometry().deserialize(_body(topics["odom"])), Imu().deserialize(_body(topics["imu"]))
     assert (imu.orientation_covariance[0], imu.angular_velocity_covariance[4]) == (0.0025, 0.02)
     assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
+
+
+def test_range_of_a_sonar_is_in_its_own_frame_which_is_on_tf_static(simulator: Callable[..., Simulator]) -> None:
+    topics = StepTopics(simulator(sonar=True))
+    message = Range().deserialize(_body(topics.topics["sonar"]))
+    assert (message.header.frame_id, message.radiation_type) == ("robot_1/sonar_link", Range.ULTRASOUND)
+    assert (message.min_range, message.max_range) == pytest.approx((0.02, 4.0))
+    frames = {(t.header.frame_id, t.child_frame_id): t.transform.translation for t in topics.static_transforms()}
+    mount = frames["robot_1/base_link", "robot_1/sonar_link"]
+    assert (mount.x, mount.z) == pytest.approx((0.038, 0.04))
+
+
+@given(st.floats(0.02, 4.0), STAMP)
+def test_range(distance: float, stamp: "tuple[int, int]") -> None:
+    message = packed.packed_range("sonar_link", Sonar, np.array([distance]))  # type: ignore[arg-type]
+    expected = Range(Header(0, Time(*stamp), "sonar_link"), Range.ULTRASOUND, math.radians(15.0), 0.02, 4.0, distance)
+    assert filled(message, stamp) == sent(expected)
+
+
+def test_a_derived_sensor_has_the_message_of_the_sensor_that_it_is_derived_from(
+    simulator: Callable[..., Simulator],
+) -> None:
+    class RearSonar(Sonar):
+        topic, frame = "rear_sonar", "rear_sonar_link"
+
+    sim = simulator(sonar=True)
+    (topic,) = packed.topics_of(RearSonar(sim.params.sensors.sonar, sim.site), StepTopics(sim).robots[0], False)
+    assert (topic.name, topic.kind) == ("robot_1/rear_sonar", Range)
 
 
 def test_what_a_step_publishes_has_the_time_of_this_step_as_its_stamp(simulator: Callable[..., Simulator]) -> None:
