@@ -8,7 +8,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from ..compiled import address
-from .caster_library import BeamsStruct, BeamPlaneStruct, BeamSceneStruct, load
+from .caster_library import BeamPlaneStruct, BeamSceneStruct, BeamsStruct, load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c

@@ -1,8 +1,8 @@
 """The sonar: an ultrasonic range finder low on the front of each robot, off by default.
 
-It measures the nearest return within its cone, of which a few level beams are cast: low obstacles that a lidar looks
-over are seen, the floor is not. Its figures are those of the HC-SR04's data sheet (ElecFreaks): 0.02 to 4 m, a measuring
-angle of 15 degrees, an accuracy of 3 mm. As for the lidars, the accuracy is taken as two sigma of the noise.
+It measures the nearest return within its cone, of which a few level beams are cast: it detects low obstacles that the
+lidar looks over, but not the floor. Its figures are those of the HC-SR04's data sheet (ElecFreaks): 0.02 to 4 m, a
+measuring angle of 15 degrees, an accuracy of 3 mm. As for the lidars, the accuracy is taken as two sigma of the noise.
 """
 
 import math

@@ -1,6 +1,6 @@
 """The messages of one step: their bytes go to the node and into the bag."""
 
-from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Tuple
 
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -31,7 +31,7 @@ class StepMessages:
         odometry = packed_odometry(robot.world, robot.footprint, NO_VARIANCES, truth.poses[0], truth.twists[0])
         self._simulator, self._topics = simulator, topics
         self._truth, self._clock = ("/ground_truth_odom", Odometry, odometry), ("/clock", Clock, packed_clock())
-        self._prepared: Dict[Due, Tuple[Sequence[Tuple[str, Any, Any]], Batch]] = {}
+        self._prepared: Dict[Due, Tuple[List[Tuple[str, Any, Any]], Batch]] = {}
 
     def of(self, due: Due) -> List[StepMessage]:
         """The messages that are due on the simulator's present step."""

@@ -16,7 +16,7 @@ from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.raycast import grid_index
-from aro_robocop_goto_as.raycast.beams import Beams, BeamPlane, BeamScene
+from aro_robocop_goto_as.raycast.beams import BeamPlane, Beams, BeamScene
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.grid_index import Tiles
 from aro_robocop_goto_as.world.model import World
@@ -45,10 +45,10 @@ yaws = st.one_of(st.integers(-8, 8).map(lambda n: n * math.pi / 4.0), st.floats(
 poses = st.tuples(coordinates, coordinates, yaws)
 spans = st.one_of(st.sampled_from([2.0 * math.pi, 6.28319, math.pi, 4.0 * math.pi]), st.floats(0.01, 15.0))
 starts = st.one_of(st.sampled_from([0.0, -math.pi, math.pi, -math.pi / 2.0]), st.floats(-10.0, 10.0))
-any_beams = st.builds(lambda start, span, n: Beams(start, span / max(n - 1, 1), n), starts, spans, st.integers(1, 90))
+fans = st.builds(lambda start, span, n: Beams(start, span / max(n - 1, 1), n), starts, spans, st.integers(1, 90))
 
 
-@given(any_beams, cuts, poses, st.floats(0.0, 5.0))
+@given(fans, cuts, poses, st.floats(0.0, 5.0))
 def test_maximum_range_removes_only_returns_beyond_it(
     beams: Beams, cut: CrossSection, pose: Pose, max_range: float
 ) -> None:
@@ -57,7 +57,7 @@ def test_maximum_range_removes_only_returns_beyond_it(
     np.testing.assert_array_equal(seen, np.where(every <= max_range, every, np.inf))
 
 
-@given(any_beams, poses, st.data(), st.floats(0.01, 9.0), st.floats(0.3, 2.8), st.floats(0.01, 3.0), st.booleans())
+@given(fans, poses, st.data(), st.floats(0.01, 9.0), st.floats(0.3, 2.8), st.floats(0.01, 3.0), st.booleans())
 def test_beam_aimed_at_the_end_of_a_segment_hits_it(
     beams: Beams, pose: Pose, data: st.DataObject, away: float, slant: float, length: float, left: bool
 ) -> None:
@@ -70,7 +70,7 @@ def test_beam_aimed_at_the_end_of_a_segment_hits_it(
 
 
 @given(
-    any_beams, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([(1.0, 1 << 20), (8.0, 1 << 20), (8.0, 9)])
+    fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([(1.0, 1 << 20), (8.0, 1 << 20), (8.0, 9)])
 )
 def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
     beams: Beams, walls: List[object], posts: List[object], pose: Pose, max_range: float, size: Tuple[float, int]
@@ -96,7 +96,7 @@ def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_
     assert beams.cast(pose, cut).tobytes() == every.tobytes()
 
 
-@given(any_beams, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
+@given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
 def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
     beams: Beams, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
 ) -> None:

@@ -35,8 +35,8 @@ def make(simulator: Make, engine: str, model: str, world: str) -> Make:
     """Makes a simulator of a robot at the world's spawn, with a seed."""
 
     def made(seed: int = 1) -> Simulator:
-        small = {"camera_width": 16, "camera_height": 12}  # rendered in no time
-        return simulator(world, world_named(world).spawn, model=model, moving=True, seed=seed, **small, **ENGINES[engine])
+        params = dict(moving=True, seed=seed, camera_width=16, camera_height=12, **ENGINES[engine])  # small images
+        return simulator(world, world_named(world).spawn, model=model, **params)
 
     return made
 
@@ -69,9 +69,7 @@ def test_the_same_seed_gives_the_same_run_and_another_seed_other_noise(make: Mak
 
 
 @every_combination
-def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_goes_on(
-    make: Make, world: str
-) -> None:
+def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_goes_on(make: Make, world: str) -> None:
     sim = make()
     first, before = _run(sim), sim.stamp_ns
     sim.reset()
@@ -80,9 +78,7 @@ def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_go
 
 
 @every_combination
-def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_then(
-    make: Make, model: str
-) -> None:
+def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_then(make: Make, model: str) -> None:
     sim = make()
     _run(sim)
     obstacles = tuple(replace(obstacle, pose=obstacle.at(SECONDS)) for obstacle in sim.world.obstacles)

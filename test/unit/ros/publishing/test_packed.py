@@ -14,6 +14,7 @@ from tf2_msgs.msg import TFMessage
 from aro_robocop_goto_as.ros.publishing.packed import places
 
 TRANSFORM = Transform(Vector3(1.0, 2.0, 3.0), Quaternion(4.0, 5.0, 6.0, 7.0))
+TWO = TFMessage([TransformStamped(), TransformStamped(Header(), "a", TRANSFORM)])
 IMU = Imu(header=Header(frame_id="imu"), linear_acceleration=Vector3(1.0, 2.0, 3.0))
 ODOMETRY = Odometry(header=Header(frame_id="odom"), child_frame_id="base")
 ODOMETRY.twist.twist.angular.z = 5.0
@@ -27,7 +28,7 @@ ODOMETRY.twist.twist.angular.z = 5.0
         (Range(header=Header(frame_id="sonar_link"), max_range=4.0, range=0.5), "range", (0.5,)),
         (IMU, "linear_acceleration", (1.0, 2.0, 3.0)),
         (ODOMETRY, "twist.twist", (0.0, 0.0, 0.0, 0.0, 0.0, 5.0)),
-        (TFMessage([TransformStamped(), TransformStamped(Header(), "a", TRANSFORM)]), "transforms[1].transform", range(1, 8)),
+        (TWO, "transforms[1].transform", range(1, 8)),
     ],
 )
 def test_numbers_of_a_part_begin_where_they_are_serialized(message: Any, part: str, numbers: Tuple[float, ...]) -> None:

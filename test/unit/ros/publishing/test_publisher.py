@@ -1,7 +1,6 @@
 """Publishers and batches with rospy's own connections, without a ROS master."""
 
 import socket
-import struct
 import threading
 import weakref
 from types import SimpleNamespace
