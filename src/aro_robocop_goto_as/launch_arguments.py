@@ -24,17 +24,15 @@ OTHER_NAMES = {
 }
 
 
-def described(*files: Path) -> Dict[str, str]:
+def described(file: Path, *next_files: Path) -> Dict[str, str]:
     """The arguments that a launch file lets its user choose, those with a default, and what each means.
 
     An argument that is passed on to the next file is described there.
     """
-    arguments: Dict[str, str] = {}
-    for file in reversed(files):
-        for entry in ElementTree.parse(file).getroot().findall("arg"):
-            if "default" in entry.attrib and (file == files[0] or entry.attrib["name"] in described(files[0])):
-                arguments[entry.attrib["name"]] = entry.attrib.get("doc") or arguments.get(entry.attrib["name"], "")
-    return arguments
+    found = [entry for entry in ElementTree.parse(file).getroot().findall("arg") if "default" in entry.attrib]
+    passed_on = described(*next_files) if next_files else {}
+    texts = {str(entry.get("name")): str(entry.get("doc", "")) for entry in found}
+    return {name: text or passed_on.get(name, "") for name, text in texts.items()}
 
 
 @dataclass(frozen=True)
