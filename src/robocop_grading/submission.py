@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import GradingError, HostingError, RobocopError
 from robocop_hosting import workspace
 from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
@@ -29,6 +29,7 @@ from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import Environment, compat_environment, places, workspace_name
 
 from .advice import advice, next_todo
+from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
@@ -90,11 +91,15 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
         return _loose({part: Choice(top, None, False, [])}, top, share, state)
     if not top.is_dir():
         raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
-    if not any(file.name == "package.xml" for file in files_below(top)):
-        choices = choose(top)
-        if choices:
-            return _loose(choices, top, share, state)
-    return _package(find_package(str(top)), share, state, builds, sandbox)
+    try:
+        has_package = any(file.name == "package.xml" for file in files_below(top))
+        choices = {} if has_package else choose(top)
+        package = None if choices else find_package(str(top))
+    except HostingError as error:
+        raise HostingError(f"{error}; {SEVERAL}") if holds_class(top) else error
+    if package is None:
+        return _loose(choices, top, share, state)
+    return _package(package, share, state, builds, sandbox)
 
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:

@@ -21,6 +21,7 @@ from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED
+from ..files.exports import class_folder
 from ..judge import points_in_words
 from ..plan import MIDDLE, Plan
 from ..plan_file import MAX_SEED, load
@@ -141,7 +142,12 @@ def grade_class(args: argparse.Namespace) -> Class:
     plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
     digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
     out = make_report_folder(results_folder)
-    hand_ins = _hand_ins(folder, args.unsafe)
+    if not args.unsafe:
+        expect_private(folder)
+    given, folder = folder, class_folder(folder, (CSV, HTML))
+    if folder != given:
+        print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
+    hand_ins = _hand_ins(folder)
     version = ElementTree.parse(share / "package.xml").findtext("version")
     with scratch_folder(), exclusive(out / ".run"):
         seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
@@ -158,10 +164,8 @@ def grade_class(args: argparse.Namespace) -> Class:
     return group
 
 
-def _hand_ins(folder: Path, unsafe: bool) -> Dict[str, str]:
+def _hand_ins(folder: Path) -> Dict[str, str]:
     """What the folder has, by name; what is no hand-in is printed."""
-    if not unsafe:
-        expect_private(folder)
     hand_ins, others = collect(folder, (CSV, HTML))
     for name in hand_ins.keys() & {CSV, HTML}:
         raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
