@@ -3,7 +3,7 @@
 import os
 import sys
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
@@ -36,6 +36,7 @@ from .sandbox.build import build, runner_in
 
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
+CPP = (".cc", ".cpp", ".cxx")  # suffixes
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
 
@@ -91,6 +92,20 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
         return _loose({part: Choice(top, None, False, [])}, top, share, state)
     if not top.is_dir():
         raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
+    sources = [str(file.relative_to(top)) for file in files_below(top) if file.suffix in CPP]
+    try:
+        submission = _folder(top, share, state, builds, sandbox)
+    except (GradingError, HostingError) as error:
+        raise GradingError(f"{_about_cpp(sources)}\n{error}") if sources else error
+    return replace(submission, notes=[*submission.notes, _about_cpp(sources)]) if sources else submission
+
+
+def _about_cpp(sources: Sequence[str]) -> str:
+    return f"{', '.join(sources[:MAX_NAMED])}: C++ is not graded, only a server and a bridge in Python"
+
+
+def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
+    """A package, or a folder with single files."""
     try:
         has_package = any(file.name == "package.xml" for file in files_below(top))
         choices = {} if has_package else choose(top)
@@ -115,6 +130,8 @@ def _ready(
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
     notes = [*found.notes, *_ungraded_bridge(found.choices)]
     for script in scripts:
+        others = ", ".join(str(other.relative_to(top)) for other in found.choices[script.part].others)
+        notes += [f"{script.part}: {script.path.relative_to(top)} is graded, but not {others}"] if others else []
         notes += _obstacles(script.part, found.choices[script.part], is_loose)
         notes += [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
     return Submission(name, reads, environment, scripts, found.parameters, notes)
@@ -123,8 +140,6 @@ def _ready(
 def _script(part: str, choice: Choice, top: Path) -> Script:
     node, name = choice.node, str(choice.path.relative_to(top))
     shown = name if node is None else f"{name}, started by {node.place}"
-    if choice.others:
-        shown += f"; not graded: {', '.join(str(other.relative_to(top)) for other in choice.others)}"
     todo = next_todo(read_text(choice.path))
     return Script(
         part,

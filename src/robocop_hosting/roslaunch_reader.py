@@ -4,7 +4,10 @@ It is a separate program, because launch files can run commands. It imports noth
 """
 
 import json
+import os
+import resource
 import shlex
+import stat
 import sys
 import traceback
 import xmlrpc.client
@@ -18,6 +21,8 @@ from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
 
 MAX_SHOWN = 100  # characters of a parameter in a message
+MAX_MEMORY = 512 * 1024**2  # bytes of this program; it takes some 100 MB
+TOO_LARGE = f"it takes more than {MAX_MEMORY // 1024**2} MB: does an alias (*name) of YAML repeat too much?"
 Tags = List[Tuple[str, Dict[str, str], int]]  # name, attributes, line
 
 
@@ -91,7 +96,8 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
         loader.load(path, config, argv=arguments, verbose=False)
     except Exception as error:  # the loader documents no list of what it raises
         file, line = place_of(error)
-        return {"error": f"{type(error).__name__}: {error}", "file": file, "line": line}
+        words = TOO_LARGE if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
+        return {"error": words, "file": file, "line": line}
     nodes = []
     for node in config.nodes:
         try:
@@ -103,11 +109,24 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
         try:
             xmlrpc.client.dumps((value,))  # as the parameter server gets it
             json.dumps(value)
+        except MemoryError:
+            return {"error": f"{name}: {TOO_LARGE}", "file": path, "line": 0}
         except (TypeError, ValueError, OverflowError, RecursionError) as error:
             shown = str(value)[:MAX_SHOWN]
             return {"error": f"{name}: {shown} can't be a parameter: {error}", "file": path, "line": 0}
     return {"nodes": nodes, "parameters": parameters, "warnings": list(map(str, config.config_errors))}
 
 
+def expect_file(event: str, arguments: Tuple[Any, ...]) -> None:
+    """Refuse to open a pipe or a device, which would not end (an audit hook of Python)."""
+    path = arguments[0] if event == "open" else None
+    if isinstance(path, (str, bytes)) and path != os.devnull and os.path.exists(path):
+        mode = os.stat(path).st_mode
+        if stat.S_ISFIFO(mode) or stat.S_ISCHR(mode):
+            raise ValueError(f"{os.fsdecode(path)}: expected an ordinary file")
+
+
 if __name__ == "__main__":
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
+    sys.addaudithook(expect_file)
     print(json.dumps(read(sys.argv[1], sys.argv[2:])))

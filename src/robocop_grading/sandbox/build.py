@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import stat
 import subprocess
 from pathlib import Path
 from typing import IO, Dict, Iterable, Iterator, Mapping, Optional, Sequence
@@ -80,7 +81,10 @@ def build(
     names = " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
-        size = os.stat(path).st_size
+        status = os.stat(path)
+        if not stat.S_ISREG(status.st_mode):
+            raise GradingError(f"{path}: expected an ordinary file")
+        size = status.st_size
         if is_ungraded(path, size):
             return
         sizes[path] = size
