@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError, HostingError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting import workspace
+from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
 from robocop_hosting.scripts import (
@@ -29,6 +30,7 @@ from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import Environment, compat_environment, places, workspace_name
 
 from .advice import advice, next_todo
+from .errors import GradingError
 from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
@@ -96,7 +98,9 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
     try:
         submission = _folder(top, share, state, builds, sandbox)
     except (GradingError, HostingError) as error:
-        raise GradingError(f"{_about_cpp(sources)}\n{error}") if sources else error
+        if not sources:
+            raise
+        raise GradingError(f"{_about_cpp(sources)}\n{error}") from error
     return replace(submission, notes=[*submission.notes, _about_cpp(sources)]) if sources else submission
 
 
@@ -111,7 +115,9 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
         choices = {} if has_package else choose(top)
         package = None if choices else find_package(str(top))
     except HostingError as error:
-        raise HostingError(f"{error}; {SEVERAL}") if holds_class(top) else error
+        if not holds_class(top):
+            raise
+        raise HostingError(f"{error}; {SEVERAL}") from error
     if package is None:
         return _loose(choices, top, share, state)
     return _package(package, share, state, builds, sandbox)

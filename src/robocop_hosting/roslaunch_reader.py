@@ -5,7 +5,7 @@ It is a separate program, because launch files can run commands. It imports noth
 
 import json
 import os
-import resource
+import reprlib
 import shlex
 import stat
 import sys
@@ -21,8 +21,7 @@ from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
 
 MAX_SHOWN = 100  # characters of a parameter in a message
-MAX_MEMORY = 512 * 1024**2  # bytes of this program; it takes some 100 MB
-TOO_LARGE = f"it takes more than {MAX_MEMORY // 1024**2} MB: does an alias (*name) of YAML repeat too much?"
+MAX_VALUES = 100_000  # in a parameter
 Tags = List[Tuple[str, Dict[str, str], int]]  # name, attributes, line
 
 
@@ -88,6 +87,14 @@ def as_values(node: Node) -> Dict[str, Any]:
     }
 
 
+def count(value: Any, known: Dict[int, int]) -> int:
+    """The values in a value, those of a YAML alias counted wherever it stands; `known`: counts by id()."""
+    if id(value) not in known:
+        inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+        known[id(value)] = 1 + sum(count(it, known) for it in inner)
+    return known[id(value)]
+
+
 def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     """Nodes and parameters, or an error with its file and line."""
     config, loader = ROSLaunchConfig(), XmlLoader()
@@ -96,8 +103,7 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
         loader.load(path, config, argv=arguments, verbose=False)
     except Exception as error:  # the loader documents no list of what it raises
         file, line = place_of(error)
-        words = TOO_LARGE if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
-        return {"error": words, "file": file, "line": line}
+        return {"error": f"{type(error).__name__}: {error}", "file": file, "line": line}
     nodes = []
     for node in config.nodes:
         try:
@@ -107,12 +113,12 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     parameters = {str(name): parameter.value for name, parameter in config.params.items()}
     for name, value in parameters.items():
         try:
+            if count(value, {}) > MAX_VALUES:
+                raise ValueError(f"more than {MAX_VALUES} values: does an alias (*name) of YAML repeat too much?")
             xmlrpc.client.dumps((value,))  # as the parameter server gets it
             json.dumps(value)
-        except MemoryError:
-            return {"error": f"{name}: {TOO_LARGE}", "file": path, "line": 0}
         except (TypeError, ValueError, OverflowError, RecursionError) as error:
-            shown = str(value)[:MAX_SHOWN]
+            shown = (reprlib.repr(value) if isinstance(value, (dict, list)) else str(value))[:MAX_SHOWN]
             return {"error": f"{name}: {shown} can't be a parameter: {error}", "file": path, "line": 0}
     return {"nodes": nodes, "parameters": parameters, "warnings": list(map(str, config.config_errors))}
 
@@ -127,6 +133,5 @@ def expect_file(event: str, arguments: Tuple[Any, ...]) -> None:
 
 
 if __name__ == "__main__":
-    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
     sys.addaudithook(expect_file)
     print(json.dumps(read(sys.argv[1], sys.argv[2:])))

@@ -4,12 +4,12 @@ import contextlib
 from pathlib import Path
 from typing import Collection, Dict, List, Tuple
 
-from aro_robocop_goto_as.errors import GradingSetupError, RobocopError, SubmissionError
+from aro_robocop_goto_as.errors import RobocopError
 
+from ..errors import GradingSetupError, SubmissionError
 from ..files import unpacking
 from ..files.archives import is_archive
 from ..files.exports import EXPECTED, METADATA, visible
-
 
 
 def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str], List[str]]:

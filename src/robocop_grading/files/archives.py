@@ -15,8 +15,9 @@ import zipfile
 from pathlib import PurePosixPath
 from typing import IO, Any, Callable, Dict, List, NamedTuple
 
-from aro_robocop_goto_as.errors import SubmissionError
 from robocop_hosting import tree
+
+from ..errors import SubmissionError
 
 MB = 1024**2
 MAX_BYTES = 64 * MB  # of a hand-in, without its archives

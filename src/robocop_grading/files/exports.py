@@ -8,9 +8,9 @@ from typing import Collection, Dict, List, NamedTuple
 
 import yaml
 
-from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_hosting import tree
 
+from ..errors import GradingSetupError
 from .archives import LEFT_OUT, is_archive
 
 METADATA = "submission_metadata.yml"  # written by Gradescope into what it exports

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 from hosted_packages import tree
 
-from aro_robocop_goto_as.errors import GradingError, HostingError
 from robocop_grading import submission
+from robocop_grading.errors import GradingError
+from robocop_hosting.errors import HostingError
 
 SERVER = "import rospy\nrospy.init_node('lab')\nactionlib.SimpleActionServer('robocop_goto_as')\n"
 

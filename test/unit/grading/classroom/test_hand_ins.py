@@ -4,8 +4,9 @@ import os
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.classroom.hand_ins import collect, unpacked
+from robocop_grading.errors import GradingError
 
 
 def problem_of(path):
@@ -53,7 +54,9 @@ def test_what_can_not_be_read_from_a_folder_states_the_reason(tmp_path):
     with open(tmp_path / "large" / "hole", "wb") as hole:
         hole.truncate(10**12)
     assert problem_of(tmp_path / "pipes") == "pipe: expected a file, folder or link"
-    assert problem_of(tmp_path / "large").startswith("larger than 64 MB; the largest file in it is hole with 953674.3 MB")
+    assert problem_of(tmp_path / "large").startswith(
+        "larger than 64 MB; the largest file in it is hole with 953674.3 MB"
+    )
 
 
 def test_a_folder_without_hand_ins_is_refused(tmp_path):

@@ -4,8 +4,8 @@ import zipfile
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.classroom.hand_ins import collect
+from robocop_grading.errors import GradingSetupError
 from robocop_grading.files.exports import Person, class_folder, holds_class, people
 
 SERVER = "robocop_goto_as.py"
@@ -34,10 +34,11 @@ FLAT_MOODLE = [f"{name}_assignsubmission_file_lab03.zip" for name in ("Novak Jan
 GRADESCOPE = [f"submission_{number}/{SERVER}" for number in (1, 2)] + ["submission_metadata.yml"]
 GITHUB = [f"lab03-{name}/{file}" for name in ("anna", "ben") for file in (".git/HEAD", "src/my_server.py")]
 GOOGLE = ["Anna.zip", "Ben.zip", "late/lab.py"]
+EXPORTS = {"moodle": MOODLE, "files": FLAT_MOODLE, "gradescope": GRADESCOPE, "github": GITHUB, "google": GOOGLE}
 
 
 @pytest.mark.parametrize("above", ["", "assignment_7_export", "top/assignment_7_export"])
-@pytest.mark.parametrize("files", [MOODLE, FLAT_MOODLE, GRADESCOPE, GITHUB, GOOGLE], ids="moodle flat gradescope github google".split())
+@pytest.mark.parametrize("files", EXPORTS.values(), ids=EXPORTS)
 def test_export_of_a_platform_is_read_as_a_class_also_in_a_folder_of_its_own(above, files, tmp_path):
     made(tmp_path / "class" / above, *files)
     folder = class_folder(tmp_path / "class", ("grades.csv",))
@@ -66,7 +67,7 @@ def test_export_that_is_still_packed_is_refused_with_the_command_that_unpacks_it
     export.parent.mkdir()
     with zipfile.ZipFile(export, "w") as archive:
         archive.writestr(f"top/{MOODLE[0]}", "pass")
-    with pytest.raises(GradingSetupError, match="expected a folder with a folder, a zip or tar archive, or a Python file"):
+    with pytest.raises(GradingSetupError, match="expected a folder with a folder, a zip or tar archive"):
         class_folder(tmp_path / "nothing", ())
     for given in (export, export.parent):
         with pytest.raises(GradingSetupError) as error:

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingError
+from robocop_grading.errors import GradingError
 from robocop_grading.sandbox import build
 from robocop_hosting.workspace import output_of
 
