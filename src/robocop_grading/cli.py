@@ -18,7 +18,7 @@ from robocop_hosting.workspace import exclusive, places
 from .errors import GradingError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .judge import CheckResult, Grade, Outcome, total
+from .judge import CheckResult, Grade, Outcome, scored
 from .plan import MIDDLE, Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -31,7 +31,6 @@ NO_GRADE = 3  # exit status: the machine had no time, or something was killed fr
 INTERRUPTED = 130  # the shells' exit status for Ctrl-C
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 MAX_SHOWN = 1_000  # characters of an error
-LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
 class Progress:
@@ -56,23 +55,21 @@ def _show(text: str) -> None:
 
 def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
     """The grade for a terminal: failures first, what passed in one line; `next_steps` by part."""
-    lines, passed = [], [check for check in grade.checks if check.outcome is Outcome.PASSED]
-    not_reached: Dict[str, List[CheckResult]] = {}
-    for result in grade.failures_first[: len(grade.checks) - len(passed)]:
-        if result.outcome is Outcome.NOT_REACHED:
-            not_reached.setdefault(result.why, []).append(result)
-            continue
-        lines.append(f"{LABELS[result.outcome]:11}  {_points([result])}  {result.marked(result.sentence)}")
-        lines.append(f"{'':11}  {result.words}")
-    for why, results in not_reached.items():
-        names = ", ".join(result.marked(result.name) for result in results)
-        lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {_points(results)}  {names}: {why}")
-    if passed:
-        every = len(passed) == len(grade.checks)
-        names = "every check" if every else ", ".join(check.marked(check.name) for check in passed)
-        lines.append(f"{LABELS[Outcome.PASSED]:11}  {_points(passed)}  {names}")
+    lines = []
+    for mistake in grade.mistakes:
+        check = mistake.check
+        lines.append(f"{'FAILED':13}  {_points([check])}  {check.marked(check.sentence)}")
+        lines.append(f"{'':13}  {check.words}")
+        if mistake.followers:
+            lines.append(f"{'':13}  {_points(mistake.followers)}  {mistake.consequences}")
+    for words, checks in grade.others.items():
+        outcome, _, why = words.partition(": ")
+        every = len(checks) == len(grade.checks)
+        names = "every check" if every else ", ".join(check.marked(check.name) for check in checks)
+        lines.append(f"{outcome:13}  {_points(checks)}  {names}{why and ': '}{why}")
     lines += [f"graded: {file}" for file in grade.files]
     lines += [f"problem: {problem}" for problem in grade.problems]
+    lines += [f"note: {note}" for note in grade.notes]
     lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
     unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}
     lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
@@ -81,9 +78,7 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
 
 
 def _points(checks: Sequence[CheckResult]) -> str:
-    """The points of checks, without extra ones unless all of them are."""
-    counted = [check for check in checks if not check.extra] or checks
-    return f"{total(it.points for it in counted):4g} / {total(it.points_available for it in counted):<4g}"
+    return "{:4g} / {:<4g}".format(*scored(checks))
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
@@ -143,7 +138,7 @@ def main() -> None:
             folder = given or make_report_folder(state / "reports" / name)
             progress = Progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress=progress.begin)
-            grade = grade_submission(runner, submission, folder, keep=True)
+            grade = grade_submission(runner, submission, folder)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(NO_GRADE)

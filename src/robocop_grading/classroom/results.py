@@ -95,7 +95,7 @@ class Results:
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
         checks = [_check(it) for it in raw["checks"]]
-        return Result(name, tuple(checks), tuple(raw["problems"]), seconds=stamp["seconds"])
+        return Result(name, tuple(checks), tuple(raw["problems"]), tuple(raw["notes"]), seconds=stamp["seconds"])
 
 
 def _check(raw: Mapping[str, Any]) -> CheckResult:
